@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Projection criteria S (paper, sections 2, 4 and 5.1): values that compose.
+//
+// A criterion answers, for the new nodes of one split, at which of them S holds:
+//     NodeMask operator()(const NewNodes& nodes) const;
+//     static constexpr bool saturated = ...;
+// Conjunctions and disjunctions of saturated criteria are saturated: where both hold at a corner,
+// both hold at the new nodes, and likewise where one of them does.
+#pragma once
+
+#include <nestgrid/traversal.hpp>
+
+namespace nestgrid {
+
+/// The new nodes of one split, as a criterion sees them.
+struct NewNodes {
+    const Rule& rule;
+    std::span<const NodeKey> keys;
+    int level;          ///< of the nodes: one more than that of the element
+    NodeMask outside;   ///< nodes at which no element may stop
+};
+
+template <class C>
+concept Criterion = requires(const C& c, const NewNodes& nodes) {
+    { c(nodes) } -> std::same_as<NodeMask>;
+    { C::saturated } -> std::convertible_to<bool>;
+};
+
+/// S(x) = (eta(x) <= epsilon) for an indicator that stores eta by node.
+template <class Indicator>
+struct Threshold {
+    static constexpr bool saturated = Indicator::saturated;
+
+    const Indicator* indicator;
+    double epsilon;
+
+    NodeMask operator()(const NewNodes& nodes) const {
+        NodeMask mask = 0;
+        for (std::size_t i = 0; i < nodes.keys.size(); ++i) {
+            if (indicator->stop(nodes.keys[i]) <= epsilon) mask |= NodeMask{1} << i;
+        }
+        return mask & ~nodes.outside;
+    }
+};
+
+/// S(x) = (level of x > deepest), section 4. Saturated, because no node is created below a
+/// deeper one, wherever each node is created on one level only; combine it with a Threshold on
+/// grids that have nodes outside the domain.
+struct DeepestLevel {
+    static constexpr bool saturated = true;
+
+    int deepest;
+
+    NodeMask operator()(const NewNodes& nodes) const {
+        return nodes.level > deepest ? nodes.rule.all() & ~nodes.outside : NodeMask{0};
+    }
+};
+
+/// S false everywhere: the projection is the identity.
+struct Exact {
+    static constexpr bool saturated = true;
+    NodeMask operator()(const NewNodes&) const { return 0; }
+};
+
+template <Criterion A, Criterion B>
+struct Both {
+    static constexpr bool saturated = A::saturated && B::saturated;
+    A a;
+    B b;
+    NodeMask operator()(const NewNodes& nodes) const { return a(nodes) & b(nodes); }
+};
+
+template <Criterion A, Criterion B>
+struct Either {
+    static constexpr bool saturated = A::saturated && B::saturated;
+    A a;
+    B b;
+    NodeMask operator()(const NewNodes& nodes) const { return a(nodes) | b(nodes); }
+};
+
+template <Criterion A, Criterion B>
+Both<A, B> operator&&(const A& a, const B& b) {
+    return {a, b};
+}
+
+template <Criterion A, Criterion B>
+Either<A, B> operator||(const A& a, const B& b) {
+    return {a, b};
+}
+
+}  // namespace nestgrid

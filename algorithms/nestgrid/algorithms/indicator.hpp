@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The hierarchical indicator and its saturated preroll (paper, sections 2 and 4.4).
+//
+// Two numbers per node, both from the offsets |U_delta| = |U - sum omega U|:
+//   stop   the largest offset of the node and of all nodes created, at any depth, in elements it is
+//          a corner of (section 2): S(x) = (stop(x) <= epsilon) is a saturated criterion;
+//   bound  the recursive sum of section 4.4, |U_delta(x)| + max over finer nodes: on an element,
+//          U stays within corner values +- the largest bound of its new nodes.
+// The first is not a valid bound: offsets of several levels add up.
+// Invariants, after construction:
+//   - stop(corner) >= stop(new node) for every split element;
+//   - bound(corner) >= |U_delta(corner)| + bound(new node), for every split element, corners that
+//     are themselves new nodes of something.
+// Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is monotone, so the first
+// invariant survives it exactly, and the second stays on the safe side.
+// Memory: O(nodes), 4 bytes (plus 16 to 48 for a hash table where node keys are not dense).
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/levels.hpp>
+
+namespace nestgrid {
+
+class HierarchicalIndicator {
+public:
+    static constexpr bool saturated = true;
+
+    /// Walks the whole hierarchy; component 0 of the field counts.
+    /// \throw InvalidInput where a value is not a number, infinite, or beyond a quarter of the
+    ///        range of its type
+    template <class Grid, class Field>
+    HierarchicalIndicator(const Grid& grid, const Field& field);
+
+    /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
+    double stop(NodeKey node) const {
+        const Entry* e = entry(node);
+        return e == nullptr ? 0.0 : bfloat16_value(e->stop);
+    }
+
+    /// The bound of a node, for the intersection test.
+    double bound(NodeKey node) const {
+        const Entry* e = entry(node);
+        return e == nullptr ? 0.0 : bfloat16_value(e->bound);
+    }
+
+    /// The largest bound of some nodes, eta_H(E) for the new nodes of an element E.
+    double bound(std::span<const NodeKey> nodes) const {
+        double largest = 0;
+        for (const NodeKey node : nodes) largest = std::max(largest, bound(node));
+        return largest;
+    }
+
+    /// Nodes that hang, where the grid did not say so itself: hand them to every Traversal.
+    const HangingNodes* hanging() const { return hanging_.size() > 0 ? &hanging_ : nullptr; }
+
+    double least() const { return least_; }        ///< of the values at all nodes
+    double greatest() const { return greatest_; }  ///< of the values at all nodes
+    std::size_t node_count() const { return node_count_; }
+    std::uint64_t epoch() const { return epoch_; }  ///< of the grid this was computed on
+
+    std::size_t memory_bytes() const {
+        return dense_.capacity() * sizeof(Entry) + sparse_.memory_bytes() +
+               hanging_.memory_bytes();
+    }
+
+private:
+    struct Entry {
+        std::uint16_t stop = 0;   // bfloat16, rounded up
+        std::uint16_t bound = 0;  // bfloat16, rounded up
+    };
+    struct Node {
+        Entry entry;
+        float offset = 0;  // |U_delta|, rounded up
+        float finer = 0;   // largest bound of finer nodes
+    };
+
+    const Entry* entry(NodeKey node) const {
+        if (!dense_.empty()) return &dense_[static_cast<std::size_t>(node)];
+        return sparse_.find(node);
+    }
+
+    void add_value(double value, double limit) {
+        if (!(std::abs(value) <= limit)) {
+            throw InvalidInput("a value of the field is not a usable number: " +
+                               std::to_string(value));
+        }
+        least_ = std::min(least_, value);
+        greatest_ = std::max(greatest_, value);
+    }
+
+    template <class Grid, class Field>
+    void sweep_stars(const Grid& grid, const Field& field);
+    template <class Grid, class Field>
+    void sweep_levels(const Grid& grid, const Field& field);
+
+    std::vector<Entry> dense_;
+    KeyTable<NodeKey, Entry> sparse_;
+    HangingNodes hanging_;
+    double least_ = std::numeric_limits<double>::infinity();
+    double greatest_ = -std::numeric_limits<double>::infinity();
+    std::size_t node_count_ = 0;
+    std::uint64_t epoch_ = 0;
+};
+
+namespace detail {
+
+template <class Grid, class Field>
+concept KnowsStars = requires(const Grid& g, const Field& f) {
+    g.for_each_star([](const Star&) {});
+    f.value(NodeKey{});
+};
+
+/// |U - sum omega U| at new node n of an element, rounded up; `value` holds the true values of the
+/// corners and behind them those of the new nodes.
+template <class Real>
+float offset_above(const Stencil& stencil, const Real* value, Real at_node) {
+    const Real mean = interpolate(stencil, value, 1);
+    return float_above(distance_above(at_node, mean));
+}
+
+}  // namespace detail
+
+template <class Grid, class Field>
+HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& field)
+    : epoch_{nestgrid::epoch(grid)} {
+    static_assert(require_nested_grid<Grid>());
+    static_assert(require_nodal_field<Field, Grid>());
+    if (hanging_nodes_unknown(grid)) hanging_ = derive_hanging_nodes(grid);
+    if constexpr (detail::KnowsStars<Grid, Field>) {
+        sweep_stars(grid, field);
+    } else {
+        sweep_levels(grid, field);
+    }
+}
+
+template <class Grid, class Field>
+void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
+    using Real = typename Field::value_type;
+    constexpr double limit = std::numeric_limits<Real>::max() / 8;
+    node_count_ = grid.node_count();
+    dense_.assign(node_count_, {});
+    std::vector<float> bound(node_count_, 0.0F);  // of finer nodes at first, then the node's own
+    for (std::size_t i = 0; i < node_count_; ++i) add_value(field.value(static_cast<NodeKey>(i)), limit);
+    grid.for_each_star([&](const Star& star) {
+        std::array<Real, max_corners> parent;
+        Stencil stencil;
+        for (const NodeKey key : star.parents) {
+            stencil.parent[stencil.count] = stencil.count;
+            parent[stencil.count++] = field.value(key);
+        }
+        stencil.weight.fill(1.0 / stencil.count);
+        stencil.mean = stencil.count == 2 ? Mean::midpoint : Mean::weighted;
+        const float offset =
+            detail::offset_above(stencil, parent.data(), static_cast<Real>(field.value(star.node)));
+        const auto node = static_cast<std::size_t>(star.node);
+        std::uint16_t& stop = dense_[node].stop;
+        stop = std::max(stop, star.outside ? bfloat16_infinity : bfloat16_above(offset));
+        bound[node] = sum_above(offset, bound[node]);
+        for (const NodeKey corner : star.corners) {
+            const auto c = static_cast<std::size_t>(corner);
+            dense_[c].stop = std::max(dense_[c].stop, stop);
+            bound[c] = std::max(bound[c], bound[node]);
+        }
+    });
+    for (std::size_t i = 0; i < node_count_; ++i) dense_[i].bound = bfloat16_above(bound[i]);
+}
+
+template <class Grid, class Field>
+void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
+    using Real = typename Field::value_type;
+    constexpr double limit = std::numeric_limits<Real>::max() / 8;
+    constexpr std::size_t stride = static_cast<std::size_t>(detail::components_of<Field>());
+    const Traversal<Grid, Field, Needs{.keys = true}> walk(grid, field, hanging());
+    const int levels = count_levels(walk);
+    std::vector<Node> nodes(dense_key_count(grid));
+    KeyTable<NodeKey, std::size_t> slots;
+    const bool dense = !nodes.empty();
+    const auto slot = [&](NodeKey key) {
+        if (dense) return static_cast<std::size_t>(key);
+        const auto [at, is_new] = slots.insert(key, nodes.size());
+        if (is_new) nodes.emplace_back();
+        return *at;
+    };
+    std::array<NodeKey, max_corners> corner_keys;
+
+    // Offsets, from the true values.
+    for (int level = 0; level < levels; ++level) {
+        for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
+            const auto corners = static_cast<std::size_t>(s.corner_count());
+            if (level == 0) {
+                walk.keys(s, corner_keys);
+                for (std::size_t i = 0; i < corners; ++i) {
+                    add_value(s.value[i * stride], limit);
+                    slot(corner_keys[i]);
+                }
+            }
+            if (split.rule == nullptr) return;
+            const Rule& rule = *split.rule;
+            std::array<Real, max_corners + max_new_nodes> value;
+            std::array<Real, max_new_nodes * stride> given;
+            for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];
+            const NodeMask which = rule.all() & ~split.constrained;
+            const NodeMask missing =
+                which == 0 ? NodeMask{0}
+                           : detail::call_new_values(
+                                 field, *s.context, s.element, which,
+                                 std::span<Real>(given.data(), rule.new_nodes.size() * stride));
+            if ((missing & which) != 0) {
+                throw GridError("the field has no value at a new node of an element on level " +
+                                std::to_string(s.level) + " below coarse element " +
+                                std::to_string(s.coarse));
+            }
+            for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+                const Stencil& stencil = rule.new_nodes[n];
+                Node& node = nodes[slot(split.keys[n])];
+                if ((which >> n & 1U) == 0) {
+                    value[corners + n] = detail::interpolate(stencil, value.data(), 1);
+                } else {
+                    value[corners + n] = given[n * stride];
+                    add_value(given[n * stride], limit);
+                    node.offset = std::max(
+                        node.offset,
+                        detail::offset_above(stencil, value.data(), value[corners + n]));
+                }
+                node.entry.stop = std::max(node.entry.stop, (split.outside >> n & 1U) != 0
+                                                                ? bfloat16_infinity
+                                                                : bfloat16_above(node.offset));
+            }
+        });
+    }
+
+    // Saturation and bounds: fine to coarse until nothing changes, since a node may be created on
+    // different levels of the tree.
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int level = levels - 1; level >= 0; --level) {
+            for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
+                if (split.rule == nullptr) return;
+                std::uint16_t stop = 0;
+                float bound = 0;
+                for (const NodeKey key : split.keys) {
+                    const Node& node = nodes[slot(key)];
+                    stop = std::max(stop, node.entry.stop);
+                    bound = std::max(bound, sum_above(node.offset, node.finer));
+                }
+                walk.keys(s, corner_keys);
+                for (int i = 0; i < s.corner_count(); ++i) {
+                    Node& node = nodes[slot(corner_keys[static_cast<std::size_t>(i)])];
+                    if (node.entry.stop < stop || node.finer < bound) changed = true;
+                    node.entry.stop = std::max(node.entry.stop, stop);
+                    node.finer = std::max(node.finer, bound);
+                }
+            });
+        }
+    }
+
+    for (Node& node : nodes) {
+        node.entry.bound = bfloat16_above(sum_above(node.offset, node.finer));
+    }
+    node_count_ = nodes.size();
+    if (dense) {
+        dense_.reserve(nodes.size());
+        for (const Node& node : nodes) dense_.push_back(node.entry);
+    } else {
+        sparse_.reserve(slots.size());
+        slots.for_each(
+            [&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });
+    }
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid {
+
+/// The nodes of a grid that hang: that lie on an edge or face of some leaf without being a corner
+/// of it. A property of the node, the same from every element. Filled by derive_hanging_nodes().
+class HangingNodes {
+public:
+    void insert(NodeKey key) { keys_.insert(key, {}); }
+    bool contains(NodeKey key) const { return keys_.find(key) != nullptr; }
+    std::size_t size() const { return keys_.size(); }
+    std::size_t memory_bytes() const { return keys_.memory_bytes(); }
+
+    /// Which of the keys hang, one bit each.
+    NodeMask mask(std::span<const NodeKey> keys) const {
+        NodeMask result = 0;
+        for (std::size_t i = 0; i < keys.size() && size() > 0; ++i) {
+            if (contains(keys[i])) result |= NodeMask{1} << i;
+        }
+        return result;
+    }
+
+private:
+    struct Present {};
+    KeyTable<NodeKey, Present> keys_;
+};
+
+}  // namespace nestgrid

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The optional operations of a grid, and how the library asks for any operation.
+//
+// A grid may also offer, always with or without a trailing `Context&`:
+//     void corner_keys(e, std::span<NodeKey> out), void new_keys(e, std::span<NodeKey> out)
+//         own level-independent node keys; default: derived, keys.hpp
+//     std::size_t node_count()
+//         promises that own keys lie in [0, node_count): tables become arrays
+//     void corner_positions(e, std::span<Point> out)
+//         positions by heart, on grids where eq. (1) holds for them; a function of the node alone;
+//         default: interpolated on the way down
+//     void new_positions(e, NodeMask which, std::span<Point> out)
+//         true positions on curved or moving grids; projected with the same S as the data
+//     NodeMask constrained(e)
+//         new nodes of e that hang, here or in any other element; default: derived, hanging.hpp
+//     bool conforming()
+//         promises that no node hangs, which spares the derivation
+//     bool masked(e)
+//         e lies outside the domain: skipped with everything below it
+//     NodeMask outside(e)
+//         new nodes at which no element may stop because only deeper elements end at the boundary
+//         of the domain; saturated like an infinite indicator
+//     unsigned boundary_faces(e)
+//         faces on the boundary of the domain, one bit each; default: derived from coarse ids
+//     void for_each_star(f)
+//         calls f(Star) for every new node, fine to coarse, each node once; default: sweeps
+//     std::uint64_t epoch()
+//         changes with the grid: tells stale prerolls
+// and a field
+//     void corner_gradients(e, std::span<Point> out)   gradients at the corners, per unit length
+//     value_type value(NodeKey)                        random access, with for_each_star
+#pragma once
+
+#include <nestgrid/grid.hpp>
+#include <nestgrid/keys.hpp>
+
+namespace nestgrid {
+
+/// A new node, the parents of its stencil, and all corners of all elements that create it.
+/// Its stencil is a plain mean.
+struct Star {
+    NodeKey node{};
+    std::span<const NodeKey> parents;
+    std::span<const NodeKey> corners;
+    bool outside = false;  ///< as the operation `outside`
+};
+
+enum class Feature : unsigned {
+    own_keys = 1,
+    dense_keys = 2,
+    own_positions = 4,
+    new_positions = 8,
+    constrained = 16,
+    masked = 32,
+    outside = 64,
+    boundary_faces = 128,
+    gradients = 256,
+};
+
+template <class Grid>
+using ElementOf = typename Grid::Element;
+
+template <class Grid>
+using Context = typename detail::ContextOf<Grid>::type;
+
+template <class Grid>
+Context<Grid> make_context(const Grid& grid) {
+    if constexpr (requires { grid.make_context(); }) {
+        return grid.make_context();
+    } else {
+        return {};
+    }
+}
+
+namespace detail {
+
+/// Calls an operation with the context where it takes one. `model` is any grid or field, `call` a
+/// generic lambda that forwards to the member.
+#define NESTGRID_OPERATION(name)                                                     \
+    template <class Model, class Ctx, class... Args>                                 \
+    concept offers_##name =                                                          \
+        requires(const Model& m, Ctx& c, Args&&... args) { m.name(args..., c); } ||  \
+        requires(const Model& m, Args&&... args) { m.name(args...); };               \
+    template <class Model, class Ctx, class... Args>                                 \
+    decltype(auto) call_##name(const Model& m, Ctx& c, Args&&... args) {             \
+        if constexpr (requires { m.name(args..., c); }) {                            \
+            return m.name(args..., c);                                               \
+        } else {                                                                     \
+            return m.name(args...);                                                  \
+        }                                                                            \
+    }
+
+NESTGRID_OPERATION(split)
+NESTGRID_OPERATION(children)
+NESTGRID_OPERATION(coarse)
+NESTGRID_OPERATION(coarse_values)
+NESTGRID_OPERATION(new_values)
+NESTGRID_OPERATION(corner_keys)
+NESTGRID_OPERATION(new_keys)
+NESTGRID_OPERATION(corner_positions)
+NESTGRID_OPERATION(new_positions)
+NESTGRID_OPERATION(constrained)
+NESTGRID_OPERATION(masked)
+NESTGRID_OPERATION(outside)
+NESTGRID_OPERATION(boundary_faces)
+NESTGRID_OPERATION(corner_gradients)
+
+#undef NESTGRID_OPERATION
+
+template <class Model>
+concept DecidesAtRunTime = requires(const Model& m) {
+    { m.offers(Feature::own_keys) } -> std::same_as<bool>;
+};
+
+template <class Grid>
+constexpr unsigned static_features() {
+    using E = const ElementOf<Grid>&;
+    using C = Context<Grid>;
+    unsigned f = 0;
+    const auto add = [&](Feature feature, bool offered) {
+        if (offered) f |= static_cast<unsigned>(feature);
+    };
+    const bool keys = offers_corner_keys<Grid, C, E, std::span<NodeKey>> &&
+                      offers_new_keys<Grid, C, E, std::span<NodeKey>>;
+    add(Feature::own_keys, keys);
+    add(Feature::dense_keys, keys && requires(const Grid& g) { g.node_count(); });
+    add(Feature::own_positions, offers_corner_positions<Grid, C, E, std::span<Point>>);
+    add(Feature::new_positions, offers_new_positions<Grid, C, E, NodeMask, std::span<Point>>);
+    add(Feature::constrained, offers_constrained<Grid, C, E>);
+    add(Feature::masked, offers_masked<Grid, C, E>);
+    add(Feature::outside, offers_outside<Grid, C, E>);
+    add(Feature::boundary_faces, offers_boundary_faces<Grid, C, E>);
+    return f;
+}
+
+}  // namespace detail
+
+/// Whether the class has the operation at all; a type-erased grid decides at run time.
+template <class Grid>
+constexpr bool may_offer(Feature feature) {
+    return (detail::static_features<Grid>() & static_cast<unsigned>(feature)) != 0;
+}
+
+/// Whether this grid offers the operation.
+template <class Grid>
+constexpr bool offers(const Grid& grid, Feature feature) {
+    if constexpr (detail::DecidesAtRunTime<Grid>) {
+        return grid.offers(feature);
+    } else {
+        return may_offer<Grid>(feature);
+    }
+}
+
+/// Whether this field offers gradients at the corners of elements of the grid.
+template <class Grid, class Field>
+constexpr bool offers_gradients(const Field& field) {
+    if constexpr (!detail::offers_corner_gradients<Field, Context<Grid>, const ElementOf<Grid>&,
+                                                   std::span<Point>>) {
+        return false;
+    } else if constexpr (detail::DecidesAtRunTime<Field>) {
+        return field.offers(Feature::gradients);
+    } else {
+        return true;
+    }
+}
+
+/// Number of dense keys, or 0 where keys are not dense.
+template <class Grid>
+std::size_t dense_key_count(const Grid& grid) {
+    if constexpr (may_offer<Grid>(Feature::dense_keys)) {
+        return offers(grid, Feature::dense_keys) ? grid.node_count() : 0;
+    } else {
+        return 0;
+    }
+}
+
+template <class Grid>
+std::uint64_t epoch(const Grid& grid) {
+    if constexpr (requires { grid.epoch(); }) {
+        return grid.epoch();
+    } else {
+        return 0;
+    }
+}
+
+}  // namespace nestgrid

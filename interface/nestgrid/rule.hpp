@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Refinement rules as data (paper, section 1.2 and eq. (1)).
+//
+// The nodes of a rule are numbered: first the corners of the parent, then the new nodes in order.
+// Invariants, asserted by find_violation():
+//   - the weights of every stencil are positive and sum to one, and name earlier nodes only;
+//   - every child lies inside the parent and has positive volume under its orientation sign;
+//   - every face of a child lies in a face of the parent or belongs to exactly two children;
+//   - the volumes of the children add up to that of the parent.
+// Consequence: the children tile the parent, and no node hangs inside one split.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nestgrid/shape.hpp>
+
+namespace nestgrid {
+
+/// A set of new nodes of one rule: bit i stands for new node i.
+using NodeMask = std::uint64_t;
+
+inline constexpr int max_new_nodes = 64;
+inline constexpr int max_children = 64;
+inline constexpr std::uint8_t no_face = 0xFF;
+
+/// How a stencil is summed; derived by make_rule from its parents and weights.
+enum class Mean : std::uint8_t {
+    midpoint,  ///< plain mean of two nodes
+    face,      ///< plain mean of the corners of a quadrilateral, parents in tensor order
+    weighted,  ///< anything else
+};
+
+/// Where a new node lies: the weighted mean of its parents, eq. (1).
+struct Stencil {
+    std::uint8_t count = 0;
+    std::array<std::uint8_t, max_corners> parent{};  ///< nodes of the rule, earlier than this one
+    std::array<double, max_corners> weight{};
+    std::uint8_t number = 0;  ///< tells apart stencils of equal parents and equal order of weights
+    Mean mean = Mean::weighted;                     // derived
+    std::array<std::uint8_t, max_corners> rank{};   // derived: 0 for the largest weight, and so on
+
+    bool operator==(const Stencil&) const = default;
+};
+
+/// A child element: its shape and its corners as nodes of the rule.
+struct Child {
+    Shape shape = Shape::point;
+    std::array<std::uint8_t, max_corners> corner{};
+    std::int8_t orientation = 1;  ///< -1 where the corners are a mirror image of the parent's
+    std::array<std::uint8_t, max_faces> parent_face{};  // derived: face of the parent, or no_face
+};
+
+struct Rule {
+    std::string name;
+    Shape parent = Shape::point;
+    std::vector<Stencil> new_nodes;
+    std::vector<Child> children;
+
+    int corner_count() const { return topology(parent).corners; }
+    int new_node_count() const { return static_cast<int>(new_nodes.size()); }
+    int child_count() const { return static_cast<int>(children.size()); }
+
+    /// All new nodes.
+    NodeMask all() const {
+        return new_nodes.size() >= 64 ? ~NodeMask{0} : (NodeMask{1} << new_nodes.size()) - 1;
+    }
+};
+
+/// Stencil of the plain mean of some nodes.
+Stencil mean_of(std::initializer_list<int> parents);
+
+/// Stencil with weights; `number` as in Stencil.
+Stencil weighted_mean_of(std::initializer_list<std::pair<int, double>> parents, int number = 0);
+
+/// Completes the derived members of a rule and checks it.
+/// \throw InvalidInput with the sentence of find_violation().
+Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_nodes,
+               std::vector<Child> children);
+
+/// The first violated invariant of the rule as a sentence, or nothing.
+std::optional<std::string> find_violation(const Rule& rule);
+
+/// Reference coordinates of all nodes of a rule, the parent's corners first.
+std::vector<Point> reference_nodes(const Rule& rule);
+
+}  // namespace nestgrid
+
+#include <nestgrid/rule_checks.hpp>

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The steps of the traversal; included by traversal.hpp.
+#pragma once
+
+#include <bit>
+
+#include <nestgrid/key_table.hpp>
+#include <nestgrid/traversal.hpp>
+
+namespace nestgrid {
+
+namespace detail {
+
+/// Component c of the weighted mean of the parents of a stencil; node n's value is at
+/// value[n * stride + c].
+template <class Real>
+Real interpolate(const Stencil& s, const Real* value, std::size_t stride, std::size_t c = 0) {
+    const auto at = [&](std::size_t i) { return value[s.parent[i] * stride + c]; };
+    if (s.mean == Mean::midpoint) return midpoint(at(0), at(1));
+    if (s.mean == Mean::face) return face_mean(at(0), at(1), at(2), at(3));
+    std::array<Real, max_corners> product;
+    Real lo = at(0);
+    Real hi = at(0);
+    for (std::size_t i = 0; i < s.count; ++i) {
+        product[i] = static_cast<Real>(s.weight[i] * at(i));
+        lo = std::min(lo, at(i));
+        hi = std::max(hi, at(i));
+    }
+    return ordered_sum(std::span<Real>(product.data(), s.count), lo, hi);
+}
+
+inline Point interpolate(const Stencil& s, const Point* position) {
+    const double* x = position->data();
+    return {interpolate(s, x, 3, 0), interpolate(s, x, 3, 1), interpolate(s, x, 3, 2)};
+}
+
+}  // namespace detail
+
+template <class Grid, class Field, Needs needs>
+std::vector<std::uint8_t> Traversal<Grid, Field, needs>::coarse_boundary(const Grid& grid) {
+    struct Use {
+        std::size_t element;
+        std::uint8_t face;
+        bool once;
+    };
+    Context<Grid> context = make_context(grid);
+    std::vector<std::uint8_t> boundary(grid.coarse_count(), 0);
+    KeyTable<NodeKey, Use> faces;
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        const auto coarse = detail::call_coarse(grid, context, i);
+        const Topology& t = topology(coarse.shape);
+        if (t.dimension != Grid::dimension) {
+            throw GridError("coarse element " + std::to_string(i) + " is a " +
+                            std::string(t.name) + ", but the grid has dimension " +
+                            std::to_string(Grid::dimension));
+        }
+        for (std::uint8_t f = 0; f < t.faces; ++f) {
+            NodeKey sum = 0;
+            for (std::size_t k = 0; k < t.face[f].corners; ++k) {
+                sum += coarse_key(coarse.ids[t.face[f].corner[k]]);
+            }
+            const auto [use, is_new] = faces.insert(mean_key(sum, t.face[f].corners), {i, f, true});
+            if (!is_new) use->once = false;
+        }
+    }
+    faces.for_each([&](const NodeKey&, const Use& use) {
+        if (use.once) boundary[use.element] |= static_cast<std::uint8_t>(1U << use.face);
+    });
+    return boundary;
+}
+
+template <class Grid, class Field, Needs needs>
+bool Traversal<Grid, Field, needs>::make_coarse(std::size_t i, State& s) const {
+    const CoarseElement<Element> coarse = detail::call_coarse(*grid_, *s.context, i);
+    s.element = coarse.element;
+    s.coarse = i;
+    s.father = nullptr;
+    s.level = 0;
+    s.shape = coarse.shape;
+    s.orientation = coarse.orientation;
+    s.boundary = boundary_.empty() ? std::uint8_t{0} : boundary_[i];
+    s.interpolated = 0;
+    s.made_by = nullptr;
+    s.child = 0;
+    if constexpr (may_offer<Grid>(Feature::masked)) {
+        if (offers(*grid_, Feature::masked) && detail::call_masked(*grid_, *s.context, s.element)) {
+            return false;
+        }
+    }
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    const NodeMask missing = detail::call_coarse_values(
+        *field_, *s.context, i, std::span<Real>(s.value.data(), corners * State::components));
+    if (missing != 0) {
+        throw GridError("the field has no value at corner " +
+                        std::to_string(std::countr_zero(missing)) + " of coarse element " +
+                        std::to_string(i));
+    }
+    if constexpr (State::carries_keys) {
+        for (std::size_t k = 0; k < corners; ++k) s.key[k] = coarse_key(coarse.ids[k]);
+        if constexpr (may_offer<Grid>(Feature::own_keys)) {
+            if (own_keys_) {
+                detail::call_corner_keys(*grid_, *s.context, s.element, std::span<NodeKey>(s.key));
+            }
+        }
+    }
+    if constexpr (State::carries_positions) {
+        std::copy_n(coarse.corners.begin(), corners, s.position.begin());
+    }
+    return true;
+}
+
+template <class Grid, class Field, Needs needs>
+template <class Visitor>
+void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) const {
+    std::array<NodeKey, needs.keys || !detail::by_heart<Grid>(Feature::constrained)
+                            ? node_capacity_
+                            : 1>
+        keys;
+    Split split;
+    split.rule = detail::call_split(*grid_, *s.context, s.element);
+    if (split.rule == nullptr) {
+        if (visitor.inspect(s, split).visit != Visit::skip) visitor.extract(s);
+        return;
+    }
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    const auto count = static_cast<std::size_t>(split.rule->new_node_count());
+    if constexpr (needs.keys) {
+        if constexpr (State::carries_keys) std::copy_n(s.key.begin(), corners, keys.begin());
+        bool own = false;
+        if constexpr (may_offer<Grid>(Feature::own_keys)) {
+            own = own_keys_;
+            if (own) {
+                detail::call_new_keys(*grid_, *s.context, s.element,
+                                      std::span<NodeKey>(keys.data() + corners, count));
+            }
+        }
+        if (!own) {
+            for (std::size_t n = 0; n < count; ++n) {
+                keys[corners + n] = derived_key(split.rule->new_nodes[n], keys.data());
+            }
+        }
+        split.keys = std::span<const NodeKey>(keys.data() + corners, count);
+    }
+    if constexpr (may_offer<Grid>(Feature::constrained)) {
+        if (constrained_) {
+            split.constrained = detail::call_constrained(*grid_, *s.context, s.element);
+        }
+    }
+    if constexpr (needs.keys) {
+        if (!constrained_ && hanging_ != nullptr) split.constrained = hanging_->mask(split.keys);
+    }
+    if constexpr (may_offer<Grid>(Feature::outside)) {
+        if (offers(*grid_, Feature::outside)) {
+            split.outside = detail::call_outside(*grid_, *s.context, s.element);
+        }
+    }
+    Decision decision;
+    if (count > 0) decision = visitor.inspect(s, split);
+    if (decision.visit == Visit::skip) return;
+    if (decision.visit == Visit::stop) {
+        visitor.extract(s);
+    } else {
+        descend(s, split, decision.interpolated, keys.data(), visitor);
+    }
+}
+
+template <class Grid, class Field, Needs needs>
+template <class Visitor>
+void Traversal<Grid, Field, needs>::descend(const State& s, const Split& split,
+                                            NodeMask interpolated, NodeKey* keys, Visitor& visitor) const {
+    constexpr std::size_t c_count = State::components;
+    const Rule& rule = *split.rule;
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    std::array<Element, detail::child_capacity<Grid>()> elements;
+    detail::call_children(*grid_, *s.context, s.element,
+                          std::span<Element>(elements.data(), rule.children.size()));
+    std::array<Real, node_capacity_ * c_count> value;
+    project(s, split, interpolated, value.data());
+    std::array<Point, State::carries_positions ? node_capacity_ : 1> position;
+    if constexpr (State::carries_positions) {
+        if (!own_positions_) project_positions(s, split, interpolated, position.data());
+    }
+    for (std::size_t c = 0; c < rule.children.size(); ++c) {
+        const Child& child = rule.children[c];
+        if constexpr (may_offer<Grid>(Feature::masked)) {
+            if (offers(*grid_, Feature::masked) &&
+                detail::call_masked(*grid_, *s.context, elements[c])) {
+                continue;
+            }
+        }
+        State k;
+        k.element = elements[c];
+        k.context = s.context;
+        k.coarse = s.coarse;
+        k.father = &s;
+        k.level = s.level + 1;
+        k.shape = child.shape;
+        k.orientation = static_cast<std::int8_t>(s.orientation * child.orientation);
+        k.made_by = &rule;
+        k.child = static_cast<std::uint8_t>(c);
+        k.interpolated = 0;
+        k.boundary = 0;
+        const Topology& t = topology(child.shape);
+        for (std::size_t f = 0; s.boundary != 0 && f < t.faces; ++f) {
+            const std::uint8_t g = child.parent_face[f];
+            if (g != no_face && (s.boundary >> g & 1U) != 0) {
+                k.boundary |= static_cast<std::uint8_t>(1U << f);
+            }
+        }
+        for (std::size_t i = 0; i < t.corners; ++i) {
+            const std::size_t n = child.corner[i];
+            for (std::size_t q = 0; q < c_count; ++q) {
+                k.value[i * c_count + q] = value[n * c_count + q];
+            }
+            if constexpr (State::carries_keys) k.key[i] = keys[n];
+            if constexpr (State::carries_positions) k.position[i] = position[n];
+            const NodeMask flag = (n < corners ? NodeMask{s.interpolated} >> n
+                                               : interpolated >> (n - corners)) & 1U;
+            k.interpolated |= static_cast<std::uint8_t>(flag << i);
+        }
+        inspect(k, visitor);
+    }
+}
+
+template <class Grid, class Field, Needs needs>
+void Traversal<Grid, Field, needs>::project(const State& s, const Split& split,
+                                            NodeMask interpolated, Real* value) const {
+    constexpr std::size_t c_count = State::components;
+    const Rule& rule = *split.rule;
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    std::copy_n(s.value.begin(), corners * c_count, value);
+    const NodeMask mean = interpolated | split.constrained;
+    const NodeMask which = rule.all() & ~mean;
+    if (which != 0) {
+        const NodeMask missing = detail::call_new_values(
+            *field_, *s.context, s.element, which,
+            std::span<Real>(value + corners * c_count, rule.new_nodes.size() * c_count));
+        if ((missing & which) != 0) {
+            throw GridError("the field has no value at new node " +
+                            std::to_string(std::countr_zero(missing & which)) +
+                            " of an element on level " + std::to_string(s.level) +
+                            " below coarse element " + std::to_string(s.coarse));
+        }
+    }
+    if ((mean & rule.all()) == 0) return;
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        if ((mean >> n & 1U) == 0) continue;
+        for (std::size_t q = 0; q < c_count; ++q) {
+            value[(corners + n) * c_count + q] =
+                detail::interpolate(rule.new_nodes[n], value, c_count, q);
+        }
+    }
+}
+
+template <class Grid, class Field, Needs needs>
+void Traversal<Grid, Field, needs>::project_positions(const State& s, const Split& split,
+                                                      NodeMask interpolated, Point* position) const {
+    const Rule& rule = *split.rule;
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    if constexpr (State::carries_positions) std::copy_n(s.position.begin(), corners, position);
+    NodeMask given = 0;
+    if constexpr (may_offer<Grid>(Feature::new_positions)) {
+        if (new_positions_) {
+            given = rule.all() & ~(interpolated | split.constrained);
+            detail::call_new_positions(
+                *grid_, *s.context, s.element, given,
+                std::span<Point>(position + corners, rule.new_nodes.size()));
+        }
+    }
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        if ((given >> n & 1U) == 0) {
+            position[corners + n] = detail::interpolate(rule.new_nodes[n], position);
+        }
+    }
+}
+
+}  // namespace nestgrid
