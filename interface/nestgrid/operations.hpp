@@ -23,7 +23,8 @@
 //         new nodes at which no element may stop because only deeper elements end at the boundary
 //         of the domain; saturated like an infinite indicator
 //     unsigned boundary_faces(e)
-//         faces on the boundary of the domain, one bit each; default: derived from coarse ids
+//         faces on the boundary of the domain, one bit each, any of them for an element that
+//         reaches across it; default: derived from coarse ids
 //     void for_each_star(f)
 //         calls f(Star) for every new node, fine to coarse, each node once; default: sweeps
 //     std::uint64_t epoch()

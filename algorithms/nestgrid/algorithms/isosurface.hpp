@@ -60,7 +60,7 @@ namespace detail {
 
 struct Cancelled {};
 
-template <class Grid, class Field, class S>
+template <class Grid, class Field, class S, class Indicator>
 class IsosurfaceVisitor {
 public:
     static constexpr Needs needs{.keys = true, .positions = true};
@@ -70,7 +70,7 @@ public:
     using Result = Isosurface<dimension, ElementOf<Grid>>;
 
     IsosurfaceVisitor(const Walk& walk, double isovalue, const S& criterion,
-                      const HierarchicalIndicator& indicator, const IsosurfaceOptions& options)
+                      const Indicator& indicator, const IsosurfaceOptions& options)
         : walk_{&walk},
           iso_{isovalue},
           criterion_{&criterion},
@@ -111,7 +111,7 @@ private:
     const Walk* walk_;
     double iso_;
     const S* criterion_;
-    const HierarchicalIndicator* indicator_;
+    const Indicator* indicator_;
     const IsosurfaceOptions* options_;
     Result result_;
     double element_bound_ = 0;  // of the element inspected last
@@ -128,21 +128,22 @@ private:
 }  // namespace detail
 
 /// The isosurface U = isovalue of component 0 of the field under the projection with `criterion`.
-/// \param indicator of the same grid and field: its bounds guide the search
+/// \param indicator of the same grid and field: its bounds guide the search. HierarchicalIndicator,
+///        or any class with its stop(), bound(), hanging() and epoch()
 /// \throw GridError where an element that must be extracted is not a simplex, where the field has
 ///        no value, or where the grid has changed since the indicator was computed
 /// \throw InvalidInput where the isovalue is not a number
-template <class Grid, class Field, Criterion S>
+template <class Grid, class Field, Criterion S, class Indicator>
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
                                                         double isovalue, const S& criterion,
-                                                        const HierarchicalIndicator& indicator,
+                                                        const Indicator& indicator,
                                                         const IsosurfaceOptions& options = {}) {
     static_assert(Grid::dimension >= 2, "isosurfaces need a grid of dimension 2 or 3");
     if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
     if (indicator.epoch() != epoch(grid)) {
         throw GridError("the grid has changed since its indicator was computed");
     }
-    using Visitor = detail::IsosurfaceVisitor<Grid, Field, S>;
+    using Visitor = detail::IsosurfaceVisitor<Grid, Field, S, Indicator>;
     const typename Visitor::Walk walk(grid, field, indicator.hanging());
     Visitor visitor(walk, isovalue, criterion, indicator, options);
     try {
@@ -157,13 +158,14 @@ Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const 
 
 /// The same with S from options.threshold.
 /// \throw InvalidInput also where the threshold is negative or not a number
-template <class Grid, class Field>
+template <class Grid, class Field, class Indicator>
+    requires requires(const Indicator& i) { i.stop(NodeKey{}); }
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
                                                         double isovalue,
-                                                        const HierarchicalIndicator& indicator,
+                                                        const Indicator& indicator,
                                                         const IsosurfaceOptions& options = {}) {
     if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
-    const Threshold<HierarchicalIndicator> criterion{&indicator, options.threshold};
+    const Threshold<Indicator> criterion{&indicator, options.threshold};
     return isosurface(grid, field, isovalue, criterion, indicator, options);
 }
 

@@ -8,8 +8,8 @@
 
 namespace nestgrid::detail {
 
-template <class Grid, class Field, class S>
-bool IsosurfaceVisitor<Grid, Field, S>::of_interest(const State& s, double bound) const {
+template <class Grid, class Field, class S, class Indicator>
+bool IsosurfaceVisitor<Grid, Field, S, Indicator>::of_interest(const State& s, double bound) const {
     double lo = std::numeric_limits<double>::infinity();
     double hi = -lo;
     for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
@@ -25,8 +25,8 @@ bool IsosurfaceVisitor<Grid, Field, S>::of_interest(const State& s, double bound
     return options_->cap && walk_->boundary(s) != 0;
 }
 
-template <class Grid, class Field, class S>
-Decision IsosurfaceVisitor<Grid, Field, S>::inspect(const State& s, const Split& split) {
+template <class Grid, class Field, class S, class Indicator>
+Decision IsosurfaceVisitor<Grid, Field, S, Indicator>::inspect(const State& s, const Split& split) {
     TraversalCounts& counts = result_.counts;
     ++counts.calls;
     if ((counts.calls & 0xFFFFU) == 0 && options_->progress && !options_->progress(counts)) {
@@ -41,8 +41,8 @@ Decision IsosurfaceVisitor<Grid, Field, S>::inspect(const State& s, const Split&
     return {interpolated == split.rule->all() ? Visit::stop : Visit::descend, interpolated};
 }
 
-template <class Grid, class Field, class S>
-void IsosurfaceVisitor<Grid, Field, S>::load(const State& s) {
+template <class Grid, class Field, class S, class Indicator>
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::load(const State& s) {
     walk_->keys(s, key_);
     walk_->positions(s, x_);
     deepest_ = std::max(deepest_, s.level);
@@ -55,8 +55,8 @@ void IsosurfaceVisitor<Grid, Field, S>::load(const State& s) {
     result_.error_bound = std::max(result_.error_bound, error);
 }
 
-template <class Grid, class Field, class S>
-void IsosurfaceVisitor<Grid, Field, S>::extract(const State& s) {
+template <class Grid, class Field, class S, class Indicator>
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::extract(const State& s) {
     if (!is_simplex(s.shape)) {
         throw GridError("isosurfaces are extracted from triangles and tetrahedra, but an element "
                         "on level " + std::to_string(s.level) + " below coarse element " +
@@ -82,8 +82,8 @@ void IsosurfaceVisitor<Grid, Field, S>::extract(const State& s) {
     }
 }
 
-template <class Grid, class Field, class S>
-void IsosurfaceVisitor<Grid, Field, S>::add_simplex(
+template <class Grid, class Field, class S, class Indicator>
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_simplex(
     typename Surface<dimension, ElementOf<Grid>>::Simplex simplex, const State& s) {
     if (s.orientation < 0) std::swap(simplex[0], simplex[1]);
     result_.surface.simplices.push_back(simplex);
@@ -93,8 +93,8 @@ void IsosurfaceVisitor<Grid, Field, S>::add_simplex(
     }
 }
 
-template <class Grid, class Field, class S>
-void IsosurfaceVisitor<Grid, Field, S>::add_contour(const State& s, const Contour& contour) {
+template <class Grid, class Field, class S, class Indicator>
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_contour(const State& s, const Contour& contour) {
     const Topology& t = topology(s.shape);
     std::array<Index, 4> v{};
     for (std::size_t i = 0; i < contour.count; ++i) {
@@ -128,8 +128,8 @@ void IsosurfaceVisitor<Grid, Field, S>::add_contour(const State& s, const Contou
 }
 
 /// The part of each boundary face where U >= C: in three dimensions a polygon, in two a segment.
-template <class Grid, class Field, class S>
-void IsosurfaceVisitor<Grid, Field, S>::add_cap(const State& s) {
+template <class Grid, class Field, class S, class Indicator>
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_cap(const State& s) {
     const Topology& t = topology(s.shape);
     const unsigned boundary = walk_->boundary(s);
     for (std::size_t f = 0; f < t.faces; ++f) {
@@ -155,8 +155,8 @@ void IsosurfaceVisitor<Grid, Field, S>::add_cap(const State& s) {
     }
 }
 
-template <class Grid, class Field, class S>
-auto IsosurfaceVisitor<Grid, Field, S>::add_vertex(KeyPair key, const Point& x,
+template <class Grid, class Field, class S, class Indicator>
+auto IsosurfaceVisitor<Grid, Field, S, Indicator>::add_vertex(KeyPair key, const Point& x,
                                                    const Vertex& where) -> Index {
     std::vector<Point>& vertices = result_.surface.vertices;
     if (vertices.size() > std::numeric_limits<Index>::max() - 1) {
@@ -173,14 +173,14 @@ auto IsosurfaceVisitor<Grid, Field, S>::add_vertex(KeyPair key, const Point& x,
     return *at;
 }
 
-template <class Grid, class Field, class S>
-auto IsosurfaceVisitor<Grid, Field, S>::node_vertex(std::size_t corner) -> Index {
+template <class Grid, class Field, class S, class Indicator>
+auto IsosurfaceVisitor<Grid, Field, S, Indicator>::node_vertex(std::size_t corner) -> Index {
     return add_vertex({key_[corner], key_[corner]}, x_[corner],
                       {slot_[corner], slot_[corner], 0.0});
 }
 
-template <class Grid, class Field, class S>
-auto IsosurfaceVisitor<Grid, Field, S>::edge_vertex(const State& s, std::size_t a, std::size_t b)
+template <class Grid, class Field, class S, class Indicator>
+auto IsosurfaceVisitor<Grid, Field, S, Indicator>::edge_vertex(const State& s, std::size_t a, std::size_t b)
     -> Index {
     const KeyPair key(key_[a], key_[b]);
     if (!options_->verify) {
@@ -195,8 +195,8 @@ auto IsosurfaceVisitor<Grid, Field, S>::edge_vertex(const State& s, std::size_t 
 }
 
 /// Section 8: the gradient as a vector-valued function, projected with the same S.
-template <class Grid, class Field, class S>
-Point IsosurfaceVisitor<Grid, Field, S>::projected_gradient(const State& s,
+template <class Grid, class Field, class S, class Indicator>
+Point IsosurfaceVisitor<Grid, Field, S, Indicator>::projected_gradient(const State& s,
                                                             std::size_t corner) const {
     if constexpr (offers_corner_gradients<Field, Context<Grid>, const ElementOf<Grid>&,
                                           std::span<Point>>) {
@@ -212,8 +212,8 @@ Point IsosurfaceVisitor<Grid, Field, S>::projected_gradient(const State& s,
     return {};
 }
 
-template <class Grid, class Field, class S>
-Point IsosurfaceVisitor<Grid, Field, S>::node_gradient(const State& father, const Rule& rule,
+template <class Grid, class Field, class S, class Indicator>
+Point IsosurfaceVisitor<Grid, Field, S, Indicator>::node_gradient(const State& father, const Rule& rule,
                                                        std::size_t node) const {
     const auto corners = static_cast<std::size_t>(father.corner_count());
     if (node < corners) return projected_gradient(father, node);
@@ -227,8 +227,8 @@ Point IsosurfaceVisitor<Grid, Field, S>::node_gradient(const State& father, cons
     return interpolate(local, parent.data());
 }
 
-template <class Grid, class Field, class S>
-void IsosurfaceVisitor<Grid, Field, S>::load_gradients(const State& s) {
+template <class Grid, class Field, class S, class Indicator>
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::load_gradients(const State& s) {
     const auto corners = static_cast<std::size_t>(s.corner_count());
     const bool own = offers_gradients<Grid, Field>(walk_->field());
     Point mean{0, 0, 0};
@@ -256,8 +256,8 @@ void IsosurfaceVisitor<Grid, Field, S>::load_gradients(const State& s) {
     }
 }
 
-template <class Grid, class Field, class S>
-void IsosurfaceVisitor<Grid, Field, S>::compute_normals() {
+template <class Grid, class Field, class S, class Indicator>
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::compute_normals() {
     Surface<dimension, ElementOf<Grid>>& surface = result_.surface;
     surface.normals.assign(surface.vertices.size(), Point{0, 0, 0});
     std::vector<bool> flat(surface.vertices.size(), false);
@@ -288,8 +288,8 @@ void IsosurfaceVisitor<Grid, Field, S>::compute_normals() {
     }
 }
 
-template <class Grid, class Field, class S>
-auto IsosurfaceVisitor<Grid, Field, S>::take() -> Result {
+template <class Grid, class Field, class S, class Indicator>
+auto IsosurfaceVisitor<Grid, Field, S, Indicator>::take() -> Result {
     if (options_->normals) compute_normals();
     result_.table_bytes = vertex_of_.memory_bytes() + gradient_of_.memory_bytes() +
                           gradient_.capacity() * sizeof(Point) +

@@ -112,10 +112,13 @@ public:
         return padded_ && crosses(e.corner[0], e.corner[e.tag]) ? 1U : 0U;
     }
 
-    /// Face i lies opposite to corner i.
+    /// Face i lies opposite to corner i. All of them for an element across the boundary.
     unsigned boundary_faces(const Element& e) const {
         unsigned faces = 0;
         for (std::size_t d = 0; d < size_; ++d) {
+            for (const Place p : e.corner) {
+                if (padded_ && at(p, d) > cells_[d]) return (1U << corners_) - 1U;
+            }
             for (const std::uint32_t plane : {0U, cells_[d]}) {
                 unsigned off = 0;
                 for (std::size_t i = 0; i < corners_; ++i) {

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Isosurfaces on bisection are closed, oriented manifolds at every threshold, for every field and
+// every dimension; and the two numbers per node are both needed for it.
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/surface_report.hpp>
+
+#include "sample_fields.hpp"
+
+using namespace nestgrid;
+using namespace nestgrid_test;
+
+namespace {
+
+void expect_closed(const SurfaceReport& report) {
+    EXPECT_EQ(report.open_edges, 0U);
+    EXPECT_EQ(report.nonmanifold_edges, 0U);
+    EXPECT_EQ(report.misoriented_edges, 0U);
+    EXPECT_EQ(report.nonmanifold_vertices, 0U);
+    EXPECT_EQ(report.degenerate_triangles, 0U);
+}
+
+std::string dimensions_name(const Samples& n) {
+    return std::to_string(n[0]) + "x" + std::to_string(n[1]) + "x" + std::to_string(n[2]);
+}
+
+class ClosedSurface : public testing::TestWithParam<Samples> {};
+
+TEST_P(ClosedSurface, AtEveryThreshold) {
+    const Samples n = GetParam();
+    const LatticeBisection<3> grid({.samples = n});
+    for (const SampledField& data : sampled_fields(n)) {
+        const LatticeField field(grid, std::span<const float>(data.values));
+        const HierarchicalIndicator indicator(grid, field);
+        for (const double threshold : thresholds) {
+            SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
+            const auto result =
+                isosurface(grid, field, data.isovalue, indicator,
+                           {.threshold = threshold * data.range, .verify = true});
+            const SurfaceReport report = surface_report(result.surface);
+            EXPECT_GT(report.triangles, 0U);
+            EXPECT_EQ(report.boundary_edges, result.surface.boundary.size());
+            expect_closed(report);
+        }
+    }
+}
+
+TEST_P(ClosedSurface, CappedEnclosesTheRegionAboveTheIsovalue) {
+    const Samples n = GetParam();
+    const LatticeBisection<3> grid({.samples = n});
+    const double total = double(n[0] - 1) * (n[1] - 1) * (n[2] - 1);
+    for (SampledField data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        double volume = 0;
+        for (const int sign : {1, -1}) {  // the region and what it leaves
+            for (float& v : data.values) v = static_cast<float>(sign) * v;
+            // Half a step beside the integers, so that no node belongs to both.
+            const double isovalue = sign * (data.isovalue - (data.range > 1 ? 0.25 : 0));
+            const LatticeField field(grid, std::span<const float>(data.values));
+            const auto result =
+                isosurface(grid, field, isovalue, {.threshold = 0.01, .cap = true});
+            const SurfaceReport report = surface_report(result.surface);
+            expect_closed(report);
+            EXPECT_TRUE(report.closed());
+            EXPECT_GT(report.volume, 0);
+            volume += report.volume;
+            for (float& v : data.values) v = static_cast<float>(sign) * v;
+        }
+        EXPECT_NEAR(volume, total, 1e-4 * total);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Dimensions, ClosedSurface,
+                         testing::Values(Samples{33, 33, 33}, Samples{17, 22, 30},
+                                         Samples{3, 40, 19}, Samples{36, 5, 3}),
+                         [](const auto& test) { return dimensions_name(test.param); });
+
+/// The indicator with its stopping number in the place of the bound.
+struct StopAsBound {
+    static constexpr bool saturated = true;
+    const HierarchicalIndicator& good;
+
+    double stop(NodeKey node) const { return good.stop(node); }
+    double bound(std::span<const NodeKey> nodes) const {
+        double largest = 0;
+        for (const NodeKey node : nodes) largest = std::max(largest, good.stop(node));
+        return largest;
+    }
+    const HangingNodes* hanging() const { return good.hanging(); }
+    std::uint64_t epoch() const { return good.epoch(); }
+};
+
+TEST(Bound, StoppingNumberInItsPlaceOpensHolesInNoise) {
+    const Samples n{65, 65, 65};
+    const LatticeBisection<3> grid({.samples = n});
+    const SampledField data = sampled_fields(n)[3];
+    ASSERT_EQ(data.name, "noise");
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    const auto sound = isosurface(grid, field, data.isovalue, indicator, {});
+    const auto holed = isosurface(grid, field, data.isovalue, StopAsBound{indicator}, {});
+    EXPECT_EQ(surface_report(sound.surface).open_edges, 0U);
+    EXPECT_LT(holed.surface.simplices.size(), sound.surface.simplices.size());
+    EXPECT_GT(surface_report(holed.surface).open_edges, 0U);
+}
+
+/// The offsets before saturation: each node's own.
+class Unsaturated {
+public:
+    static constexpr bool saturated = false;
+    Unsaturated(const LatticeBisection<3>& grid, const LatticeField<3, float>& field,
+                const HierarchicalIndicator& good)
+        : good_{&good}, offset_(grid.node_count(), 0.0) {
+        grid.for_each_star([&](const Star& star) {
+            offset_[static_cast<std::size_t>(star.node)] =
+                std::abs(double(field.value(star.node)) -
+                         (double(field.value(star.parents[0])) + field.value(star.parents[1])) / 2);
+        });
+    }
+    double stop(NodeKey node) const { return offset_[static_cast<std::size_t>(node)]; }
+    double bound(std::span<const NodeKey> nodes) const { return good_->bound(nodes); }
+    const HangingNodes* hanging() const { return nullptr; }
+    std::uint64_t epoch() const { return 0; }
+
+private:
+    const HierarchicalIndicator* good_;
+    std::vector<double> offset_;
+};
+
+TEST(Saturation, WithoutItAGyroidIsLostWhole) {
+    const Samples n{33, 33, 33};
+    const LatticeBisection<3> grid({.samples = n});
+    const SampledField data{"gyroid",
+                            sample(n,
+                                   [](double x, double y, double z) {
+                                       const double k = 8 * 3.14159265358979;
+                                       return std::sin(k * x) * std::cos(k * y) +
+                                              std::sin(k * y) * std::cos(k * z) +
+                                              std::sin(k * z) * std::cos(k * x);
+                                   }),
+                            0.5, 3};
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    const Unsaturated unsaturated(grid, field, indicator);
+    const double threshold = 1e-4;  // the centre of the cube is interpolated to rounding
+    const auto sound =
+        isosurface(grid, field, data.isovalue, indicator, {.threshold = threshold});
+    const auto lost =
+        isosurface(grid, field, data.isovalue, unsaturated, {.threshold = threshold});
+    EXPECT_GT(sound.surface.simplices.size(), 10000U);
+    EXPECT_EQ(lost.surface.simplices.size(), 0U);
+}
+
+}  // namespace
