@@ -160,7 +160,7 @@ inline std::optional<std::string> find_tiling_violation(const Rule& rule) {
     const std::string name = "rule '" + rule.name + "': ";
     const std::vector<Point> nodes = reference_nodes(rule);
     const std::vector<unsigned> incidence = face_incidence(rule);
-    std::map<std::vector<std::uint8_t>, int> uses;
+    std::map<std::array<std::uint8_t, 4>, int> uses;
     double volume = 0;
     for (const Child& child : rule.children) {
         const Topology& t = topology(child.shape);
@@ -168,11 +168,12 @@ inline std::optional<std::string> find_tiling_violation(const Rule& rule) {
         for (std::size_t i = 0; i < t.corners; ++i) x[i] = nodes[child.corner[i]];
         volume += child.orientation * signed_reference_measure(child.shape, x);
         for (std::size_t f = 0; f < t.faces; ++f) {
-            std::vector<std::uint8_t> face;
+            std::array<std::uint8_t, 4> face;
+            face.fill(no_face);
             unsigned common = ~0U;
             for (std::size_t i = 0; i < t.face[f].corners; ++i) {
-                face.push_back(child.corner[t.face[f].corner[i]]);
-                common &= incidence[face.back()];
+                face[i] = child.corner[t.face[f].corner[i]];
+                common &= incidence[face[i]];
             }
             std::sort(face.begin(), face.end());
             if (common == 0) ++uses[face];

@@ -142,26 +142,26 @@ SurfaceReport surface_report(const Surface<3, Element>& surface) {
     std::sort(boundary.begin(), boundary.end());
 
     detail::Fans fans(3 * surface.simplices.size());
-    for (std::size_t i = 0; i < sides.size();) {
-        std::size_t end = i;
-        while (end < sides.size() && sides[end].ends() == sides[i].ends()) ++end;
+    for (auto first = sides.begin(); first != sides.end();) {
+        const auto last = std::find_if(
+            first, sides.end(), [&](const detail::Side& s) { return s.ends() != first->ends(); });
+        const auto count = last - first;
         ++report.edges;
-        if (end - i == 1) {
-            const bool known =
-                std::binary_search(boundary.begin(), boundary.end(), sides[i].ends());
+        if (count == 1) {
+            const bool known = std::binary_search(boundary.begin(), boundary.end(), first->ends());
             ++(known ? report.boundary_edges : report.open_edges);
-        } else if (end - i > 2) {
+        } else if (count > 2) {
             ++report.nonmanifold_edges;
-        } else if (sides[i].forward == sides[i + 1].forward) {
+        } else if (first->forward == (first + 1)->forward) {
             ++report.misoriented_edges;
         }
-        for (std::size_t k = i + 1; k < end; ++k) {
-            for (const std::uint32_t v : {sides[i].low, sides[i].high}) {
-                fans.glue(detail::corner_at(surface, sides[i].triangle, v),
-                          detail::corner_at(surface, sides[k].triangle, v));
+        for (auto side = first + 1; side != last; ++side) {
+            for (const std::uint32_t v : {first->low, first->high}) {
+                fans.glue(detail::corner_at(surface, first->triangle, v),
+                          detail::corner_at(surface, side->triangle, v));
             }
         }
-        i = end;
+        first = last;
     }
 
     std::vector<bool> used(surface.vertices.size(), false);

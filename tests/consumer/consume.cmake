@@ -1,0 +1,29 @@
+# Installs the build tree to a temporary prefix and builds a foreign project against it.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "'${ARGN}' failed:\n${text}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${work})
+run(${CMAKE_COMMAND} --install ${build} --prefix ${work}/prefix)
+set(configure ${CMAKE_COMMAND} -S ${source} -G ${generator} -D CMAKE_CXX_COMPILER=${compiler} -D
+              CMAKE_CXX_FLAGS=${flags} -D CMAKE_PREFIX_PATH=${work}/prefix)
+foreach(components "" bisection "bisection\;algorithms")
+  string(MAKE_C_IDENTIFIER "build_${components}" folder)
+  run(${configure} -B ${work}/${folder} -D components=${components})
+  if(NOT components STREQUAL "bisection")
+    run(${CMAKE_COMMAND} --build ${work}/${folder})
+    run(${work}/${folder}/sphere)
+  endif()
+endforeach()
+
+execute_process(
+  COMMAND ${configure} -B ${work}/unknown -D components=teapot
+  RESULT_VARIABLE status
+  OUTPUT_QUIET
+  ERROR_VARIABLE text)
+if(status EQUAL 0 OR NOT text MATCHES "without the component 'teapot'")
+  message(FATAL_ERROR "an unknown component was not refused with a sentence: ${text}")
+endif()
