@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Installs what is missing, builds everything and runs all tests. Ends with a line that says how many
+# passed and failed; fails where one failed or none ran. Arguments are handed to ctest.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tools/packages.sh
+need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}"
+
+log=$(mktemp)
+cmake --preset release >"$log" 2>&1 || { cat "$log"; exit 1; }
+rm "$log"
+cmake --build --preset release
+
+results=build/release/test-results.xml
+rm -f "$results"
+status=0
+ctest --preset release --parallel "$(nproc)" --output-junit "$PWD/$results" "$@" || status=$?
+[ -f "$results" ] || exit 1
+count() { grep -c "<testcase .*status=\"$1\"" "$results" || true; }
+passed=$(count run)
+failed=$(count fail)
+skipped=$(($(count notrun) + $(count disabled)))
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$status" = 0 ] && [ "$passed" -gt 0 ] && [ "$failed" = 0 ]

@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Sourced by tools/demo.sh and tests/run.sh: the Debian packages they need, and how to get them.
+
+build_packages=(cmake ninja-build g++ libboost-graph-dev libvtk9-dev libcli11-dev)
+test_packages=(libgtest-dev libcgal-dev)
+picture_packages=(xvfb xauth libgl1-mesa-dri fonts-dejavu-core)
+data_packages=(mricron-data)
+
+# Installs those of the named packages that are missing, as root or through sudo; without a
+# network nothing is asked for when all of them are there.
+need_packages() {
+    local package missing=()
+    for package in "$@"; do
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+            missing+=("$package")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+    local as_root=()
+    if [ "$(id -u)" != 0 ]; then
+        command -v sudo >/dev/null || {
+            echo "these packages are missing and there is no sudo to install them: ${missing[*]}" >&2
+            return 1
+        }
+        as_root=(sudo)
+    fi
+    echo "installing ${missing[*]}"
+    local log
+    log=$(mktemp)
+    if ! {
+        "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=600 -qq update &&
+            "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 \
+                -qq -y --no-install-recommends install "${missing[@]}"
+    } >"$log" 2>&1; then
+        tail -n 5 "$log" >&2
+        rm -f "$log"
+        echo "these packages could not be installed: ${missing[*]}" >&2
+        return 1
+    fi
+    rm -f "$log"
+}
