@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "extract.hpp"
+
+#include <chrono>
+#include <cstdlib>
+
+#include <nestgrid/error.hpp>
+
+#include "memory.hpp"
+
+namespace {
+
+std::string millions(std::uint64_t count) {
+    return std::to_string(count / 100000 / 10) + "." + std::to_string(count / 100000 % 10) +
+           " million";
+}
+
+template <class Field>
+Extraction extract_one(const nestgrid::LatticeBisection<3>& grid, const Field& field,
+                       const nestgrid::HierarchicalIndicator& indicator, double threshold,
+                       const ExtractionRequest& request) {
+    Extraction e;
+    e.threshold = threshold;
+    nestgrid::IsosurfaceOptions options{
+        .threshold = threshold, .normals = request.normals, .cap = request.cap};
+    if (request.progress) {
+        options.progress = [&](const nestgrid::TraversalCounts& counts) {
+            request.progress("looked at " + millions(counts.calls) + " elements");
+            return true;
+        };
+    }
+    const std::size_t before = memory::current();
+    memory::reset_peak();
+    const double start = now();
+    e.result = nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
+    e.seconds = now() - start;
+    const std::size_t peak = memory::peak() - before;
+    e.peak_bytes = peak - std::min(peak, e.result.surface.memory_bytes());
+    e.report = nestgrid::surface_report(e.result.surface);
+    return e;
+}
+
+}  // namespace
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+ThresholdText parse_threshold(const std::string& text) {
+    char* end = nullptr;
+    ThresholdText t{std::strtod(text.c_str(), &end), false};
+    t.percent = *end == '%';
+    if (end == text.c_str() || *(end + (t.percent ? 1 : 0)) != '\0' || !(t.number >= 0) ||
+        !std::isfinite(t.number)) {
+        throw nestgrid::InvalidInput("the threshold '" + text +
+                                     "' is no number >= 0, with or without %");
+    }
+    return t;
+}
+
+ExtractionRun extract(const Volume& volume, const ExtractionRequest& request) {
+    const nestgrid::LatticeBisection<3> grid(volume.geometry);
+    ExtractionRun run;
+    run.nodes = volume.sample_count();
+    run.leaf_elements = 6;
+    for (std::size_t d = 0; d < 3; ++d) run.leaf_elements *= grid.samples(d) - 1;
+    with_samples(volume, [&](auto samples) {
+        const nestgrid::LatticeField field(grid, samples);
+        const std::size_t before = memory::current();
+        memory::reset_peak();
+        const double start = now();
+        if (request.progress) request.progress("preroll");
+        const nestgrid::HierarchicalIndicator indicator(grid, field);
+        run.preroll_seconds = now() - start;
+        run.preroll_peak_bytes = memory::peak() - before;
+        run.preroll_kept_bytes = indicator.memory_bytes();
+        run.least = indicator.least();
+        run.greatest = indicator.greatest();
+        for (const ThresholdText& t : request.thresholds) {
+            const double threshold =
+                t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
+            run.surfaces.push_back(extract_one(grid, field, indicator, threshold, request));
+        }
+    });
+    return run;
+}

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/surface_report.hpp>
+
+#include "surface_file.hpp"
+#include "volume.hpp"
+
+/// A threshold as the user gave it: in units of the data, or in percent of their range.
+struct ThresholdText {
+    double number = 0;
+    bool percent = false;
+};
+
+/// \throw nestgrid::InvalidInput unless the text is a number >= 0, with or without %
+ThresholdText parse_threshold(const std::string& text);
+
+struct ExtractionRequest {
+    double isovalue = 0;
+    std::vector<ThresholdText> thresholds{};
+    bool cap = false;
+    bool normals = true;
+    std::function<void(const std::string&)> progress{};
+};
+
+/// One surface and what it cost.
+struct Extraction {
+    double threshold = 0;
+    nestgrid::Isosurface<3, nestgrid::LatticeBisection<3>::Element> result;
+    nestgrid::SurfaceReport report;
+    double seconds = 0;
+    std::size_t peak_bytes = 0;  ///< beside the surface itself
+};
+
+struct ExtractionRun {
+    double least = 0;
+    double greatest = 0;
+    std::size_t nodes = 0;          ///< of the samples
+    std::size_t leaf_elements = 0;  ///< of the finest grid
+    double preroll_seconds = 0;
+    std::size_t preroll_peak_bytes = 0;
+    std::size_t preroll_kept_bytes = 0;
+    std::vector<Extraction> surfaces;
+};
+
+ExtractionRun extract(const Volume& volume, const ExtractionRequest& request);
+
+/// VTK's own contour of the same samples (vtkFlyingEdges3D, without normals), for comparison.
+struct Contour {
+    std::size_t triangles = 0;
+    std::size_t vertices = 0;
+    std::size_t once_edges = 0;  ///< of one triangle only, those on the boundary included
+    std::size_t nonmanifold_edges = 0;
+    double seconds = 0;
+};
+
+Contour contour_with_vtk(const Volume& volume, double isovalue);
+
+/// Seconds since some moment.
+double now();

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "extract.hpp"
+
+struct Seconds {
+    double read = 0;
+    double write = 0;
+    double draw = 0;
+};
+
+/// One line per quantity: name and value.
+void print_result(const ExtractionRun& run, double isovalue, const Seconds& seconds);
+
+/// One row per surface, the last one VTK's.
+void print_table(const ExtractionRun& run, double isovalue, const Seconds& seconds,
+                 const std::optional<Contour>& contour);
+
+void print_info(const Volume& volume);
+
+/// What stands above a surface in a picture.
+std::string caption(const Extraction& extraction);
