@@ -7,7 +7,8 @@
 // Invariants, asserted by find_violation():
 //   - the weights of every stencil are positive and sum to one, and name earlier nodes only;
 //   - every child lies inside the parent and has positive volume under its orientation sign;
-//   - every face of a child lies in a face of the parent or belongs to exactly two children;
+//   - every face of a child lies in a face of the parent, or belongs to two children on its two
+//     sides;
 //   - the volumes of the children add up to that of the parent.
 // Consequence: the children tile the parent, and no node hangs inside one split.
 #pragma once

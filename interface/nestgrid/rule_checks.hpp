@@ -155,12 +155,21 @@ inline std::optional<std::string> find_child_violation(const Rule& rule) {
     return std::nullopt;
 }
 
-/// Interior faces belong to two children, and the volumes add up.
+/// Whether a loop of corners runs upwards after its least one: its sense, whatever its start.
+inline bool runs_upwards(std::span<const std::uint8_t> loop) {
+    const auto least = static_cast<std::size_t>(std::min_element(loop.begin(), loop.end()) -
+                                                loop.begin());
+    const std::size_t n = loop.size();
+    return n == 2 ? least == 0 : loop[(least + 1) % n] < loop[(least + n - 1) % n];
+}
+
+/// Interior faces belong to two children, which see them from opposite sides, and the volumes add
+/// up.
 inline std::optional<std::string> find_tiling_violation(const Rule& rule) {
     const std::string name = "rule '" + rule.name + "': ";
     const std::vector<Point> nodes = reference_nodes(rule);
     const std::vector<unsigned> incidence = face_incidence(rule);
-    std::map<std::array<std::uint8_t, 4>, int> uses;
+    std::map<std::array<std::uint8_t, 4>, std::array<int, 2>> uses;  // from either side
     double volume = 0;
     for (const Child& child : rule.children) {
         const Topology& t = topology(child.shape);
@@ -175,8 +184,11 @@ inline std::optional<std::string> find_tiling_violation(const Rule& rule) {
                 face[i] = child.corner[t.face[f].corner[i]];
                 common &= incidence[face[i]];
             }
+            const bool up = t.dimension == 1
+                                ? f == 1
+                                : runs_upwards(std::span(face).first(t.face[f].corners));
             std::sort(face.begin(), face.end());
-            if (common == 0) ++uses[face];
+            if (common == 0) ++uses[face][up == (child.orientation > 0) ? 1 : 0];
         }
     }
     const double parent =
@@ -186,10 +198,10 @@ inline std::optional<std::string> find_tiling_violation(const Rule& rule) {
         return name + "volume lost: the children hold " + std::to_string(volume / parent) +
                " of their father";
     }
-    for (const auto& [face, count] : uses) {
-        if (count != 2) {
-            return name + "an inner face belongs to " + std::to_string(count) +
-                   " children, not to 2";
+    for (const auto& [face, sides] : uses) {
+        if (sides[0] != 1 || sides[1] != 1) {
+            return name + "an inner face belongs to " + std::to_string(sides[0]) + " and " +
+                   std::to_string(sides[1]) + " children on its two sides, not to one on each";
         }
     }
     return std::nullopt;

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// check_grid: walks a hierarchy and names the first violation of the contract in a sentence.
+//
+// A node's place is its weights over the ids of coarse nodes. It needs no coordinates, so slits,
+// periodic images and curved boundaries do not confuse it: two elements that make a node at one
+// place must agree about its key, its parents, its weights and its value.
+// Costs O(elements) memory and several times a traversal: for tests, not for production.
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/traversal.hpp>
+
+namespace nestgrid {
+
+/// What can be violated.
+enum class Law : std::uint8_t {
+    rule,             ///< weights, children inside their father, volume, orientation of a rule
+    rule_shape,       ///< split() gave a rule for another shape
+    split_repeats,    ///< split() answers the same when asked twice
+    coarse_element,   ///< finite, not flat, oriented as said, distinct ids, right dimension
+    coarse_node,      ///< one id, one place
+    coarse_face,      ///< a face belongs to at most two coarse elements
+    key_place,        ///< one key, one place
+    one_stencil,      ///< one node, one key, one set of parents and weights
+    stable_key,       ///< own keys do not change from father to child
+    dense_key,        ///< own keys below node_count()
+    hanging_mask,     ///< a node that hangs is in the constrained mask
+    conforming,       ///< a grid that says so has no hanging node
+    hanging_value,    ///< a hanging node's value is its interpolant
+    value_present,    ///< the field gives all values
+    value_finite,
+    value_unique,     ///< one node, one value
+    position,         ///< own positions: those of eq. (1), and one node, one position
+    depth,            ///< the hierarchy ends
+};
+
+struct GridViolation {
+    Law law;
+    std::string sentence;
+};
+
+struct CheckOptions {
+    int max_depth = 100;
+    /// Relative to the size of the coarse element, for own positions.
+    double position_tolerance = 1e-9;
+    /// Demand that the field itself gives the interpolant at hanging nodes, as a solver does that
+    /// has distributed its constraints; the traversal does not need it.
+    bool hanging_values = false;
+    /// Relative to the largest value, for that.
+    double value_tolerance = 1e-12;
+};
+
+}  // namespace nestgrid
+
+#include <nestgrid/check_grid_steps.hpp>
+
+namespace nestgrid {
+
+/// The first violation of the contract, or nothing. Elements are named by the number of the coarse
+/// element and those of the children on the way down, as in "element 3/0/1".
+template <class Grid, class Field>
+std::optional<GridViolation> check_grid(const Grid& grid, const Field& field,
+                                        const CheckOptions& options = {}) {
+    static_assert(require_nested_grid<Grid>());
+    static_assert(require_nodal_field<Field, Grid>());
+    return detail::GridChecker<Grid, Field>(grid, field, options).run();
+}
+
+}  // namespace nestgrid

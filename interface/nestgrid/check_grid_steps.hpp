@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The walk of check_grid; included by check_grid.hpp.
+#pragma once
+
+#include <nestgrid/check_grid.hpp>
+
+namespace nestgrid::detail {
+
+/// Walks once and compares every node with what is known of its place.
+template <class Grid, class Field>
+class GridChecker {
+public:
+    using Element = ElementOf<Grid>;
+    using Real = typename Field::value_type;
+
+    GridChecker(const Grid& grid, const Field& field, const CheckOptions& options)
+        : grid_{grid}, field_{field}, options_{options}, context_{make_context(grid)} {
+        own_keys_ = offers(grid, Feature::own_keys);
+    }
+
+    std::optional<GridViolation> run() {
+        try {
+            for (std::size_t i = 0; i < grid_.coarse_count(); ++i) check_coarse(i);
+            for (std::size_t i = 0; i < grid_.coarse_count(); ++i) walk_coarse(i);
+            check_hanging();
+        } catch (const Found& found) {
+            return found.violation;
+        }
+        return std::nullopt;
+    }
+
+private:
+    static constexpr std::size_t components_ = static_cast<std::size_t>(components_of<Field>());
+    using Values = std::array<Real, components_>;
+    using Weights = std::array<double, max_corners>;  // over the corners of the coarse element
+
+    struct Found {
+        GridViolation violation;
+    };
+    struct Corner {
+        Weights weights{};
+        NodeKey place = 0;    // hash of the weights over coarse ids
+        NodeKey derived = 0;  // key
+        NodeKey key = 0;      // own one, where the grid has such; else the derived one
+        Point position{};     // by the rules
+        Values value{};
+    };
+    struct Node {
+        NodeKey key = 0;
+        NodeKey signature = 0;
+        std::size_t element = 0;  // that made it first
+        Values value{};
+        bool constrained = false;
+        bool deviates = false;  // from its interpolant
+        bool has_position = false;
+        Point own_position{};
+    };
+    struct Step {  // the way to an element
+        std::size_t father;
+        std::size_t number;
+    };
+    struct Leaf {
+        Shape shape;
+        std::array<NodeKey, max_corners> keys;
+    };
+    struct State {
+        Element element;
+        Shape shape;
+        std::size_t step;
+        int level;
+        std::array<Corner, max_corners> corner;
+    };
+    static constexpr std::size_t root_ = ~std::size_t{0};
+
+    [[noreturn]] static void fail(Law law, const std::string& sentence) {
+        throw Found{{law, sentence}};
+    }
+    std::string name(std::size_t step) const {
+        std::string path;
+        for (; step != root_; step = steps_[step].father) {
+            path = "/" + std::to_string(steps_[step].number) + path;
+        }
+        return "element " + path.substr(1);
+    }
+
+    void check_coarse(std::size_t i);
+    void walk_coarse(std::size_t i);
+    void walk(const State& s);
+    void check_rule(const State& s, const Rule& rule);
+    void make_node(const Rule& rule, std::size_t n, std::vector<Corner>& nodes);
+    void check_node(const State& s, std::size_t n, const Corner& c, NodeKey signature,
+                    bool constrained, bool deviates);
+    void check_new_nodes(const State& s, const Rule& rule, std::vector<Corner>& nodes);
+    bool deviates_from_mean(const Stencil& stencil, const std::vector<Corner>& nodes,
+                            Real value) const;
+    void check_positions(const State& s);
+    void check_own_keys(const State& s, std::span<const NodeKey> own);
+    void check_values(std::size_t step, const char* which, std::size_t n, const Values& value);
+    void check_hanging();
+    NodeKey place_of(const Weights& weights) const;
+
+    const Grid& grid_;
+    const Field& field_;
+    const CheckOptions& options_;
+    Context<Grid> context_;
+    bool own_keys_ = false;
+    CoarseElement<Element> coarse_;
+    double size_ = 0;           // of the coarse element
+    double largest_value_ = 0;
+    std::vector<Step> steps_;
+    std::set<const Rule*> rules_;
+    std::map<std::uint64_t, std::pair<Point, std::size_t>> coarse_nodes_;
+    KeyTable<NodeKey, int> coarse_faces_;
+    KeyTable<NodeKey, Node> nodes_;                // by place
+    KeyTable<NodeKey, NodeKey> place_of_key_;
+    KeyTable<NodeKey, NodeKey> place_of_derived_;  // new nodes only
+    std::vector<Leaf> leaves_;
+    HangingProbe probe_;
+};
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_coarse(std::size_t i) {
+    const CoarseElement<Element> c = call_coarse(grid_, context_, i);
+    const std::string who = "coarse element " + std::to_string(i);
+    const Topology& t = topology(c.shape);
+    if (t.dimension != Grid::dimension) {
+        fail(Law::coarse_element, who + " is a " + std::string(t.name) +
+                                      " on a grid of dimension " +
+                                      std::to_string(Grid::dimension));
+    }
+    for (std::size_t k = 0; k < t.corners; ++k) {
+        if (!std::isfinite(norm(c.corners[k]))) {
+            fail(Law::coarse_element, who + " has a corner " + std::to_string(k) +
+                                          " whose coordinates are not finite");
+        }
+        for (std::size_t j = 0; j < k; ++j) {
+            if (c.ids[j] == c.ids[k]) {
+                fail(Law::coarse_element, who + " has the node " + std::to_string(c.ids[k]) +
+                                              " at two of its corners");
+            }
+        }
+    }
+    for (std::size_t k = 0; k < t.corners; ++k) {
+        const auto [at, is_new] = coarse_nodes_.insert({c.ids[k], {c.corners[k], i}});
+        if (!is_new && at->second.first != c.corners[k]) {
+            fail(Law::coarse_node, "coarse node " + std::to_string(c.ids[k]) +
+                                       " is at one place in coarse element " +
+                                       std::to_string(at->second.second) + " and at another in " +
+                                       who);
+        }
+    }
+    const double volume = measure(c.shape, std::span(c.corners).first(t.corners));
+    if (c.orientation != 1 && c.orientation != -1) {
+        fail(Law::coarse_element, who + " has an orientation that is neither 1 nor -1");
+    }
+    if (!((t.dimension == 3 ? c.orientation * volume : volume) > 0)) {
+        fail(Law::coarse_element, who + " is flat or inverted under its orientation sign");
+    }
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        NodeKey sum = 0;
+        for (std::size_t k = 0; k < t.face[f].corners; ++k) {
+            sum += coarse_key(c.ids[t.face[f].corner[k]]);
+        }
+        if (++*coarse_faces_.insert(mean_key(sum, t.face[f].corners), 0).first > 2) {
+            fail(Law::coarse_face, "face " + std::to_string(f) + " of " + who +
+                                       " belongs to more than two coarse elements");
+        }
+    }
+}
+
+template <class Grid, class Field>
+NodeKey GridChecker<Grid, Field>::place_of(const Weights& weights) const {
+    NodeKey sum = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(topology(coarse_.shape).corners); ++k) {
+        const auto quantised = static_cast<std::uint64_t>(std::llround(weights[k] * 0x1p40));
+        if (quantised != 0) sum += mix(coarse_key(coarse_.ids[k]) + quantised);
+    }
+    return mix(sum);
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_values(std::size_t step, const char* which, std::size_t n,
+                                            const Values& value) {
+    for (const Real v : value) {
+        if (!std::isfinite(v)) {
+            fail(Law::value_finite, "the field's value at " + std::string(which) + " " +
+                                        std::to_string(n) + " of " + name(step) +
+                                        " is not a finite number");
+        }
+        largest_value_ = std::max(largest_value_, std::abs(static_cast<double>(v)));
+    }
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::walk_coarse(std::size_t i) {
+    coarse_ = call_coarse(grid_, context_, i);
+    State s;
+    s.element = coarse_.element;
+    s.shape = coarse_.shape;
+    s.level = 0;
+    s.step = steps_.size();
+    steps_.push_back({root_, i});
+    if constexpr (may_offer<Grid>(Feature::masked)) {
+        if (offers(grid_, Feature::masked) && call_masked(grid_, context_, s.element)) return;
+    }
+    const auto corners = static_cast<std::size_t>(topology(s.shape).corners);
+    std::array<Real, max_corners * components_> value;
+    const NodeMask missing = call_coarse_values(
+        field_, context_, i, std::span<Real>(value.data(), corners * components_));
+    if (missing != 0) fail(Law::value_present, "the field lacks a value at a corner of " + name(s.step));
+    std::array<NodeKey, max_corners> own{};
+    if constexpr (may_offer<Grid>(Feature::own_keys)) {
+        if (own_keys_) call_corner_keys(grid_, context_, s.element, std::span<NodeKey>(own));
+    }
+    size_ = 0;
+    for (std::size_t k = 0; k < corners; ++k) {
+        Corner& c = s.corner[k];
+        c.weights[k] = 1;
+        c.place = place_of(c.weights);
+        c.derived = coarse_key(coarse_.ids[k]);
+        c.key = own_keys_ ? own[k] : c.derived;
+        c.position = coarse_.corners[k];
+        std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(k * components_), components_,
+                    c.value.begin());
+        size_ = std::max(size_, norm(c.position - coarse_.corners[0]));
+        check_values(s.step, "corner", k, c.value);
+        check_node(s, k, c, 0, false, false);
+    }
+    walk(s);
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const Corner& c,
+                                          NodeKey signature, bool constrained, bool deviates) {
+    const std::string where = "node " + std::to_string(n) + " of " + name(s.step);
+    if (const std::size_t count = dense_key_count(grid_); count > 0 && c.key >= count) {
+        fail(Law::dense_key, "the key of " + where + " is not below node_count()");
+    }
+    Node fresh;
+    fresh.key = c.key;
+    fresh.signature = signature;
+    fresh.element = s.step;
+    fresh.value = c.value;
+    fresh.constrained = constrained;
+    fresh.deviates = deviates;
+    const auto [node, is_new] = nodes_.insert(c.place, fresh);
+    if (is_new) {
+        const auto [place, key_is_new] = place_of_key_.insert(c.key, c.place);
+        if (!key_is_new) {
+            fail(Law::key_place, where + " has the key of a node at another place, made by " +
+                                     name(nodes_.find(*place)->element));
+        }
+        return;
+    }
+    const std::string both = where + " and in " + name(node->element);
+    if (node->key != c.key || node->signature != signature) {
+        fail(Law::one_stencil, "one node has two stencils or keys: as " + both);
+    }
+    if (node->value != c.value) {
+        fail(Law::value_unique, "the field gives one node two values: as " + both);
+    }
+    if (node->constrained != constrained) {
+        fail(Law::hanging_mask, "one node is constrained and not constrained: as " + both);
+    }
+}
+
+}  // namespace nestgrid::detail
+
+#include <nestgrid/check_grid_walk.hpp>

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What check_grid asks below the coarse grid; included by check_grid_steps.hpp.
+#pragma once
+
+#include <nestgrid/check_grid_steps.hpp>
+
+namespace nestgrid::detail {
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_rule(const State& s, const Rule& rule) {
+    if (rules_.insert(&rule).second) {
+        if (const auto violation = find_violation(rule)) {
+            fail(Law::rule, *violation + " (in " + name(s.step) + ")");
+        }
+    }
+    if (rule.parent != s.shape) {
+        fail(Law::rule_shape, name(s.step) + " is a " + std::string(topology(s.shape).name) +
+                                  ", but its rule '" + rule.name + "' refines a " +
+                                  std::string(topology(rule.parent).name));
+    }
+    if (call_split(grid_, context_, s.element) != &rule) {
+        fail(Law::split_repeats, "split() gives another rule when asked again in " + name(s.step));
+    }
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::make_node(const Rule& rule, std::size_t n,
+                                         std::vector<Corner>& nodes) {
+    const Stencil& stencil = rule.new_nodes[n];
+    Corner c;
+    std::array<NodeKey, max_corners + max_new_nodes> keys;
+    for (std::size_t k = 0; k < nodes.size(); ++k) keys[k] = nodes[k].derived;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        const Corner& p = nodes[stencil.parent[i]];
+        for (std::size_t k = 0; k < max_corners; ++k) {
+            c.weights[k] += stencil.weight[i] * p.weights[k];
+        }
+        c.position = c.position + stencil.weight[i] * p.position;
+    }
+    c.place = place_of(c.weights);
+    c.derived = c.key = derived_key(stencil, keys.data());
+    nodes.push_back(c);
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_own_keys(const State& s, std::span<const NodeKey> own) {
+    for (std::size_t k = 0; k < own.size(); ++k) {
+        if (own[k] != s.corner[k].key) {
+            fail(Law::stable_key, "the key of corner " + std::to_string(k) + " of " +
+                                      name(s.step) + " is not the one its father gave");
+        }
+    }
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_positions(const State& s) {
+    if constexpr (may_offer<Grid>(Feature::own_positions)) {
+        if (!offers(grid_, Feature::own_positions)) return;
+        std::array<Point, max_corners> own;
+        call_corner_positions(grid_, context_, s.element, std::span<Point>(own));
+        for (std::size_t k = 0; k < static_cast<std::size_t>(topology(s.shape).corners); ++k) {
+            const std::string where = "corner " + std::to_string(k) + " of " + name(s.step);
+            if (!(norm(own[k] - s.corner[k].position) <= options_.position_tolerance * size_)) {
+                fail(Law::position, "the position of " + where + " is not that of eq. (1)");
+            }
+            Node* node = nodes_.find(s.corner[k].place);
+            if (node->has_position && node->own_position != own[k]) {
+                fail(Law::position, "one node has two positions: as " + where + " and elsewhere");
+            }
+            node->has_position = true;
+            node->own_position = own[k];
+        }
+    }
+}
+
+template <class Grid, class Field>
+bool GridChecker<Grid, Field>::deviates_from_mean(const Stencil& stencil,
+                                                  const std::vector<Corner>& nodes,
+                                                  Real value) const {
+    double mean = 0;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        mean += stencil.weight[i] * static_cast<double>(nodes[stencil.parent[i]].value[0]);
+    }
+    const double tolerance =
+        std::max<double>(options_.value_tolerance, 4 * std::numeric_limits<Real>::epsilon());
+    return std::abs(mean - static_cast<double>(value)) > tolerance * largest_value_;
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_new_nodes(const State& s, const Rule& rule,
+                                               std::vector<Corner>& nodes) {
+    const std::size_t corners = nodes.size();
+    const std::size_t count = rule.new_nodes.size();
+    std::array<Real, max_new_nodes * components_> value;
+    const NodeMask missing =
+        count == 0 ? NodeMask{0}
+                   : call_new_values(field_, context_, s.element, rule.all(),
+                                     std::span<Real>(value.data(), count * components_));
+    if (missing != 0) {
+        fail(Law::value_present, "the field lacks a value at a new node of " + name(s.step));
+    }
+    NodeMask constrained = 0;
+    if constexpr (may_offer<Grid>(Feature::constrained)) {
+        if (offers(grid_, Feature::constrained)) {
+            constrained = call_constrained(grid_, context_, s.element);
+        }
+    }
+    std::array<NodeKey, max_new_nodes> own{};
+    if constexpr (may_offer<Grid>(Feature::own_keys)) {
+        if (own_keys_) {
+            call_new_keys(grid_, context_, s.element, std::span<NodeKey>(own.data(), count));
+        }
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+        make_node(rule, n, nodes);
+        Corner& c = nodes.back();
+        if (own_keys_) c.key = own[n];
+        const Stencil& stencil = rule.new_nodes[n];
+        NodeKey signature = 0;
+        for (std::size_t i = 0; i < stencil.count; ++i) {
+            signature += mix(nodes[stencil.parent[i]].key +
+                             static_cast<std::uint64_t>(std::llround(stencil.weight[i] * 0x1p40)));
+        }
+        std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(n * components_), components_,
+                    c.value.begin());
+        check_values(s.step, "new node", n, c.value);
+        const bool deviates = deviates_from_mean(stencil, nodes, c.value[0]);
+        check_node(s, corners + n, c, mix(signature), (constrained >> n & 1U) != 0, deviates);
+        place_of_derived_.insert(c.derived, c.place);
+        probe_.add_node(c.derived);
+    }
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::walk(const State& s) {
+    const auto corners = static_cast<std::size_t>(topology(s.shape).corners);
+    if (s.level > options_.max_depth) {
+        fail(Law::depth, name(s.step) + " lies deeper than " + std::to_string(options_.max_depth) +
+                             " levels");
+    }
+    if constexpr (may_offer<Grid>(Feature::own_keys)) {
+        if (own_keys_) {
+            std::array<NodeKey, max_corners> own{};
+            call_corner_keys(grid_, context_, s.element, std::span<NodeKey>(own));
+            check_own_keys(s, std::span<const NodeKey>(own).first(corners));
+        }
+    }
+    check_positions(s);
+    const Rule* rule = call_split(grid_, context_, s.element);
+    if (rule == nullptr) {
+        std::array<NodeKey, max_corners> keys{};
+        for (std::size_t k = 0; k < corners; ++k) keys[k] = s.corner[k].derived;
+        leaves_.push_back({s.shape, keys});
+        return;
+    }
+    check_rule(s, *rule);
+
+    std::vector<Corner> nodes(s.corner.begin(),
+                              s.corner.begin() + static_cast<std::ptrdiff_t>(corners));
+    check_new_nodes(s, *rule, nodes);
+    std::vector<Element> children(rule->children.size());
+    call_children(grid_, context_, s.element, std::span<Element>(children));
+    for (std::size_t k = 0; k < children.size(); ++k) {
+        if constexpr (may_offer<Grid>(Feature::masked)) {
+            if (offers(grid_, Feature::masked) && call_masked(grid_, context_, children[k])) {
+                continue;
+            }
+        }
+        const Child& child = rule->children[k];
+        State next;
+        next.element = children[k];
+        next.shape = child.shape;
+        next.level = s.level + 1;
+        next.step = steps_.size();
+        steps_.push_back({s.step, k});
+        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+            next.corner[i] = nodes[child.corner[i]];
+        }
+        walk(next);
+    }
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_hanging() {
+    for (const Leaf& leaf : leaves_) probe_.probe_leaf(leaf.shape, leaf.keys);
+    const HangingNodes hanging = probe_.take();
+    place_of_derived_.for_each([&](NodeKey derived, NodeKey place) {
+        if (!hanging.contains(derived)) return;
+        const Node& node = *nodes_.find(place);
+        const std::string who = "a node made by " + name(node.element) + " hangs";
+        if constexpr (requires { grid_.conforming(); }) {
+            if (grid_.conforming()) {
+                fail(Law::conforming, who + ", but the grid says that it is conforming");
+            }
+        }
+        if (offers(grid_, Feature::constrained) && !node.constrained) {
+            fail(Law::hanging_mask, who + ", but is not in the constrained mask");
+        }
+        if (options_.hanging_values && node.deviates) {
+            fail(Law::hanging_value, who + ", but its value is not its interpolant");
+        }
+    });
+}
+
+}  // namespace nestgrid::detail
