@@ -212,7 +212,9 @@ void GridChecker<Grid, Field>::walk_coarse(std::size_t i) {
     if (missing != 0) fail(Law::value_present, "the field lacks a value at a corner of " + name(s.step));
     std::array<NodeKey, max_corners> own{};
     if constexpr (may_offer<Grid>(Feature::own_keys)) {
-        if (own_keys_) call_corner_keys(grid_, context_, s.element, std::span<NodeKey>(own));
+        if (own_keys_) {
+            call_corner_keys(grid_, context_, s.element, std::span<NodeKey>(own.data(), corners));
+        }
     }
     size_ = 0;
     for (std::size_t k = 0; k < corners; ++k) {

@@ -59,7 +59,8 @@ void GridChecker<Grid, Field>::check_positions(const State& s) {
     if constexpr (may_offer<Grid>(Feature::own_positions)) {
         if (!offers(grid_, Feature::own_positions)) return;
         std::array<Point, max_corners> own;
-        call_corner_positions(grid_, context_, s.element, std::span<Point>(own));
+        call_corner_positions(grid_, context_, s.element,
+                              std::span<Point>(own.data(), topology(s.shape).corners));
         for (std::size_t k = 0; k < static_cast<std::size_t>(topology(s.shape).corners); ++k) {
             const std::string where = "corner " + std::to_string(k) + " of " + name(s.step);
             if (!(norm(own[k] - s.corner[k].position) <= options_.position_tolerance * size_)) {
@@ -143,7 +144,7 @@ void GridChecker<Grid, Field>::walk(const State& s) {
     if constexpr (may_offer<Grid>(Feature::own_keys)) {
         if (own_keys_) {
             std::array<NodeKey, max_corners> own{};
-            call_corner_keys(grid_, context_, s.element, std::span<NodeKey>(own));
+            call_corner_keys(grid_, context_, s.element, std::span<NodeKey>(own.data(), corners));
             check_own_keys(s, std::span<const NodeKey>(own).first(corners));
         }
     }

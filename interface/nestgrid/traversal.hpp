@@ -169,7 +169,7 @@ public:
         if constexpr (State::carries_keys) {
             std::copy_n(s.key.begin(), s.corner_count(), out.begin());
         } else {
-            detail::call_corner_keys(*grid_, *s.context, s.element, out);
+            detail::call_corner_keys(*grid_, *s.context, s.element, exact(s, out));
         }
     }
 
@@ -179,7 +179,7 @@ public:
     {
         if (own_positions_) {
             if constexpr (may_offer<Grid>(Feature::own_positions)) {
-                detail::call_corner_positions(*grid_, *s.context, s.element, out);
+                detail::call_corner_positions(*grid_, *s.context, s.element, exact(s, out));
             }
         } else if constexpr (State::carries_positions) {
             std::copy_n(s.position.begin(), s.corner_count(), out.begin());
@@ -202,6 +202,11 @@ public:
 private:
     static constexpr std::size_t node_capacity_ =
         State::capacity + detail::new_node_capacity<Grid>();
+
+    template <class T>
+    static std::span<T> exact(const State& s, std::span<T> out) {
+        return out.first(static_cast<std::size_t>(s.corner_count()));
+    }
 
     bool make_coarse(std::size_t i, State& s) const;
 

@@ -101,7 +101,8 @@ bool Traversal<Grid, Field, needs>::make_coarse(std::size_t i, State& s) const {
         for (std::size_t k = 0; k < corners; ++k) s.key[k] = coarse_key(coarse.ids[k]);
         if constexpr (may_offer<Grid>(Feature::own_keys)) {
             if (own_keys_) {
-                detail::call_corner_keys(*grid_, *s.context, s.element, std::span<NodeKey>(s.key));
+                detail::call_corner_keys(*grid_, *s.context, s.element,
+                                         exact(s, std::span<NodeKey>(s.key)));
             }
         }
     }

@@ -206,7 +206,7 @@ Point IsosurfaceVisitor<Grid, Field, S, Indicator>::projected_gradient(const Sta
         }
         std::array<Point, max_corners> g;
         call_corner_gradients(walk_->field(), *s.context, s.element,
-                              std::span<Point>(g.data(), max_corners));
+                              std::span<Point>(g.data(), static_cast<std::size_t>(s.corner_count())));
         return g[corner];
     }
     return {};

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of any_grid.hpp.
+#pragma once
+
+#include <nestgrid/any_grid.hpp>
+
+namespace nestgrid {
+
+namespace detail {
+
+inline Rule rule_from_table(const nestgrid_rule& r) {
+    const auto bad = [&](const std::string& what) {
+        throw InvalidInput("rule '" + std::string(r.name == nullptr ? "" : r.name) + "': " + what);
+    };
+    const auto shape = [&](int s) {
+        if (s <= 0 || s >= shape_count) bad("the shape " + std::to_string(s) + " does not exist");
+        return static_cast<Shape>(s);
+    };
+    if (r.new_node_count < 0 || r.new_node_count > max_new_nodes) bad("more than 64 new nodes");
+    if (r.child_count < 0 || r.child_count > max_children) bad("more than 64 children");
+    if ((r.new_node_count > 0 && r.new_nodes == nullptr) || r.children == nullptr) {
+        bad("its tables are NULL");
+    }
+    std::vector<Stencil> nodes;
+    for (const nestgrid_stencil& s : std::span(r.new_nodes, static_cast<std::size_t>(
+                                                                r.new_node_count))) {
+        if (s.count < 0 || s.count > max_corners) bad("a stencil has more than 8 parents");
+        Stencil stencil;
+        stencil.count = static_cast<std::uint8_t>(s.count);
+        stencil.number = static_cast<std::uint8_t>(s.number);
+        for (std::size_t i = 0; i < stencil.count; ++i) {
+            if (s.parent[i] < 0 || s.parent[i] > 255) bad("a parent is no node");
+            stencil.parent[i] = static_cast<std::uint8_t>(s.parent[i]);
+            stencil.weight[i] = s.weight[i];
+        }
+        nodes.push_back(stencil);
+    }
+    std::vector<Child> children;
+    for (const nestgrid_child& c : std::span(r.children, static_cast<std::size_t>(r.child_count))) {
+        Child child;
+        child.shape = shape(c.shape);
+        child.orientation = static_cast<std::int8_t>(c.orientation);
+        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+            if (c.corner[i] < 0 || c.corner[i] > 255) bad("a corner of a child is no node");
+            child.corner[i] = static_cast<std::uint8_t>(c.corner[i]);
+        }
+        children.push_back(child);
+    }
+    return make_rule(r.name == nullptr ? "" : r.name, shape(r.shape), nodes, children);
+}
+
+}  // namespace detail
+
+template <int dim>
+AnyGrid<dim>::AnyGrid(const nestgrid_grid& given) {
+    if (given.size < offsetof(nestgrid_grid, corner_keys)) {
+        throw InvalidInput("the table of the grid is too small: its size says " +
+                           std::to_string(given.size) + " bytes");
+    }
+    nestgrid_grid table{};
+    std::memcpy(&table, &given, std::min(given.size, sizeof(table)));
+    if (table.dimension != dim) {
+        throw InvalidInput("the table is of a grid of dimension " +
+                           std::to_string(table.dimension) + ", not " + std::to_string(dim));
+    }
+    const auto require = [](bool there, const char* name) {
+        if (!there) {
+            throw InvalidInput("the table of the grid lacks the function '" + std::string(name) +
+                               "'");
+        }
+    };
+    require(table.coarse_count != nullptr, "coarse_count");
+    require(table.coarse != nullptr, "coarse");
+    require(table.split != nullptr || table.library_split != nullptr, "split");
+    require(table.children != nullptr, "children");
+    if (table.library_split == nullptr) {
+        if (table.rule_count < 0 || (table.rule_count > 0 && table.rules == nullptr)) {
+            throw InvalidInput("the table of the grid lacks its rules");
+        }
+        auto rules = std::make_shared<std::deque<Rule>>();
+        for (int i = 0; i < table.rule_count; ++i) {
+            rules->push_back(detail::rule_from_table(table.rules[i]));
+        }
+        rules_ = rules;
+    }
+    table_ = std::make_shared<const nestgrid_grid>(table);
+}
+
+template <int dim>
+CoarseElement<nestgrid_element> AnyGrid<dim>::coarse(std::size_t i, AnyContext& c) const {
+    nestgrid_coarse coarse{};
+    check(table_->coarse(table_->self, c.state(), i, &coarse), "coarse");
+    if (coarse.shape <= 0 || coarse.shape >= shape_count) {
+        throw GridError("coarse element " + std::to_string(i) + " has the shape " +
+                        std::to_string(coarse.shape) + ", which does not exist");
+    }
+    CoarseElement<Element> result;
+    result.element = coarse.element;
+    result.shape = static_cast<Shape>(coarse.shape);
+    for (std::size_t k = 0; k < max_corners; ++k) {
+        std::copy_n(&coarse.corners[k][0], 3, result.corners[k].begin());
+        result.ids[k] = coarse.ids[k];
+    }
+    result.orientation = static_cast<std::int8_t>(coarse.orientation);
+    return result;
+}
+
+template <int dim>
+const Rule* AnyGrid<dim>::split(const Element& e, AnyContext& c) const {
+    if (table_->library_split != nullptr) {
+        return static_cast<const Rule*>(table_->library_split(table_->self, c.state(), &e));
+    }
+    int rule = -1;
+    check(table_->split(table_->self, c.state(), &e, &rule), "split");
+    if (rule < 0) return nullptr;
+    if (rule >= table_->rule_count) {
+        throw GridError("split gave rule " + std::to_string(rule) + " of " +
+                        std::to_string(table_->rule_count));
+    }
+    return &(*rules_)[static_cast<std::size_t>(rule)];
+}
+
+template <int dim>
+bool AnyGrid<dim>::offers(Feature feature) const {
+    const bool keys = table_->corner_keys != nullptr && table_->new_keys != nullptr;
+    switch (feature) {
+        case Feature::own_keys:
+            return keys;
+        case Feature::dense_keys:
+            return keys && table_->node_count > 0;
+        case Feature::own_positions:
+            return table_->corner_positions != nullptr;
+        case Feature::new_positions:
+            return table_->new_positions != nullptr;
+        case Feature::constrained:
+            return table_->constrained != nullptr;
+        case Feature::masked:
+            return table_->masked != nullptr;
+        case Feature::outside:
+            return table_->outside != nullptr;
+        case Feature::boundary_faces:
+            return table_->boundary_faces != nullptr;
+        default:
+            return false;
+    }
+}
+
+template <int dim>
+template <class Function>
+void AnyGrid<dim>::keys(Function function, const char* operation, const Element& e,
+                        std::span<NodeKey> out, AnyContext& c) const {
+    std::array<std::uint64_t, max_new_nodes> keys{};  // also holds the keys of the corners
+    check(function(table_->self, c.state(), &e, keys.data()), operation);
+    std::copy_n(keys.begin(), std::min(out.size(), keys.size()), out.begin());
+}
+
+template <class Real, int component_count>
+AnyField<Real, component_count>::AnyField(const nestgrid_field& given) : table_{} {
+    if (given.size < offsetof(nestgrid_field, corner_gradients)) {
+        throw InvalidInput("the table of the field is too small: its size says " +
+                           std::to_string(given.size) + " bytes");
+    }
+    std::memcpy(&table_, &given, std::min(given.size, sizeof(table_)));
+    if (table_.value_type != detail::value_type_code<Real>()) {
+        throw InvalidInput("the values of the field are of another type, float or double, than "
+                           "asked for");
+    }
+    if (table_.components != component_count) {
+        throw InvalidInput("the field has " + std::to_string(table_.components) +
+                           " components, not " + std::to_string(component_count));
+    }
+    if (table_.coarse_values == nullptr || table_.new_values == nullptr) {
+        throw InvalidInput(
+            "the table of the field lacks the function 'coarse_values' or 'new_values'");
+    }
+}
+
+}  // namespace nestgrid

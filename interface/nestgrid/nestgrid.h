@@ -1,0 +1,132 @@
+/* SPDX-FileCopyrightText: the nestgrid authors
+ * SPDX-License-Identifier: BSD-3-Clause
+ *
+ * The interface as a table of C functions, for C and Fortran codes: what grid.hpp and operations.hpp
+ * ask of a C++ class, with the same names and meaning. docs/examples/c_grid.c is a complete grid.
+ *
+ * All functions are reentrant and return 0, or another number where they fail; nothing is thrown
+ * through them. `context` is what make_context returned for the task that calls, or NULL. Optional
+ * functions may be NULL. `count` is the number of nodes that `out` has room for. `size` is sizeof the
+ * table as its author compiled it, so that tables can grow: what lies beyond it counts as NULL or 0.
+ */
+#ifndef NESTGRID_H
+#define NESTGRID_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    NESTGRID_SEGMENT = 1,
+    NESTGRID_TRIANGLE,
+    NESTGRID_QUADRILATERAL,
+    NESTGRID_TETRAHEDRON,
+    NESTGRID_PYRAMID,
+    NESTGRID_PRISM,
+    NESTGRID_HEXAHEDRON
+};
+
+enum { NESTGRID_FLOAT = 0, NESTGRID_DOUBLE = 1 };
+
+/* An element is a value of its author's choice, copied bytewise. */
+typedef struct nestgrid_element {
+    uint64_t word[6];
+} nestgrid_element;
+
+typedef struct nestgrid_coarse {
+    nestgrid_element element;
+    int shape;
+    double corners[8][3];
+    uint64_t ids[8];
+    int orientation; /* -1 where the corners are numbered as in a mirror, else 1 */
+} nestgrid_coarse;
+
+/* A new node: the weighted mean of nodes of the rule, corners of the parent first. */
+typedef struct nestgrid_stencil {
+    int count;
+    int parent[8];
+    double weight[8];
+    int number; /* tells apart stencils of equal parents and equal order of weights */
+} nestgrid_stencil;
+
+typedef struct nestgrid_child {
+    int shape;
+    int corner[8]; /* nodes of the rule: corners of the parent, then new nodes */
+    int orientation;
+} nestgrid_child;
+
+typedef struct nestgrid_rule {
+    const char* name;
+    int shape; /* of the parent */
+    int new_node_count;
+    const nestgrid_stencil* new_nodes;
+    int child_count;
+    const nestgrid_child* children;
+} nestgrid_rule;
+
+typedef struct nestgrid_grid {
+    size_t size;
+    const void* self; /* handed to every function */
+    int dimension;    /* of the elements, 2 or 3 */
+
+    /* All rules of the grid; checked before the first query. */
+    int rule_count;
+    const nestgrid_rule* rules;
+
+    /* Required. */
+    int (*coarse_count)(const void* self, size_t* count);
+    int (*coarse)(const void* self, void* context, size_t i, nestgrid_coarse* out);
+    /* *rule: the number of the rule that refines e, or -1 on a leaf */
+    int (*split)(const void* self, void* context, const nestgrid_element* e, int* rule);
+    int (*children)(const void* self, void* context, const nestgrid_element* e,
+                    nestgrid_element* out);
+
+    /* Optional. */
+    int (*corner_keys)(const void* self, void* context, const nestgrid_element* e, uint64_t* out);
+    int (*new_keys)(const void* self, void* context, const nestgrid_element* e, uint64_t* out);
+    size_t node_count; /* own keys lie below it; 0 where they are not dense */
+    int (*corner_positions)(const void* self, void* context, const nestgrid_element* e,
+                            size_t count, double (*out)[3]);
+    int (*new_positions)(const void* self, void* context, const nestgrid_element* e,
+                         uint64_t which, size_t count, double (*out)[3]);
+    int (*constrained)(const void* self, void* context, const nestgrid_element* e,
+                       uint64_t* nodes);
+    int conforming; /* not 0: no node hangs */
+    int (*masked)(const void* self, void* context, const nestgrid_element* e, int* is_masked);
+    int (*outside)(const void* self, void* context, const nestgrid_element* e, uint64_t* nodes);
+    int (*boundary_faces)(const void* self, void* context, const nestgrid_element* e,
+                          unsigned* faces);
+    uint64_t (*epoch)(const void* self);
+    void* (*make_context)(const void* self);
+    void (*free_context)(const void* self, void* context);
+
+    /* Of the library's own tables, instead of `rules` and `split`; NULL in all others. */
+    const void* (*library_split)(const void* self, void* context, const nestgrid_element* e);
+} nestgrid_grid;
+
+/* Values are float or double as value_type says; component c of node n goes to
+ * out[n * components + c], n below count. *missing receives the nodes that could not be given, one
+ * bit each. */
+typedef struct nestgrid_field {
+    size_t size;
+    const void* self;
+    int value_type;
+    int components;
+    int (*coarse_values)(const void* self, void* context, size_t i, size_t count, void* out,
+                         uint64_t* missing);
+    int (*new_values)(const void* self, void* context, const nestgrid_element* e, uint64_t which,
+                      size_t count, void* out, uint64_t* missing);
+
+    /* Optional. */
+    int (*corner_gradients)(const void* self, void* context, const nestgrid_element* e,
+                            size_t count, double (*out)[3]);
+} nestgrid_field;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

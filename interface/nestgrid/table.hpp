@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Generating the C tables of nestgrid.h from any model of NestedGrid and NodalField.
+#pragma once
+
+#include <cstring>
+#include <type_traits>
+
+#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/nestgrid.h>
+#include <nestgrid/operations.hpp>
+
+namespace nestgrid {
+
+namespace detail {
+
+static_assert(NESTGRID_HEXAHEDRON == static_cast<int>(Shape::hexahedron));
+
+template <class Real>
+constexpr int value_type_code() {
+    return std::is_same_v<Real, float> ? NESTGRID_FLOAT : NESTGRID_DOUBLE;
+}
+
+using Rows = double (*)[3];  // NOLINT(modernize-avoid-c-arrays)
+
+inline Rows as_rows(std::span<Point> points) {
+    static_assert(sizeof(Point) == 3 * sizeof(double));
+    return reinterpret_cast<Rows>(points.data());
+}
+inline std::span<Point> as_points(Rows rows, std::size_t count) {
+    return {reinterpret_cast<Point*>(rows), count};
+}
+
+inline void check_code(int code, const char* what, const char* operation) {
+    if (code == 0) return;
+    throw GridError("the operation '" + std::string(operation) + "' of the " + what +
+                    " failed with code " + std::to_string(code));
+}
+
+/// Nothing is thrown through a table.
+template <class Function>
+int guarded(Function&& function) noexcept {
+    try {
+        function();
+        return 0;
+    } catch (const InvalidInput&) {
+        return 1;
+    } catch (const GridError&) {
+        return 2;
+    } catch (...) {
+        return 3;
+    }
+}
+
+template <class Grid>
+struct GridTable {
+    using Element = ElementOf<Grid>;
+    static_assert(std::is_trivially_copyable_v<Element> &&
+                      sizeof(Element) <= sizeof(nestgrid_element),
+                  "Type erasure needs elements that are trivially copyable and at most 48 bytes.");
+
+    static const Grid& grid(const void* self) { return *static_cast<const Grid*>(self); }
+    static Element load(const nestgrid_element* e) {
+        Element element;
+        std::memcpy(&element, e, sizeof(element));
+        return element;
+    }
+    static void store(const Element& element, nestgrid_element* e) {
+        std::memcpy(e, &element, sizeof(element));
+    }
+    /// Hands the task's state to function, or a fresh one where the grid has none.
+    template <class Function>
+    static decltype(auto) with(void* context, Function&& function) {
+        if constexpr (std::is_same_v<Context<Grid>, NoContext>) {
+            NoContext none;
+            return function(none);
+        } else {
+            return function(*static_cast<Context<Grid>*>(context));
+        }
+    }
+
+    static int coarse_count(const void* self, std::size_t* count) {
+        return guarded([&] { *count = grid(self).coarse_count(); });
+    }
+    static int coarse(const void* self, void* context, std::size_t i, nestgrid_coarse* out) {
+        return guarded([&] {
+            const auto c =
+                with(context, [&](auto& ctx) { return call_coarse(grid(self), ctx, i); });
+            store(c.element, &out->element);
+            out->shape = static_cast<int>(c.shape);
+            for (std::size_t k = 0; k < max_corners; ++k) {
+                std::copy_n(c.corners[k].begin(), 3, &out->corners[k][0]);
+                out->ids[k] = c.ids[k];
+            }
+            out->orientation = c.orientation;
+        });
+    }
+    static const void* library_split(const void* self, void* context, const nestgrid_element* e) {
+        return with(context, [&](auto& ctx) { return call_split(grid(self), ctx, load(e)); });
+    }
+    static int children(const void* self, void* context, const nestgrid_element* e,
+                        nestgrid_element* out) {
+        return guarded([&] {
+            with(context, [&](auto& ctx) {
+                const Element element = load(e);
+                std::array<Element, max_children> children;
+                const std::size_t count = call_split(grid(self), ctx, element)->children.size();
+                call_children(grid(self), ctx, element,
+                              std::span<Element>(children.data(), count));
+                for (std::size_t k = 0; k < count; ++k) store(children[k], out + k);
+            });
+        });
+    }
+    static int corner_keys(const void* self, void* context, const nestgrid_element* e,
+                           std::uint64_t* out) {
+        return guarded([&] {
+            std::array<NodeKey, max_corners> keys{};
+            with(context, [&](auto& ctx) {
+                call_corner_keys(grid(self), ctx, load(e), std::span<NodeKey>(keys));
+            });
+            for (std::size_t k = 0; k < keys.size(); ++k) out[k] = static_cast<std::uint64_t>(keys[k]);
+        });
+    }
+    static int new_keys(const void* self, void* context, const nestgrid_element* e,
+                        std::uint64_t* out) {
+        return guarded([&] {
+            with(context, [&](auto& ctx) {
+                const Element element = load(e);
+                std::array<NodeKey, max_new_nodes> keys{};
+                const std::size_t count = call_split(grid(self), ctx, element)->new_nodes.size();
+                call_new_keys(grid(self), ctx, element, std::span<NodeKey>(keys.data(), count));
+                for (std::size_t k = 0; k < count; ++k) {
+                    out[k] = static_cast<std::uint64_t>(keys[k]);
+                }
+            });
+        });
+    }
+    static int corner_positions(const void* self, void* context, const nestgrid_element* e,
+                                std::size_t count, Rows out) {
+        return guarded([&] {
+            with(context, [&](auto& ctx) {
+                call_corner_positions(grid(self), ctx, load(e), as_points(out, count));
+            });
+        });
+    }
+    static int new_positions(const void* self, void* context, const nestgrid_element* e,
+                             std::uint64_t which, std::size_t count, Rows out) {
+        return guarded([&] {
+            with(context, [&](auto& ctx) {
+                call_new_positions(grid(self), ctx, load(e), NodeMask{which},
+                                   as_points(out, count));
+            });
+        });
+    }
+    static int constrained(const void* self, void* context, const nestgrid_element* e,
+                           std::uint64_t* nodes) {
+        return guarded([&] {
+            *nodes = with(context,
+                          [&](auto& ctx) { return call_constrained(grid(self), ctx, load(e)); });
+        });
+    }
+    static int masked(const void* self, void* context, const nestgrid_element* e, int* answer) {
+        return guarded([&] {
+            *answer = with(context,
+                           [&](auto& ctx) { return call_masked(grid(self), ctx, load(e)); })
+                          ? 1
+                          : 0;
+        });
+    }
+    static int outside(const void* self, void* context, const nestgrid_element* e,
+                       std::uint64_t* nodes) {
+        return guarded([&] {
+            *nodes =
+                with(context, [&](auto& ctx) { return call_outside(grid(self), ctx, load(e)); });
+        });
+    }
+    static int boundary_faces(const void* self, void* context, const nestgrid_element* e,
+                              unsigned* faces) {
+        return guarded([&] {
+            *faces = with(context,
+                          [&](auto& ctx) { return call_boundary_faces(grid(self), ctx, load(e)); });
+        });
+    }
+    static std::uint64_t grid_epoch(const void* self) { return epoch(grid(self)); }
+    static void* make(const void* self) {
+        if constexpr (std::is_same_v<Context<Grid>, NoContext>) {
+            return nullptr;
+        } else {
+            return new Context<Grid>(make_context(grid(self)));
+        }
+    }
+    static void free(const void*, void* context) { delete static_cast<Context<Grid>*>(context); }
+};
+
+template <class Grid, class Field>
+struct FieldTable {
+    using Real = typename Field::value_type;
+    using Bridge = GridTable<Grid>;
+    static constexpr std::size_t components = static_cast<std::size_t>(components_of<Field>());
+
+    static const Field& field(const void* self) { return *static_cast<const Field*>(self); }
+    static int coarse_values(const void* self, void* context, std::size_t i, std::size_t count,
+                             void* out, std::uint64_t* missing) {
+        return guarded([&] {
+            *missing = Bridge::with(context, [&](auto& ctx) {
+                return call_coarse_values(
+                    field(self), ctx, i,
+                    std::span<Real>(static_cast<Real*>(out), count * components));
+            });
+        });
+    }
+    static int new_values(const void* self, void* context, const nestgrid_element* e,
+                          std::uint64_t which, std::size_t count, void* out,
+                          std::uint64_t* missing) {
+        return guarded([&] {
+            *missing = Bridge::with(context, [&](auto& ctx) {
+                return call_new_values(
+                    field(self), ctx, Bridge::load(e), NodeMask{which},
+                    std::span<Real>(static_cast<Real*>(out), count * components));
+            });
+        });
+    }
+    static int corner_gradients(const void* self, void* context, const nestgrid_element* e,
+                                std::size_t count, Rows out) {
+        return guarded([&] {
+            Bridge::with(context, [&](auto& ctx) {
+                call_corner_gradients(field(self), ctx, Bridge::load(e), as_points(out, count));
+            });
+        });
+    }
+};
+
+}  // namespace detail
+
+/// The table of a grid; the grid is borrowed.
+template <class Grid>
+nestgrid_grid make_table(const Grid& grid) {
+    static_assert(require_nested_grid<Grid>());
+    using Table = detail::GridTable<Grid>;
+    nestgrid_grid t{};
+    t.size = sizeof(t);
+    t.self = &grid;
+    t.dimension = Grid::dimension;
+    t.coarse_count = Table::coarse_count;
+    t.coarse = Table::coarse;
+    t.library_split = Table::library_split;
+    t.children = Table::children;
+    if constexpr (may_offer<Grid>(Feature::own_keys)) {
+        if (offers(grid, Feature::own_keys)) {
+            t.corner_keys = Table::corner_keys;
+            t.new_keys = Table::new_keys;
+            t.node_count = dense_key_count(grid);
+        }
+    }
+    if constexpr (may_offer<Grid>(Feature::own_positions)) {
+        if (offers(grid, Feature::own_positions)) t.corner_positions = Table::corner_positions;
+    }
+    if constexpr (may_offer<Grid>(Feature::new_positions)) {
+        if (offers(grid, Feature::new_positions)) t.new_positions = Table::new_positions;
+    }
+    if constexpr (may_offer<Grid>(Feature::constrained)) {
+        if (offers(grid, Feature::constrained)) t.constrained = Table::constrained;
+    }
+    if constexpr (may_offer<Grid>(Feature::masked)) {
+        if (offers(grid, Feature::masked)) t.masked = Table::masked;
+    }
+    if constexpr (may_offer<Grid>(Feature::outside)) {
+        if (offers(grid, Feature::outside)) t.outside = Table::outside;
+    }
+    if constexpr (may_offer<Grid>(Feature::boundary_faces)) {
+        if (offers(grid, Feature::boundary_faces)) t.boundary_faces = Table::boundary_faces;
+    }
+    if constexpr (requires { grid.conforming(); }) t.conforming = grid.conforming() ? 1 : 0;
+    t.epoch = Table::grid_epoch;
+    if constexpr (!std::is_same_v<Context<Grid>, NoContext>) {
+        t.make_context = Table::make;
+        t.free_context = Table::free;
+    }
+    return t;
+}
+
+/// The table of a field on a grid of the type Grid; the field is borrowed.
+template <class Grid, class Field>
+nestgrid_field make_table(const Field& field) {
+    static_assert(require_nodal_field<Field, Grid>());
+    using Table = detail::FieldTable<Grid, Field>;
+    nestgrid_field t{};
+    t.size = sizeof(t);
+    t.self = &field;
+    t.value_type = detail::value_type_code<typename Field::value_type>();
+    t.components = detail::components_of<Field>();
+    t.coarse_values = Table::coarse_values;
+    t.new_values = Table::new_values;
+    if constexpr (detail::offers_corner_gradients<Field, Context<Grid>, const ElementOf<Grid>&,
+                                                  std::span<Point>>) {
+        if (offers_gradients<Grid>(field)) t.corner_gradients = Table::corner_gradients;
+    }
+    return t;
+}
+
+}  // namespace nestgrid
