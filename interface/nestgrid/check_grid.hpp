@@ -59,11 +59,10 @@ struct CheckOptions {
     double value_tolerance = 1e-12;
 };
 
-}  // namespace nestgrid
-
-#include <nestgrid/check_grid_steps.hpp>
-
-namespace nestgrid {
+namespace detail {
+template <class Grid, class Field>
+class GridChecker;
+}
 
 /// The first violation of the contract, or nothing. Elements are named by the number of the coarse
 /// element and those of the children on the way down, as in "element 3/0/1".
@@ -76,3 +75,5 @@ std::optional<GridViolation> check_grid(const Grid& grid, const Field& field,
 }
 
 }  // namespace nestgrid
+
+#include <nestgrid/check_grid_steps.hpp>

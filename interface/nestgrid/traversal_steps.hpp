@@ -137,8 +137,8 @@ void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) co
                                       std::span<NodeKey>(keys.data() + corners, count));
             }
         }
-        if (!own) {
-            for (std::size_t n = 0; n < count; ++n) {
+        if constexpr (State::carries_keys) {
+            for (std::size_t n = 0; n < count && !own; ++n) {
                 keys[corners + n] = derived_key(split.rule->new_nodes[n], keys.data());
             }
         }

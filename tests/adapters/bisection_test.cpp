@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The implicit hierarchy: the paper's numbers, the domain, no heap.
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/check_grid.hpp>
+#include <nestgrid/levels.hpp>
+
+#include "counting_allocator.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid;
+using namespace nestgrid_test;
+
+namespace {
+
+struct Census {
+    std::size_t leaves = 0;
+    std::size_t inner = 0;
+    std::size_t greatest_depth = 0;
+    const char* base = nullptr;
+    std::size_t stack = 0;
+
+    template <class State>
+    Decision inspect(const State& s, const Split& split) {
+        if (split.rule != nullptr) ++inner;
+        greatest_depth = std::max(greatest_depth, static_cast<std::size_t>(s.level));
+        const char here = 0;
+        if (base == nullptr) base = &here;
+        stack = std::max(stack, static_cast<std::size_t>(std::abs(base - &here)));
+        return {};
+    }
+    template <class State>
+    void extract(const State&) {
+        ++leaves;
+    }
+};
+
+TEST(Lattice, HasThePapersGridAndWalksItWithoutHeap) {
+    const LatticeBisection<3> grid({.samples = {129, 129, 129}});
+    const std::vector<std::uint8_t> samples(grid.sample_count());
+    const LatticeField field(grid, std::span<const std::uint8_t>(samples));
+    EXPECT_EQ(grid.node_count(), 2146689U);
+    const Traversal<LatticeBisection<3>, decltype(field), Needs{.keys = true, .positions = true}>
+        walk(grid, field);
+    Census census;
+    const std::size_t before = allocation_count();
+    walk.run(census);
+    EXPECT_EQ(allocation_count(), before);
+    EXPECT_EQ(census.leaves, 12582912U);
+    EXPECT_EQ(census.leaves + census.inner, 25165818U);
+    EXPECT_EQ(census.greatest_depth, 21U);
+    EXPECT_LT(census.stack, 22U * 1024U) << "more than a kilobyte a level";
+}
+
+TEST(Lattice, NodesAreCountedByTheirElements) {
+    const LatticeBisection<3> grid({.samples = {17, 17, 17}});
+    const std::vector<std::uint8_t> samples(grid.sample_count());
+    const LatticeField field(grid, std::span<const std::uint8_t>(samples));
+    const Traversal<LatticeBisection<3>, decltype(field), Needs{.keys = true}> walk(grid, field);
+    std::set<NodeKey> nodes;
+    for (int level = 0; level < count_levels(walk); ++level) {
+        for_each_on_level(walk, level, [&](const auto& s, const Split&) {
+            std::array<NodeKey, 8> keys;
+            walk.keys(s, keys);
+            nodes.insert(keys.begin(), keys.begin() + 4);
+        });
+    }
+    EXPECT_EQ(nodes.size(), 4913U);
+}
+
+struct Volume {
+    const LatticeBisection<3>& grid;
+    double sum = 0;
+    bool inside = true;
+
+    template <class State>
+    Decision inspect(const State&, const Split&) {
+        return {};
+    }
+    template <class State>
+    void extract(const State& s) {
+        std::array<Point, 4> x;
+        grid.corner_positions(s.element, x);
+        const double v = s.orientation * measure(Shape::tetrahedron, x);
+        EXPECT_GT(v, 0);
+        sum += v;
+    }
+};
+
+TEST(Lattice, LeavesFillTheDomainForAnyDimensions) {
+    for (const Samples n : {Samples{2, 2, 2}, Samples{17, 17, 17}, Samples{5, 14, 23},
+                            Samples{2, 30, 3}, Samples{18, 33, 20}}) {
+        const LatticeBisection<3> grid(
+            {.samples = n, .spacing = {0.5, 2, -1}, .direction = {{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}});
+        const std::vector<float> samples(grid.sample_count(), 1.0F);
+        const LatticeField field(grid, std::span<const float>(samples));
+        const Traversal<LatticeBisection<3>, decltype(field)> walk(grid, field);
+        Volume volume{grid};
+        walk.run(volume);
+        const double whole = double(n[0] - 1) * (n[1] - 1) * (n[2] - 1);
+        EXPECT_NEAR(volume.sum / whole, 1, 1e-12);
+    }
+}
+
+TEST(Lattice, SkinOfPaddingIsThin) {
+    // A plane in the middle of the domain never meets the padding: it costs nothing there.
+    const Samples n{65 + 20, 65 + 20, 65};
+    const LatticeBisection<3> padded({.samples = n, .block_levels = 5});
+    const std::vector<float> values =
+        sample(n, [](double, double, double z) { return z * z + 0.3 * z; });
+    const LatticeField field(padded, std::span<const float>(values));
+    const auto result = isosurface(padded, field, 0.4, {.threshold = 0.05});
+    // Two thirds of the plane away from the two padded sides is coarse.
+    EXPECT_LT(result.surface.simplices.size(), 6U * 85U * 20U);
+}
+
+TEST(Lattice, RefusesWhatIsNoLattice) {
+    const auto make = [](LatticeGeometry<3> g) { return LatticeBisection<3>(g); };
+    EXPECT_THROW(make({.samples = {1, 5, 5}}), InvalidInput);
+    EXPECT_THROW(make({.samples = {5, 5, 2000000}}), InvalidInput);
+    EXPECT_THROW(make({.samples = {5, 5, 5}, .spacing = {1, 0, 1}}), InvalidInput);
+    EXPECT_THROW(make({.samples = {5, 5, 5}, .spacing = {1, std::nan(""), 1}}), InvalidInput);
+    EXPECT_THROW(make({.samples = {5, 5, 5}, .direction = {{{1, 1, 0}, {1, 1, 0}, {0, 0, 1}}}}),
+                 InvalidInput);
+    EXPECT_THROW(make({.samples = {5, 5, 5}, .block_levels = 25}), InvalidInput);
+    const LatticeBisection<3> grid({.samples = {5, 5, 5}});
+    const std::vector<float> few(124);
+    EXPECT_THROW(LatticeField(grid, std::span<const float>(few)), InvalidInput);
+}
+
+/// The 2-D sibling: closed isolines whose length converges to that of the circle.
+double circle_length(int n) {
+    const double h = 1.0 / (n - 1);
+    const LatticeBisection<2> grid({.samples = {n, n}, .spacing = {h, h, 1}});
+    std::vector<double> values;
+    for (int y = 0; y < n; ++y) {
+        for (int x = 0; x < n; ++x) values.push_back(-std::hypot(x * h - 0.5, y * h - 0.5));
+    }
+    const LatticeField field(grid, std::span<const double>(values));
+    const auto line = isosurface(grid, field, -0.4, {.verify = true});
+    std::vector<int> starts(line.surface.vertices.size());
+    std::vector<int> ends(line.surface.vertices.size());
+    double length = 0;
+    double area = 0;
+    for (const auto& s : line.surface.simplices) {
+        ++starts[s[0]];
+        ++ends[s[1]];
+        const Point& a = line.surface.vertices[s[0]];
+        const Point& b = line.surface.vertices[s[1]];
+        length += norm(b - a);
+        area += cross(a, b)[2] / 2;
+    }
+    EXPECT_EQ(starts, std::vector<int>(starts.size(), 1));
+    EXPECT_EQ(ends, starts);
+    EXPECT_GT(area, 0);  // the region above the isovalue is on the left
+    return length;
+}
+
+TEST(Image, IsolinesConvergeWithOrderTwo) {
+    const double exact = 2 * 3.14159265358979323846 * 0.4;
+    // The error varies with the place of the circle on the lattice: order over four refinements.
+    const double coarse = exact - circle_length(33);
+    const double fine = exact - circle_length(513);
+    EXPECT_NEAR(std::log2(coarse / fine) / 4, 2, 0.1);
+}
+
+TEST(Image, CappedIsolinesCloseAroundTheRegion) {
+    for (const int n : {17, 22, 41}) {
+        const LatticeBisection<2> grid({.samples = {n, n + 3}});
+        std::mt19937 random(3);
+        std::vector<float> values(grid.sample_count());
+        for (float& v : values) v = static_cast<float>(random() % 5);
+        const LatticeField field(grid, std::span<const float>(values));
+        for (const double threshold : {0.0, 1.0, 3.0}) {
+            const auto line = isosurface(grid, field, 2, {.threshold = threshold, .cap = true});
+            std::vector<int> balance(line.surface.vertices.size());
+            for (const auto& s : line.surface.simplices) {
+                ++balance[s[0]];
+                --balance[s[1]];
+            }
+            EXPECT_EQ(balance, std::vector<int>(balance.size(), 0));
+        }
+    }
+}
+
+}  // namespace

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is a grid, what is not, and the two smallest adapters.
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/check_grid.hpp>
+
+#include "archetype.hpp"
+#include "identity.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid;
+using namespace nestgrid_test;
+
+namespace {
+
+struct NoSplit : ArchetypeGrid {
+    void split() const = delete;
+};
+struct NoChildren : ArchetypeGrid {
+    void children() const = delete;
+};
+struct NoCoarse : ArchetypeGrid {
+    void coarse() const = delete;
+};
+struct NoCount : ArchetypeGrid {
+    void coarse_count(int) const;
+};
+struct FourDimensions : ArchetypeGrid {
+    static constexpr int dimension = 4;
+};
+struct IntegerValues : ArchetypeField {
+    using value_type = int;
+};
+struct NoNewValues : ArchetypeField {
+    void new_values() const = delete;
+};
+
+static_assert(!NestedGrid<NoSplit>);
+static_assert(!NestedGrid<NoChildren>);
+static_assert(!NestedGrid<NoCoarse>);
+static_assert(!NestedGrid<NoCount>);
+static_assert(!NestedGrid<FourDimensions>);
+static_assert(!NestedGrid<int>);
+static_assert(!NodalField<IntegerValues, ArchetypeGrid>);
+static_assert(!NodalField<NoNewValues, ArchetypeGrid>);
+
+TEST(Archetype, WorksWithEveryAlgorithm) {
+    const ArchetypeGrid grid;
+    const ArchetypeField field;
+    EXPECT_FALSE(check_grid(grid, field));
+    const HierarchicalIndicator indicator(grid, field);
+    EXPECT_EQ(indicator.node_count(), 4U);
+    EXPECT_EQ(indicator.greatest(), 4);
+    EXPECT_EQ(isosurface(grid, field, 3.0, indicator, {}).surface.simplices.size(), 2U);
+    EXPECT_EQ(isosurface(grid, field, 3.0, indicator, {.threshold = 3}).surface.simplices.size(),
+              0U);
+}
+
+TEST(Identity, GivesTheSameSurfaceFromRequiredOperationsAlone) {
+    const Samples n{9, 17, 17};  // no padding: the required operations know no domain
+    const LatticeBisection<3> grid({.samples = n, .block_levels = 3});
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        const LatticeField field(grid, std::span<const float>(data.values));
+        const IdentityGrid identity(grid);
+        const IdentityField<LatticeBisection<3>, decltype(field)> same(identity, field);
+        for (const double threshold : {0.0, 0.05}) {
+            const IsosurfaceOptions options{.threshold = threshold, .cap = true};
+            const auto a = isosurface(grid, field, data.isovalue, options);
+            const auto b = isosurface(identity, same, data.isovalue, options);
+            EXPECT_EQ(a.surface.vertices, b.surface.vertices);
+            EXPECT_EQ(a.surface.simplices, b.surface.simplices);
+            EXPECT_EQ(a.surface.boundary, b.surface.boundary);
+            EXPECT_EQ(a.counts.visited, b.counts.visited);
+            EXPECT_EQ(a.error_bound, b.error_bound);
+        }
+        EXPECT_FALSE(check_grid(identity, same));
+    }
+}
+
+}  // namespace
