@@ -3,7 +3,7 @@
 #
 # Sourced by tools/demo.sh and tests/run.sh: the Debian packages they need, and how to get them.
 
-build_packages=(cmake ninja-build g++ libboost-graph-dev libvtk9-dev libcli11-dev)
+build_packages=(cmake ninja-build g++ libboost-graph-dev libvtk9-dev libcli11-dev zlib1g-dev)
 test_packages=(libgtest-dev libcgal-dev)
 picture_packages=(xvfb xauth libgl1-mesa-dri fonts-dejavu-core)
 data_packages=(mricron-data)

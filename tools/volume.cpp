@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -21,6 +22,7 @@
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLImageDataReader.h>
+#include <zlib.h>
 
 #include <nestgrid/error.hpp>
 
@@ -90,6 +92,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 struct TextHeader {
     std::map<std::string, std::string> field;
     std::uintmax_t length = 0;
+    bool ended = false;  ///< by a blank line
 
     std::vector<double> numbers(const std::string& key) const {
         std::vector<double> result;
@@ -123,7 +126,8 @@ TextHeader read_text_header(const fs::path& path, char separator, const std::str
     };
     for (int i = 0; i < 1000 && std::getline(file, line); ++i) {
         header.length += line.size() + 1;
-        if (line.find_first_not_of("\r") == std::string::npos) break;
+        header.ended = line.find_first_not_of("\r") == std::string::npos && !file.eof();
+        if (header.ended) break;
         const std::size_t at = line.find(separator);
         if (at == std::string::npos) continue;
         const std::string key = trim(lower(line.substr(0, at)));
@@ -141,12 +145,23 @@ void check_meta_sizes(const fs::path& path) {
     if (data == "LIST" || data.find('%') != std::string::npos) {
         throw IoError(path.string() + " spreads its samples over several files, which is not read");
     }
+    const bool local = lower(data) == "local";
+    const fs::path file = local ? path : path.parent_path() / data;
+    if (!fs::is_regular_file(file)) {
+        throw IoError(path.string() + " names the data file " + file.string() +
+                      ", which does not exist");
+    }
+    const double found = static_cast<double>(fs::file_size(file)) -
+                         (local ? static_cast<double>(header.length) : 0.0);
     if (lower(header.value("compresseddata")) == "true") {
         const auto size = header.numbers("compresseddatasize");
-        if (!size.empty() && lower(data) == "local" &&
-            fs::file_size(path) < header.length + static_cast<std::uintmax_t>(size[0])) {
-            truncated(path, fs::file_size(path),
-                      header.length + static_cast<std::uintmax_t>(size[0]));
+        if (size.empty()) {
+            throw IoError(path.string() +
+                          " is compressed but does not say CompressedDataSize, which is not read");
+        }
+        if (!(size[0] <= found)) {
+            truncated(file, static_cast<std::uintmax_t>(std::max(found, 0.0)),
+                      static_cast<std::uintmax_t>(size[0]));
         }
         return;
     }
@@ -161,17 +176,60 @@ void check_meta_sizes(const fs::path& path) {
     }
     double expected = size->second;
     for (const double n : header.numbers("dimsize")) expected *= n;
-    const bool local = lower(data) == "local";
-    const fs::path file = local ? path : path.parent_path() / data;
-    if (!fs::is_regular_file(file)) {
-        throw IoError(path.string() + " names the data file " + file.string() +
-                      ", which does not exist");
-    }
-    const double found = static_cast<double>(fs::file_size(file)) -
-                         (local ? static_cast<double>(header.length) : 0.0);
     if (!(expected <= found)) {
         truncated(file, static_cast<std::uintmax_t>(std::max(found, 0.0)),
                   static_cast<std::uintmax_t>(std::min(expected, 1e18)));
+    }
+}
+
+/// The bytes of a file, unpacked where it is packed with gzip.
+/// \throw IoError where it ends too early
+std::uintmax_t unpacked_size(const fs::path& path) {
+    gzFile file = gzopen(path.c_str(), "rb");
+    if (file == nullptr) throw IoError(path.string() + " cannot be opened");
+    std::vector<char> buffer(1U << 20U);
+    std::uintmax_t total = 0;
+    int count = 0;
+    while ((count = gzread(file, buffer.data(), static_cast<unsigned>(buffer.size()))) > 0) {
+        total += static_cast<std::uintmax_t>(count);
+    }
+    const int error = gzclose(file);
+    if (count < 0 || error != Z_OK) {
+        throw IoError(path.string() + " is truncated or damaged: it cannot be unpacked to its end");
+    }
+    return total;
+}
+
+/// Where the samples of a NIfTI file start.
+std::uintmax_t nifti_offset(const fs::path& path) {
+    std::array<char, 352> header{};
+    gzFile file = gzopen(path.c_str(), "rb");
+    if (file == nullptr) throw IoError(path.string() + " cannot be opened");
+    const int count = gzread(file, header.data(), header.size());
+    gzclose(file);
+    if (count < static_cast<int>(header.size())) return header.size();
+    const bool swapped = header[0] != 0x5C && header[0] != 0x1C;  // 348 or 540, low byte first
+    const auto load = [&]<class Number>(std::size_t at, Number number) {
+        std::array<char, sizeof(Number)> bytes{};
+        std::copy_n(header.begin() + static_cast<std::ptrdiff_t>(at), bytes.size(), bytes.begin());
+        if (swapped) std::reverse(bytes.begin(), bytes.end());
+        std::memcpy(&number, bytes.data(), bytes.size());
+        return number;
+    };
+    const bool second = load(0, std::int32_t{}) == 540;
+    const double offset =
+        second ? static_cast<double>(load(168, std::int64_t{})) : load(108, float{});
+    return offset > 0 && offset < 1e12 ? static_cast<std::uintmax_t>(offset) : header.size();
+}
+
+/// An XML file is complete when its last element is closed.
+void check_xml_end(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    const auto size = static_cast<std::streamoff>(fs::file_size(path));
+    file.seekg(std::max<std::streamoff>(0, size - 64));
+    const std::string tail((std::istreambuf_iterator<char>(file)), {});
+    if (tail.find("</VTKFile>") == std::string::npos) {
+        throw IoError(path.string() + " is truncated: it does not end with </VTKFile>");
     }
 }
 
@@ -255,6 +313,10 @@ Volume read_meta(const Reading& reading) {
 
 Volume read_nrrd(const Reading& reading) {
     const TextHeader header = read_text_header(reading.path, ':', "");
+    if (!header.ended) {  // VTK would look for its end for ever
+        throw IoError(reading.path.string() + " is truncated or no NRRD file: its header does not "
+                                              "end");
+    }
     if (lower(header.value("encoding")) == "raw" && header.value("data file").empty()) {
         const std::string type = header.value("type");
         double bytes = 1;  // at least
@@ -306,11 +368,19 @@ Volume read_nifti(const Reading& reading, bool compressed) {
     reader->SetFileName(reading.path.c_str());
     reader->UpdateInformation();
     reading.check();
+    std::array<int, 6> extent{};
+    reader->GetDataExtent(extent.data());
+    std::uintmax_t expected = static_cast<std::uintmax_t>(
+        vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
+    for (std::size_t d = 0; d < 3; ++d) {
+        expected *= static_cast<std::uintmax_t>(extent[2 * d + 1] - extent[2 * d] + 1);
+    }
+    expected += nifti_offset(reading.path);
+    const std::uintmax_t found =
+        compressed ? unpacked_size(reading.path) : fs::file_size(reading.path);
+    if (found < expected) truncated(reading.path, found, expected);
     Volume volume;
-    volume.image = reading.run(reader, compressed, reader->GetDataScalarType() == 0
-                                                       ? 1
-                                                       : vtkDataArray::GetDataTypeSize(
-                                                             reader->GetDataScalarType()));
+    volume.image = reading.run(reader, compressed, 1);
     set_geometry(volume);
     const vtkMatrix4x4* matrix = reader->GetSFormMatrix() != nullptr ? reader->GetSFormMatrix()
                                                                      : reader->GetQFormMatrix();
@@ -324,6 +394,7 @@ Volume read_vti(const Reading& reading, const std::string& array) {
     if (reader->CanReadFile(reading.path.c_str()) == 0) {
         throw IoError(reading.path.string() + " is no VTK image data file");
     }
+    check_xml_end(reading.path);
     reader->SetFileName(reading.path.c_str());
     Volume volume;
     volume.image = reading.run(reader, true, 1);

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Writes one small volume of 8-bit samples in every format that the program reads, and some that it
+// must refuse, to the folder given.
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include <vtkImageCast.h>
+#include <vtkImageData.h>
+#include <vtkMetaImageWriter.h>
+#include <vtkNIFTIImageWriter.h>
+#include <vtkNew.h>
+#include <vtkXMLImageDataWriter.h>
+
+namespace {
+
+constexpr int nx = 20;
+constexpr int ny = 24;
+constexpr int nz = 18;
+
+template <class Writer>
+void write(vtkImageData* image, const std::string& name) {
+    const vtkNew<Writer> writer;
+    writer->SetInputData(image);
+    writer->SetFileName(name.c_str());
+    writer->Write();
+}
+
+}  // namespace
+
+int main(int, char** argv) {
+    const std::string folder = std::string(argv[1]) + "/";
+    const vtkNew<vtkImageData> image;
+    image->SetDimensions(nx, ny, nz);
+    image->SetSpacing(0.5, 1, 2);
+    image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+    auto* samples = static_cast<unsigned char*>(image->GetScalarPointer());
+    for (int z = 0, i = 0; z < nz; ++z) {
+        for (int y = 0; y < ny; ++y) {
+            for (int x = 0; x < nx; ++x, ++i) {
+                samples[i] = static_cast<unsigned char>(
+                    250 - 20 * std::hypot(x - 9.0, y - 11.0, z - 8.0));
+                if (std::hypot(x - 9.0, y - 11.0, z - 8.0) > 12) samples[i] = 10;
+            }
+        }
+    }
+    write<vtkXMLImageDataWriter>(image, folder + "v.vti");
+    write<vtkMetaImageWriter>(image, folder + "v.mhd");
+    write<vtkMetaImageWriter>(image, folder + "v.mha");
+    write<vtkNIFTIImageWriter>(image, folder + "v.nii");
+    write<vtkNIFTIImageWriter>(image, folder + "v.nii.gz");
+    const auto size = static_cast<std::streamsize>(nx) * ny * nz;
+    std::ofstream(folder + "v.raw", std::ios::binary)
+        .write(reinterpret_cast<char*>(samples), size);
+    std::ofstream nrrd(folder + "v.nrrd", std::ios::binary);
+    nrrd << "NRRD0004\ntype: unsigned char\ndimension: 3\nsizes: 20 24 18\n"
+            "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,1,0) (0,0,2)\n"
+            "space origin: (0,0,0)\nencoding: raw\nendian: little\n\n";
+    nrrd.write(reinterpret_cast<char*>(samples), size);
+
+    const vtkNew<vtkImageCast> cast;
+    cast->SetInputData(image);
+    cast->SetOutputScalarTypeToFloat();
+    cast->Update();
+    vtkImageData* real = cast->GetOutput();
+    write<vtkXMLImageDataWriter>(real, folder + "float.vti");
+    static_cast<float*>(real->GetScalarPointer())[5 + nx * (7 + ny * 3)] =
+        std::numeric_limits<float>::quiet_NaN();
+    write<vtkXMLImageDataWriter>(real, folder + "nan.vti");
+
+    const vtkNew<vtkImageData> flat;
+    flat->SetDimensions(5, 5, 1);
+    flat->AllocateScalars(VTK_FLOAT, 1);
+    write<vtkXMLImageDataWriter>(flat, folder + "flat.vti");
+    const vtkNew<vtkImageData> colours;
+    colours->SetDimensions(5, 5, 5);
+    colours->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    write<vtkXMLImageDataWriter>(colours, folder + "colours.vti");
+    return 0;
+}
