@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <vtkObject.h>
+#include <CLI/CLI.hpp>
 
 #include <nestgrid/error.hpp>
 
@@ -138,7 +138,8 @@ int main(int argc, char** argv) {
     app.footer(
         "Examples:\n"
         "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
-        "  nestgrid isosurface head.nii.gz --value 60 --threshold 0 --threshold 5 --image head.png\n"
+        "  nestgrid isosurface head.nii.gz --value 60 --threshold 0 --threshold 5 --image "
+        "head.png\n"
         "  nestgrid isosurface ct.raw --dims 512,512,300 --type int16 --spacing 0.5,0.5,1 \\\n"
         "           --value 300 -o bone.stl\n"
         "  nestgrid info head.nii.gz");

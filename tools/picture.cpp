@@ -166,13 +166,15 @@ private:
 void write_picture(const std::vector<Panel>& panels, const fs::path& path) {
     const fs::path temporary = temporary_beside(path);
     bool drawn = std::getenv("DISPLAY") != nullptr && draw_apart(panels, temporary);
-    std::string problem = "the picture could not be drawn on an Xvfb display (is libgl1-mesa-dri "
-                          "installed?)";
+    std::string problem =
+        "the picture could not be drawn on an Xvfb display (is libgl1-mesa-dri "
+        "installed?)";
     if (!drawn) {
         const VirtualDisplay display;
         if (display.name().empty()) {
-            problem = "the picture needs an X display, and Xvfb could not be started: install the "
-                      "package xvfb";
+            problem =
+                "the picture needs an X display, and Xvfb could not be started: install the "
+                "package xvfb";
         } else {
             setenv("DISPLAY", display.name().c_str(), 1);
             drawn = draw_apart(panels, temporary);

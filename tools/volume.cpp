@@ -80,7 +80,8 @@ std::string lower(std::string text) {
 }
 
 bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+    return text.size() >= end.size() &&
+           text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 [[noreturn]] void truncated(const fs::path& path, std::uintmax_t found, std::uintmax_t expected) {
@@ -166,8 +167,8 @@ void check_meta_sizes(const fs::path& path) {
         return;
     }
     static const std::map<std::string, double> bytes{
-        {"MET_CHAR", 1},  {"MET_UCHAR", 1},     {"MET_SHORT", 2},     {"MET_USHORT", 2},
-        {"MET_INT", 4},   {"MET_UINT", 4},      {"MET_LONG", 4},      {"MET_ULONG", 4},
+        {"MET_CHAR", 1},  {"MET_UCHAR", 1},     {"MET_SHORT", 2},      {"MET_USHORT", 2},
+        {"MET_INT", 4},   {"MET_UINT", 4},      {"MET_LONG", 4},       {"MET_ULONG", 4},
         {"MET_FLOAT", 4}, {"MET_LONG_LONG", 8}, {"MET_ULONG_LONG", 8}, {"MET_DOUBLE", 8}};
     const auto size = bytes.find(header.value("elementtype"));
     if (size == bytes.end()) {
@@ -247,7 +248,8 @@ struct Reading {
         }
     }
     /// The header first; what it asks for must be plausible for the size of the file.
-    vtkSmartPointer<vtkImageData> run(vtkAlgorithm* reader, bool compressed, int sample_bytes) const {
+    vtkSmartPointer<vtkImageData> run(vtkAlgorithm* reader, bool compressed,
+                                      int sample_bytes) const {
         reader->UpdateInformation();
         check();
         std::array<int, 6> extent{0, -1, 0, -1, 0, -1};
@@ -314,22 +316,27 @@ Volume read_meta(const Reading& reading) {
 Volume read_nrrd(const Reading& reading) {
     const TextHeader header = read_text_header(reading.path, ':', "");
     if (!header.ended) {  // VTK would look for its end for ever
-        throw IoError(reading.path.string() + " is truncated or no NRRD file: its header does not "
-                                              "end");
+        throw IoError(reading.path.string() +
+                      " is truncated or no NRRD file: its header does not "
+                      "end");
     }
     if (lower(header.value("encoding")) == "raw" && header.value("data file").empty()) {
         const std::string type = header.value("type");
         double bytes = 1;  // at least
-        for (const auto& [name, size] : std::map<std::string, double>{
-                 {"short", 2}, {"int16", 2}, {"int32", 4}, {"float", 4}, {"double", 8},
-                 {"int64", 8}, {"long long", 8}}) {
+        for (const auto& [name, size] : std::map<std::string, double>{{"short", 2},
+                                                                      {"int16", 2},
+                                                                      {"int32", 4},
+                                                                      {"float", 4},
+                                                                      {"double", 8},
+                                                                      {"int64", 8},
+                                                                      {"long long", 8}}) {
             if (type.find(name) != std::string::npos) bytes = size;
         }
         if (type == "int" || type == "unsigned int" || type == "uint") bytes = 4;
         double expected = bytes;
         for (const double n : header.numbers("sizes")) expected *= n;
-        const double found = static_cast<double>(fs::file_size(reading.path)) -
-                             static_cast<double>(header.length);
+        const double found =
+            static_cast<double>(fs::file_size(reading.path)) - static_cast<double>(header.length);
         if (!(expected <= found)) {
             truncated(reading.path, static_cast<std::uintmax_t>(std::max(found, 0.0)),
                       static_cast<std::uintmax_t>(std::min(expected, 1e18)));
@@ -370,8 +377,8 @@ Volume read_nifti(const Reading& reading, bool compressed) {
     reading.check();
     std::array<int, 6> extent{};
     reader->GetDataExtent(extent.data());
-    std::uintmax_t expected = static_cast<std::uintmax_t>(
-        vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
+    std::uintmax_t expected =
+        static_cast<std::uintmax_t>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
     for (std::size_t d = 0; d < 3; ++d) {
         expected *= static_cast<std::uintmax_t>(extent[2 * d + 1] - extent[2 * d] + 1);
     }
@@ -382,8 +389,8 @@ Volume read_nifti(const Reading& reading, bool compressed) {
     Volume volume;
     volume.image = reading.run(reader, compressed, 1);
     set_geometry(volume);
-    const vtkMatrix4x4* matrix = reader->GetSFormMatrix() != nullptr ? reader->GetSFormMatrix()
-                                                                     : reader->GetQFormMatrix();
+    const vtkMatrix4x4* matrix =
+        reader->GetSFormMatrix() != nullptr ? reader->GetSFormMatrix() : reader->GetQFormMatrix();
     if (matrix != nullptr) set_direction(volume, matrix);
     return volume;
 }
@@ -456,9 +463,10 @@ void check_samples(const Volume& volume, const fs::path& path) {
             if (std::isfinite(static_cast<double>(samples[i]))) continue;
             const auto nx = static_cast<std::size_t>(n[0]);
             const auto ny = static_cast<std::size_t>(n[1]);
-            throw InvalidInput(path.string() + ": the sample at (" + std::to_string(i % nx) + ", " +
-                               std::to_string(i / nx % ny) + ", " + std::to_string(i / nx / ny) +
-                               ") is " + (std::isnan(static_cast<double>(samples[i])) ? "not a number" : "infinite"));
+            throw InvalidInput(
+                path.string() + ": the sample at (" + std::to_string(i % nx) + ", " +
+                std::to_string(i / nx % ny) + ", " + std::to_string(i / nx / ny) + ") is " +
+                (std::isnan(static_cast<double>(samples[i])) ? "not a number" : "infinite"));
         }
     });
 }

@@ -43,8 +43,8 @@ template <class Function>
 auto with_samples(const Volume& volume, Function&& function) {
     void* data = volume.image->GetScalarPointer();
     const auto call = [&]<class Sample>(Sample) {
-        return function(std::span<const Sample>(static_cast<const Sample*>(data),
-                                                volume.sample_count()));
+        return function(
+            std::span<const Sample>(static_cast<const Sample*>(data), volume.sample_count()));
     };
     if (volume.type == "uint8") return call(std::uint8_t{});
     if (volume.type == "int8") return call(std::int8_t{});

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause
  *
  * A grid in plain C: a square cut into triangles, each refined into four as long as the circle
- * passes close by, so that hanging nodes occur. An element stores its corners and its level; nothing
- * else exists in memory.
+ * passes close by, so that hanging nodes occur. An element stores its corners and its level;
+ * nothing else exists in memory.
  */
 #include <math.h>
 #include <stdio.h>

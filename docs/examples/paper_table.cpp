@@ -33,8 +33,9 @@ int main() {
     const nestgrid::LatticeField field(grid, std::span<const float>(samples));
     const nestgrid::HierarchicalIndicator indicator(grid, field);
 
-    std::printf("| threshold | triangles (paper) | triangles | visited (paper) | visited | inspect "
-                "calls | extracted | open edges | bound |\n");
+    std::printf(
+        "| threshold | triangles (paper) | triangles | visited (paper) | visited | inspect "
+        "calls | extracted | open edges | bound |\n");
     std::printf("|---|---|---|---|---|---|---|---|---|\n");
     bool closed = true;
     for (const Row& row : paper) {

@@ -79,9 +79,9 @@ public:
     }
     std::size_t node_count() const { return table_->node_count; }
     void corner_positions(const Element& e, std::span<Point> out, AnyContext& c) const {
-        check(table_->corner_positions(table_->self, c.state(), &e, out.size(),
-                                       detail::as_rows(out)),
-              "corner_positions");
+        check(
+            table_->corner_positions(table_->self, c.state(), &e, out.size(), detail::as_rows(out)),
+            "corner_positions");
     }
     void new_positions(const Element& e, NodeMask which, std::span<Point> out,
                        AnyContext& c) const {
@@ -158,8 +158,7 @@ public:
         return feature == Feature::gradients && table_.corner_gradients != nullptr;
     }
     void corner_gradients(const nestgrid_element& e, std::span<Point> out, AnyContext& c) const {
-        check(table_.corner_gradients(table_.self, c.state(), &e, out.size(),
-                                      detail::as_rows(out)),
+        check(table_.corner_gradients(table_.self, c.state(), &e, out.size(), detail::as_rows(out)),
               "corner_gradients");
     }
 

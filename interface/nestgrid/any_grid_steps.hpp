@@ -24,8 +24,8 @@ inline Rule rule_from_table(const nestgrid_rule& r) {
         bad("its tables are NULL");
     }
     std::vector<Stencil> nodes;
-    for (const nestgrid_stencil& s : std::span(r.new_nodes, static_cast<std::size_t>(
-                                                                r.new_node_count))) {
+    for (const nestgrid_stencil& s :
+         std::span(r.new_nodes, static_cast<std::size_t>(r.new_node_count))) {
         if (s.count < 0 || s.count > max_corners) bad("a stencil has more than 8 parents");
         Stencil stencil;
         stencil.count = static_cast<std::uint8_t>(s.count);
@@ -164,8 +164,9 @@ AnyField<Real, component_count>::AnyField(const nestgrid_field& given) : table_{
     }
     std::memcpy(&table_, &given, std::min(given.size, sizeof(table_)));
     if (table_.value_type != detail::value_type_code<Real>()) {
-        throw InvalidInput("the values of the field are of another type, float or double, than "
-                           "asked for");
+        throw InvalidInput(
+            "the values of the field are of another type, float or double, than "
+            "asked for");
     }
     if (table_.components != component_count) {
         throw InvalidInput("the field has " + std::to_string(table_.components) +

@@ -23,24 +23,24 @@ namespace nestgrid {
 
 /// What can be violated.
 enum class Law : std::uint8_t {
-    rule,             ///< weights, children inside their father, volume, orientation of a rule
-    rule_shape,       ///< split() gave a rule for another shape
-    split_repeats,    ///< split() answers the same when asked twice
-    coarse_element,   ///< finite, not flat, oriented as said, distinct ids, right dimension
-    coarse_node,      ///< one id, one place
-    coarse_face,      ///< a face belongs to at most two coarse elements
-    key_place,        ///< one key, one place
-    one_stencil,      ///< one node, one key, one set of parents and weights
-    stable_key,       ///< own keys do not change from father to child
-    dense_key,        ///< own keys below node_count()
-    hanging_mask,     ///< a node that hangs is in the constrained mask
-    conforming,       ///< a grid that says so has no hanging node
-    hanging_value,    ///< a hanging node's value is its interpolant
-    value_present,    ///< the field gives all values
+    rule,            ///< weights, children inside their father, volume, orientation of a rule
+    rule_shape,      ///< split() gave a rule for another shape
+    split_repeats,   ///< split() answers the same when asked twice
+    coarse_element,  ///< finite, not flat, oriented as said, distinct ids, right dimension
+    coarse_node,     ///< one id, one place
+    coarse_face,     ///< a face belongs to at most two coarse elements
+    key_place,       ///< one key, one place
+    one_stencil,     ///< one node, one key, one set of parents and weights
+    stable_key,      ///< own keys do not change from father to child
+    dense_key,       ///< own keys below node_count()
+    hanging_mask,    ///< a node that hangs is in the constrained mask
+    conforming,      ///< a grid that says so has no hanging node
+    hanging_value,   ///< a hanging node's value is its interpolant
+    value_present,   ///< the field gives all values
     value_finite,
-    value_unique,     ///< one node, one value
-    position,         ///< own positions: those of eq. (1), and one node, one position
-    depth,            ///< the hierarchy ends
+    value_unique,  ///< one node, one value
+    position,      ///< own positions: those of eq. (1), and one node, one position
+    depth,         ///< the hierarchy ends
 };
 
 struct GridViolation {

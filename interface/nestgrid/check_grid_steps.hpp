@@ -107,13 +107,13 @@ private:
     Context<Grid> context_;
     bool own_keys_ = false;
     CoarseElement<Element> coarse_;
-    double size_ = 0;           // of the coarse element
+    double size_ = 0;  // of the coarse element
     double largest_value_ = 0;
     std::vector<Step> steps_;
     std::set<const Rule*> rules_;
     std::map<std::uint64_t, std::pair<Point, std::size_t>> coarse_nodes_;
     KeyTable<NodeKey, int> coarse_faces_;
-    KeyTable<NodeKey, Node> nodes_;                // by place
+    KeyTable<NodeKey, Node> nodes_;  // by place
     KeyTable<NodeKey, NodeKey> place_of_key_;
     KeyTable<NodeKey, NodeKey> place_of_derived_;  // new nodes only
     std::vector<Leaf> leaves_;
@@ -127,28 +127,26 @@ void GridChecker<Grid, Field>::check_coarse(std::size_t i) {
     const Topology& t = topology(c.shape);
     if (t.dimension != Grid::dimension) {
         fail(Law::coarse_element, who + " is a " + std::string(t.name) +
-                                      " on a grid of dimension " +
-                                      std::to_string(Grid::dimension));
+                                      " on a grid of dimension " + std::to_string(Grid::dimension));
     }
     for (std::size_t k = 0; k < t.corners; ++k) {
         if (!std::isfinite(norm(c.corners[k]))) {
-            fail(Law::coarse_element, who + " has a corner " + std::to_string(k) +
-                                          " whose coordinates are not finite");
+            fail(Law::coarse_element,
+                 who + " has a corner " + std::to_string(k) + " whose coordinates are not finite");
         }
         for (std::size_t j = 0; j < k; ++j) {
             if (c.ids[j] == c.ids[k]) {
-                fail(Law::coarse_element, who + " has the node " + std::to_string(c.ids[k]) +
-                                              " at two of its corners");
+                fail(Law::coarse_element,
+                     who + " has the node " + std::to_string(c.ids[k]) + " at two of its corners");
             }
         }
     }
     for (std::size_t k = 0; k < t.corners; ++k) {
         const auto [at, is_new] = coarse_nodes_.insert({c.ids[k], {c.corners[k], i}});
         if (!is_new && at->second.first != c.corners[k]) {
-            fail(Law::coarse_node, "coarse node " + std::to_string(c.ids[k]) +
-                                       " is at one place in coarse element " +
-                                       std::to_string(at->second.second) + " and at another in " +
-                                       who);
+            fail(Law::coarse_node,
+                 "coarse node " + std::to_string(c.ids[k]) + " is at one place in coarse element " +
+                     std::to_string(at->second.second) + " and at another in " + who);
         }
     }
     const double volume = measure(c.shape, std::span(c.corners).first(t.corners));
@@ -209,7 +207,8 @@ void GridChecker<Grid, Field>::walk_coarse(std::size_t i) {
     std::array<Real, max_corners * components_> value;
     const NodeMask missing = call_coarse_values(
         field_, context_, i, std::span<Real>(value.data(), corners * components_));
-    if (missing != 0) fail(Law::value_present, "the field lacks a value at a corner of " + name(s.step));
+    if (missing != 0)
+        fail(Law::value_present, "the field lacks a value at a corner of " + name(s.step));
     std::array<NodeKey, max_corners> own{};
     if constexpr (may_offer<Grid>(Feature::own_keys)) {
         if (own_keys_) {

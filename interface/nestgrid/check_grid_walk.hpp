@@ -48,8 +48,8 @@ template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_own_keys(const State& s, std::span<const NodeKey> own) {
     for (std::size_t k = 0; k < own.size(); ++k) {
         if (own[k] != s.corner[k].key) {
-            fail(Law::stable_key, "the key of corner " + std::to_string(k) + " of " +
-                                      name(s.step) + " is not the one its father gave");
+            fail(Law::stable_key, "the key of corner " + std::to_string(k) + " of " + name(s.step) +
+                                      " is not the one its father gave");
         }
     }
 }
@@ -138,8 +138,8 @@ template <class Grid, class Field>
 void GridChecker<Grid, Field>::walk(const State& s) {
     const auto corners = static_cast<std::size_t>(topology(s.shape).corners);
     if (s.level > options_.max_depth) {
-        fail(Law::depth, name(s.step) + " lies deeper than " + std::to_string(options_.max_depth) +
-                             " levels");
+        fail(Law::depth,
+             name(s.step) + " lies deeper than " + std::to_string(options_.max_depth) + " levels");
     }
     if constexpr (may_offer<Grid>(Feature::own_keys)) {
         if (own_keys_) {

@@ -5,13 +5,14 @@
 // on it. Everything else is derived by the library.
 //
 // A grid is a class with
-//     using Element = ...;                         a value: copied without heap, default-constructible
-//     static constexpr int dimension = 2;          of the elements: 1, 2 or 3
+//     using Element = ...;                         a value: copied without heap,
+//     default-constructible static constexpr int dimension = 2;          of the elements: 1, 2 or 3
 //     std::size_t coarse_count() const;
 //     CoarseElement<Element> coarse(std::size_t i) const;
-//     const Rule* split(const Element& e) const;   nullptr on a leaf; rules live as long as the grid
-//     void children(const Element& e, std::span<Element> out) const;
-//                                                  out has one place per child of the rule, in order
+//     const Rule* split(const Element& e) const;   nullptr on a leaf; rules live as long as the
+//     grid void children(const Element& e, std::span<Element> out) const;
+//                                                  out has one place per child of the rule, in
+//                                                  order
 // and a field on it one with
 //     using value_type = float or double;
 //     static constexpr int components = 1;         optional
@@ -74,9 +75,10 @@ constexpr int components_of() {
 }
 
 template <class G>
-concept HasElement = requires { typename G::Element; } &&
-                     std::copyable<typename G::Element> &&
-                     std::default_initializable<typename G::Element>;
+concept HasElement = requires {
+    typename G::Element;
+}
+&&std::copyable<typename G::Element>&& std::default_initializable<typename G::Element>;
 template <class G>
 concept HasDimension = requires {
     requires G::dimension >= 1 && G::dimension <= 3;
@@ -90,51 +92,52 @@ concept HasCoarse = HasElement<G> && requires(const G& g) {
     { g.coarse(std::size_t{}) } -> std::same_as<CoarseElement<typename G::Element>>;
 };
 template <class G>
-concept HasSplit =
-    HasElement<G> &&
-    (requires(const G& g, const typename G::Element& e) {
+concept HasSplit = HasElement<G> &&(
+    requires(const G& g, const typename G::Element& e) {
         { g.split(e) } -> std::same_as<const Rule*>;
-    } || requires(const G& g, const typename G::Element& e, typename ContextOf<G>::type& c) {
+    } ||
+    requires(const G& g, const typename G::Element& e, typename ContextOf<G>::type& c) {
         { g.split(e, c) } -> std::same_as<const Rule*>;
     });
 template <class G>
-concept HasChildren =
-    HasElement<G> &&
-    (requires(const G& g, const typename G::Element& e, std::span<typename G::Element> out) {
+concept HasChildren = HasElement<G> &&(
+    requires(const G& g, const typename G::Element& e, std::span<typename G::Element> out) {
         g.children(e, out);
-    } || requires(const G& g, const typename G::Element& e, std::span<typename G::Element> out,
-                  typename ContextOf<G>::type& c) { g.children(e, out, c); });
+    } ||
+    requires(const G& g, const typename G::Element& e, std::span<typename G::Element> out,
+             typename ContextOf<G>::type& c) { g.children(e, out, c); });
 
 template <class F>
-concept HasValueType = requires { typename F::value_type; } &&
-                       (std::same_as<typename F::value_type, float> ||
-                        std::same_as<typename F::value_type, double>);
+concept HasValueType = requires {
+    typename F::value_type;
+}
+&&(std::same_as<typename F::value_type, float> || std::same_as<typename F::value_type, double>);
 template <class F, class G>
-concept HasCoarseValues =
-    HasValueType<F> &&
-    (requires(const F& f, std::size_t i, std::span<typename F::value_type> out) {
+concept HasCoarseValues = HasValueType<F> &&(
+    requires(const F& f, std::size_t i, std::span<typename F::value_type> out) {
         { f.coarse_values(i, out) } -> std::same_as<NodeMask>;
-    } || requires(const F& f, std::size_t i, std::span<typename F::value_type> out,
-                  typename ContextOf<G>::type& c) {
+    } ||
+    requires(const F& f, std::size_t i, std::span<typename F::value_type> out,
+             typename ContextOf<G>::type& c) {
         { f.coarse_values(i, out, c) } -> std::same_as<NodeMask>;
     });
 template <class F, class G>
-concept HasNewValues =
-    HasValueType<F> && HasElement<G> &&
-    (requires(const F& f, const typename G::Element& e, NodeMask m,
-              std::span<typename F::value_type> out) {
+concept HasNewValues = HasValueType<F> && HasElement<G> &&(
+    requires(const F& f, const typename G::Element& e, NodeMask m,
+             std::span<typename F::value_type> out) {
         { f.new_values(e, m, out) } -> std::same_as<NodeMask>;
-    } || requires(const F& f, const typename G::Element& e, NodeMask m,
-                  std::span<typename F::value_type> out, typename ContextOf<G>::type& c) {
+    } ||
+    requires(const F& f, const typename G::Element& e, NodeMask m,
+             std::span<typename F::value_type> out, typename ContextOf<G>::type& c) {
         { f.new_values(e, m, out, c) } -> std::same_as<NodeMask>;
     });
 
 }  // namespace detail
 
 template <class G>
-concept NestedGrid = detail::HasElement<G> && detail::HasDimension<G> &&
-                     detail::HasCoarseCount<G> && detail::HasCoarse<G> && detail::HasSplit<G> &&
-                     detail::HasChildren<G>;
+concept NestedGrid =
+    detail::HasElement<G> && detail::HasDimension<G> && detail::HasCoarseCount<G> &&
+    detail::HasCoarse<G> && detail::HasSplit<G> && detail::HasChildren<G>;
 
 template <class F, class G>
 concept NodalField =

@@ -1,13 +1,15 @@
 /* SPDX-FileCopyrightText: the nestgrid authors
  * SPDX-License-Identifier: BSD-3-Clause
  *
- * The interface as a table of C functions, for C and Fortran codes: what grid.hpp and operations.hpp
- * ask of a C++ class, with the same names and meaning. docs/examples/c_grid.c is a complete grid.
+ * The interface as a table of C functions, for C and Fortran codes: what grid.hpp and
+ * operations.hpp ask of a C++ class, with the same names and meaning. docs/examples/c_grid.c is a
+ * complete grid.
  *
  * All functions are reentrant and return 0, or another number where they fail; nothing is thrown
  * through them. `context` is what make_context returned for the task that calls, or NULL. Optional
- * functions may be NULL. `count` is the number of nodes that `out` has room for. `size` is sizeof the
- * table as its author compiled it, so that tables can grow: what lies beyond it counts as NULL or 0.
+ * functions may be NULL. `count` is the number of nodes that `out` has room for. `size` is sizeof
+ * the table as its author compiled it, so that tables can grow: what lies beyond it counts as NULL
+ * or 0.
  */
 #ifndef NESTGRID_H
 #define NESTGRID_H
@@ -90,10 +92,9 @@ typedef struct nestgrid_grid {
     size_t node_count; /* own keys lie below it; 0 where they are not dense */
     int (*corner_positions)(const void* self, void* context, const nestgrid_element* e,
                             size_t count, double (*out)[3]);
-    int (*new_positions)(const void* self, void* context, const nestgrid_element* e,
-                         uint64_t which, size_t count, double (*out)[3]);
-    int (*constrained)(const void* self, void* context, const nestgrid_element* e,
-                       uint64_t* nodes);
+    int (*new_positions)(const void* self, void* context, const nestgrid_element* e, uint64_t which,
+                         size_t count, double (*out)[3]);
+    int (*constrained)(const void* self, void* context, const nestgrid_element* e, uint64_t* nodes);
     int conforming; /* not 0: no node hangs */
     int (*masked)(const void* self, void* context, const nestgrid_element* e, int* is_masked);
     int (*outside)(const void* self, void* context, const nestgrid_element* e, uint64_t* nodes);

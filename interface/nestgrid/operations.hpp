@@ -79,18 +79,19 @@ namespace detail {
 
 /// Calls an operation with the context where it takes one. `model` is any grid or field, `call` a
 /// generic lambda that forwards to the member.
-#define NESTGRID_OPERATION(name)                                                     \
-    template <class Model, class Ctx, class... Args>                                 \
-    concept offers_##name =                                                          \
-        requires(const Model& m, Ctx& c, Args&&... args) { m.name(args..., c); } ||  \
-        requires(const Model& m, Args&&... args) { m.name(args...); };               \
-    template <class Model, class Ctx, class... Args>                                 \
-    decltype(auto) call_##name(const Model& m, Ctx& c, Args&&... args) {             \
-        if constexpr (requires { m.name(args..., c); }) {                            \
-            return m.name(args..., c);                                               \
-        } else {                                                                     \
-            return m.name(args...);                                                  \
-        }                                                                            \
+#define NESTGRID_OPERATION(name)                                               \
+    template <class Model, class Ctx, class... Args>                           \
+    concept offers_##name = requires(const Model& m, Ctx& c, Args&&... args) { \
+        m.name(args..., c);                                                    \
+    }                                                                          \
+    || requires(const Model& m, Args&&... args) { m.name(args...); };          \
+    template <class Model, class Ctx, class... Args>                           \
+    decltype(auto) call_##name(const Model& m, Ctx& c, Args&&... args) {       \
+        if constexpr (requires { m.name(args..., c); }) {                      \
+            return m.name(args..., c);                                         \
+        } else {                                                               \
+            return m.name(args...);                                            \
+        }                                                                      \
     }
 
 NESTGRID_OPERATION(split)
@@ -126,7 +127,8 @@ constexpr unsigned static_features() {
     const bool keys = offers_corner_keys<Grid, C, E, std::span<NodeKey>> &&
                       offers_new_keys<Grid, C, E, std::span<NodeKey>>;
     add(Feature::own_keys, keys);
-    add(Feature::dense_keys, keys && requires(const Grid& g) { g.node_count(); });
+    add(
+        Feature::dense_keys, keys && requires(const Grid& g) { g.node_count(); });
     add(Feature::own_positions, offers_corner_positions<Grid, C, E, std::span<Point>>);
     add(Feature::new_positions, offers_new_positions<Grid, C, E, NodeMask, std::span<Point>>);
     add(Feature::constrained, offers_constrained<Grid, C, E>);

@@ -43,8 +43,8 @@ struct Stencil {
     std::array<std::uint8_t, max_corners> parent{};  ///< nodes of the rule, earlier than this one
     std::array<double, max_corners> weight{};
     std::uint8_t number = 0;  ///< tells apart stencils of equal parents and equal order of weights
-    Mean mean = Mean::weighted;                     // derived
-    std::array<std::uint8_t, max_corners> rank{};   // derived: 0 for the largest weight, and so on
+    Mean mean = Mean::weighted;                    // derived
+    std::array<std::uint8_t, max_corners> rank{};  // derived: 0 for the largest weight, and so on
 
     bool operator==(const Stencil&) const = default;
 };

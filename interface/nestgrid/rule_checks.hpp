@@ -157,8 +157,8 @@ inline std::optional<std::string> find_child_violation(const Rule& rule) {
 
 /// Whether a loop of corners runs upwards after its least one: its sense, whatever its start.
 inline bool runs_upwards(std::span<const std::uint8_t> loop) {
-    const auto least = static_cast<std::size_t>(std::min_element(loop.begin(), loop.end()) -
-                                                loop.begin());
+    const auto least =
+        static_cast<std::size_t>(std::min_element(loop.begin(), loop.end()) - loop.begin());
     const std::size_t n = loop.size();
     return n == 2 ? least == 0 : loop[(least + 1) % n] < loop[(least + n - 1) % n];
 }
@@ -184,16 +184,14 @@ inline std::optional<std::string> find_tiling_violation(const Rule& rule) {
                 face[i] = child.corner[t.face[f].corner[i]];
                 common &= incidence[face[i]];
             }
-            const bool up = t.dimension == 1
-                                ? f == 1
-                                : runs_upwards(std::span(face).first(t.face[f].corners));
+            const bool up =
+                t.dimension == 1 ? f == 1 : runs_upwards(std::span(face).first(t.face[f].corners));
             std::sort(face.begin(), face.end());
             if (common == 0) ++uses[face][up == (child.orientation > 0) ? 1 : 0];
         }
     }
-    const double parent =
-        signed_reference_measure(rule.parent, std::span(nodes).first(
-                                                  static_cast<std::size_t>(rule.corner_count())));
+    const double parent = signed_reference_measure(
+        rule.parent, std::span(nodes).first(static_cast<std::size_t>(rule.corner_count())));
     if (!(std::abs(volume - parent) < rule_tolerance)) {
         return name + "volume lost: the children hold " + std::to_string(volume / parent) +
                " of their father";
@@ -209,8 +207,7 @@ inline std::optional<std::string> find_tiling_violation(const Rule& rule) {
 
 }  // namespace detail
 
-inline Stencil weighted_mean_of(std::initializer_list<std::pair<int, double>> parents,
-                                int number) {
+inline Stencil weighted_mean_of(std::initializer_list<std::pair<int, double>> parents, int number) {
     Stencil s;
     for (const auto& [parent, weight] : parents) {
         if (s.count == max_corners) throw InvalidInput("a stencil has at most 8 parents");

@@ -24,15 +24,13 @@ inline const Rule& bisection_rule(Shape shape, int tag) {
             first.corner[at] = static_cast<std::uint8_t>(i == k ? corners : i);
             second.corner[at] = static_cast<std::uint8_t>(i < k ? i + 1 : i == k ? corners : i);
         }
-        return make_rule("bisection of a " + std::string(topology(s).name) + ", tag " +
-                             std::to_string(k),
-                         s, {mean_of({0, k})}, {first, second});
+        return make_rule(
+            "bisection of a " + std::string(topology(s).name) + ", tag " + std::to_string(k), s,
+            {mean_of({0, k})}, {first, second});
     };
-    static const std::array<Rule, 2> triangle{build(Shape::triangle, 1),
-                                              build(Shape::triangle, 2)};
-    static const std::array<Rule, 3> tetrahedron{build(Shape::tetrahedron, 1),
-                                                 build(Shape::tetrahedron, 2),
-                                                 build(Shape::tetrahedron, 3)};
+    static const std::array<Rule, 2> triangle{build(Shape::triangle, 1), build(Shape::triangle, 2)};
+    static const std::array<Rule, 3> tetrahedron{
+        build(Shape::tetrahedron, 1), build(Shape::tetrahedron, 2), build(Shape::tetrahedron, 3)};
     const auto at = static_cast<std::size_t>(tag - 1);
     return shape == Shape::triangle ? triangle.at(at) : tetrahedron.at(at);
 }
@@ -41,18 +39,17 @@ inline const Rule& bisection_rule(Shape shape, int tag) {
 /// the midpoint of the edge 02 to that of the edge 13 (Bey 1995).
 inline const Rule& red_tetrahedron_rule() {
     // 4: 01, 5: 02, 6: 03, 7: 12, 8: 13, 9: 23
-    static const Rule rule = make_rule(
-        "red refinement of a tetrahedron", Shape::tetrahedron,
-        {mean_of({0, 1}), mean_of({0, 2}), mean_of({0, 3}), mean_of({1, 2}), mean_of({1, 3}),
-         mean_of({2, 3})},
-        {{Shape::tetrahedron, {0, 4, 5, 6}, 1, {}},
-         {Shape::tetrahedron, {4, 1, 7, 8}, 1, {}},
-         {Shape::tetrahedron, {5, 7, 2, 9}, 1, {}},
-         {Shape::tetrahedron, {6, 8, 9, 3}, 1, {}},
-         {Shape::tetrahedron, {4, 5, 6, 8}, 1, {}},
-         {Shape::tetrahedron, {4, 5, 7, 8}, -1, {}},
-         {Shape::tetrahedron, {5, 6, 8, 9}, 1, {}},
-         {Shape::tetrahedron, {5, 7, 8, 9}, -1, {}}});
+    static const Rule rule = make_rule("red refinement of a tetrahedron", Shape::tetrahedron,
+                                       {mean_of({0, 1}), mean_of({0, 2}), mean_of({0, 3}),
+                                        mean_of({1, 2}), mean_of({1, 3}), mean_of({2, 3})},
+                                       {{Shape::tetrahedron, {0, 4, 5, 6}, 1, {}},
+                                        {Shape::tetrahedron, {4, 1, 7, 8}, 1, {}},
+                                        {Shape::tetrahedron, {5, 7, 2, 9}, 1, {}},
+                                        {Shape::tetrahedron, {6, 8, 9, 3}, 1, {}},
+                                        {Shape::tetrahedron, {4, 5, 6, 8}, 1, {}},
+                                        {Shape::tetrahedron, {4, 5, 7, 8}, -1, {}},
+                                        {Shape::tetrahedron, {5, 6, 8, 9}, 1, {}},
+                                        {Shape::tetrahedron, {5, 7, 8, 9}, -1, {}}});
     return rule;
 }
 
@@ -78,8 +75,8 @@ inline const Rule& dyadic_rule(Shape shape) {
         };
         for (std::size_t e = 0; e < t.edges; ++e) add({t.edge[e][0], t.edge[e][1]});
         for (std::size_t f = 0; n == 3 && f < t.faces; ++f) {
-            add({t.face[f].tensor_corner(0), t.face[f].tensor_corner(1),
-                 t.face[f].tensor_corner(2), t.face[f].tensor_corner(3)});
+            add({t.face[f].tensor_corner(0), t.face[f].tensor_corner(1), t.face[f].tensor_corner(2),
+                 t.face[f].tensor_corner(3)});
         }
         if (n == 2) add({0, 1, 2, 3});
         if (n == 3) add({0, 1, 2, 3, 4, 5, 6, 7});
@@ -101,8 +98,9 @@ inline const Rule& dyadic_rule(Shape shape) {
     static const Rule segment = build(Shape::segment);
     static const Rule quadrilateral = build(Shape::quadrilateral);
     static const Rule hexahedron = build(Shape::hexahedron);
-    return shape == Shape::segment ? segment
-                                   : shape == Shape::quadrilateral ? quadrilateral : hexahedron;
+    return shape == Shape::segment         ? segment
+           : shape == Shape::quadrilateral ? quadrilateral
+                                           : hexahedron;
 }
 
 }  // namespace nestgrid

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include <nestgrid/derive_hanging.hpp>
 #include <nestgrid/nestgrid.h>
+#include <nestgrid/derive_hanging.hpp>
 #include <nestgrid/operations.hpp>
 
 namespace nestgrid {
@@ -106,8 +106,7 @@ struct GridTable {
                 const Element element = load(e);
                 std::array<Element, max_children> children;
                 const std::size_t count = call_split(grid(self), ctx, element)->children.size();
-                call_children(grid(self), ctx, element,
-                              std::span<Element>(children.data(), count));
+                call_children(grid(self), ctx, element, std::span<Element>(children.data(), count));
                 for (std::size_t k = 0; k < count; ++k) store(children[k], out + k);
             });
         });
@@ -119,7 +118,8 @@ struct GridTable {
             with(context, [&](auto& ctx) {
                 call_corner_keys(grid(self), ctx, load(e), std::span<NodeKey>(keys));
             });
-            for (std::size_t k = 0; k < keys.size(); ++k) out[k] = static_cast<std::uint64_t>(keys[k]);
+            for (std::size_t k = 0; k < keys.size(); ++k)
+                out[k] = static_cast<std::uint64_t>(keys[k]);
         });
     }
     static int new_keys(const void* self, void* context, const nestgrid_element* e,
@@ -162,10 +162,9 @@ struct GridTable {
     }
     static int masked(const void* self, void* context, const nestgrid_element* e, int* answer) {
         return guarded([&] {
-            *answer = with(context,
-                           [&](auto& ctx) { return call_masked(grid(self), ctx, load(e)); })
-                          ? 1
-                          : 0;
+            *answer =
+                with(context, [&](auto& ctx) { return call_masked(grid(self), ctx, load(e)); }) ? 1
+                                                                                                : 0;
         });
     }
     static int outside(const void* self, void* context, const nestgrid_element* e,

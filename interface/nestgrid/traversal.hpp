@@ -38,9 +38,9 @@ struct Decision {
 /// The refinement of an element, or that it is a leaf.
 struct Split {
     const Rule* rule = nullptr;
-    NodeMask constrained = 0;        ///< new nodes that hang
-    NodeMask outside = 0;            ///< see the operation `outside`
-    std::span<const NodeKey> keys;   ///< of the new nodes, where the visitor needs keys
+    NodeMask constrained = 0;       ///< new nodes that hang
+    NodeMask outside = 0;           ///< see the operation `outside`
+    std::span<const NodeKey> keys;  ///< of the new nodes, where the visitor needs keys
 };
 
 /// What the visitor wants to know of every element.
@@ -91,16 +91,15 @@ struct ElementState {
     static constexpr std::size_t components =
         static_cast<std::size_t>(detail::components_of<Field>());
     static constexpr std::size_t capacity = detail::corner_capacity<Grid>();
-    static constexpr bool carries_keys =
-        needs.keys && !detail::by_heart<Grid>(Feature::own_keys);
+    static constexpr bool carries_keys = needs.keys && !detail::by_heart<Grid>(Feature::own_keys);
     static constexpr bool carries_positions =
         needs.positions && !detail::by_heart<Grid>(Feature::own_positions);
 
     ElementOf<Grid> element;
-    Context<Grid>* context;  ///< of the task that walks
-    std::size_t coarse;  ///< number of the coarse element it descends from
+    Context<Grid>* context;      ///< of the task that walks
+    std::size_t coarse;          ///< number of the coarse element it descends from
     const ElementState* father;  ///< nullptr for a coarse element
-    int level;           ///< 0 for coarse elements
+    int level;                   ///< 0 for coarse elements
     Shape shape;
     std::int8_t orientation;
     std::uint8_t boundary;      ///< faces on the boundary of the domain, one bit each
@@ -132,8 +131,7 @@ public:
 
     /// \param hanging nodes that hang, where the grid does not say so itself; may be null
     /// \throw GridError where a coarse element has a shape of another dimension than the grid
-    explicit Traversal(const Grid& grid, const Field& field,
-                       const HangingNodes* hanging = nullptr)
+    explicit Traversal(const Grid& grid, const Field& field, const HangingNodes* hanging = nullptr)
         : grid_{&grid}, field_{&field}, hanging_{hanging} {
         boundary_faces_ = offers(grid, Feature::boundary_faces);
         if (!boundary_faces_) boundary_ = coarse_boundary(grid);
@@ -163,9 +161,7 @@ public:
     }
 
     /// Keys of the corners.
-    void keys(const State& s, std::span<NodeKey> out) const
-        requires(needs.keys)
-    {
+    void keys(const State& s, std::span<NodeKey> out) const requires(needs.keys) {
         if constexpr (State::carries_keys) {
             std::copy_n(s.key.begin(), s.corner_count(), out.begin());
         } else {
@@ -174,9 +170,7 @@ public:
     }
 
     /// Positions of the corners.
-    void positions(const State& s, std::span<Point> out) const
-        requires(needs.positions)
-    {
+    void positions(const State& s, std::span<Point> out) const requires(needs.positions) {
         if (own_positions_) {
             if constexpr (may_offer<Grid>(Feature::own_positions)) {
                 detail::call_corner_positions(*grid_, *s.context, s.element, exact(s, out));

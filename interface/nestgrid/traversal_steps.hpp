@@ -52,9 +52,8 @@ std::vector<std::uint8_t> Traversal<Grid, Field, needs>::coarse_boundary(const G
         const auto coarse = detail::call_coarse(grid, context, i);
         const Topology& t = topology(coarse.shape);
         if (t.dimension != Grid::dimension) {
-            throw GridError("coarse element " + std::to_string(i) + " is a " +
-                            std::string(t.name) + ", but the grid has dimension " +
-                            std::to_string(Grid::dimension));
+            throw GridError("coarse element " + std::to_string(i) + " is a " + std::string(t.name) +
+                            ", but the grid has dimension " + std::to_string(Grid::dimension));
         }
         for (std::uint8_t f = 0; f < t.faces; ++f) {
             NodeKey sum = 0;
@@ -115,9 +114,8 @@ bool Traversal<Grid, Field, needs>::make_coarse(std::size_t i, State& s) const {
 template <class Grid, class Field, Needs needs>
 template <class Visitor>
 void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) const {
-    std::array<NodeKey, needs.keys || !detail::by_heart<Grid>(Feature::constrained)
-                            ? node_capacity_
-                            : 1>
+    std::array<NodeKey,
+               needs.keys || !detail::by_heart<Grid>(Feature::constrained) ? node_capacity_ : 1>
         keys;
     Split split;
     split.rule = detail::call_split(*grid_, *s.context, s.element);
@@ -170,7 +168,8 @@ void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) co
 template <class Grid, class Field, Needs needs>
 template <class Visitor>
 void Traversal<Grid, Field, needs>::descend(const State& s, const Split& split,
-                                            NodeMask interpolated, NodeKey* keys, Visitor& visitor) const {
+                                            NodeMask interpolated, NodeKey* keys,
+                                            Visitor& visitor) const {
     constexpr std::size_t c_count = State::components;
     const Rule& rule = *split.rule;
     const auto corners = static_cast<std::size_t>(s.corner_count());
@@ -217,8 +216,8 @@ void Traversal<Grid, Field, needs>::descend(const State& s, const Split& split,
             }
             if constexpr (State::carries_keys) k.key[i] = keys[n];
             if constexpr (State::carries_positions) k.position[i] = position[n];
-            const NodeMask flag = (n < corners ? NodeMask{s.interpolated} >> n
-                                               : interpolated >> (n - corners)) & 1U;
+            const NodeMask flag =
+                (n < corners ? NodeMask{s.interpolated} >> n : interpolated >> (n - corners)) & 1U;
             k.interpolated |= static_cast<std::uint8_t>(flag << i);
         }
         inspect(k, visitor);
@@ -257,7 +256,8 @@ void Traversal<Grid, Field, needs>::project(const State& s, const Split& split,
 
 template <class Grid, class Field, Needs needs>
 void Traversal<Grid, Field, needs>::project_positions(const State& s, const Split& split,
-                                                      NodeMask interpolated, Point* position) const {
+                                                      NodeMask interpolated,
+                                                      Point* position) const {
     const Rule& rule = *split.rule;
     const auto corners = static_cast<std::size_t>(s.corner_count());
     if constexpr (State::carries_positions) std::copy_n(s.position.begin(), corners, position);
@@ -265,9 +265,8 @@ void Traversal<Grid, Field, needs>::project_positions(const State& s, const Spli
     if constexpr (may_offer<Grid>(Feature::new_positions)) {
         if (new_positions_) {
             given = rule.all() & ~(interpolated | split.constrained);
-            detail::call_new_positions(
-                *grid_, *s.context, s.element, given,
-                std::span<Point>(position + corners, rule.new_nodes.size()));
+            detail::call_new_positions(*grid_, *s.context, s.element, given,
+                                       std::span<Point>(position + corners, rule.new_nodes.size()));
         }
     }
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {

@@ -96,8 +96,9 @@ struct Volume {
 TEST(Lattice, LeavesFillTheDomainForAnyDimensions) {
     for (const Samples n : {Samples{2, 2, 2}, Samples{17, 17, 17}, Samples{5, 14, 23},
                             Samples{2, 30, 3}, Samples{18, 33, 20}}) {
-        const LatticeBisection<3> grid(
-            {.samples = n, .spacing = {0.5, 2, -1}, .direction = {{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}});
+        const LatticeBisection<3> grid({.samples = n,
+                                        .spacing = {0.5, 2, -1},
+                                        .direction = {{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}});
         const std::vector<float> samples(grid.sample_count(), 1.0F);
         const LatticeField field(grid, std::span<const float>(samples));
         const Traversal<LatticeBisection<3>, decltype(field)> walk(grid, field);

@@ -47,9 +47,8 @@ TEST(Cgal, FindsEverySurfaceInsideTheDomainClosed) {
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : thresholds) {
             SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
-            const auto result =
-                isosurface(grid, field, data.isovalue, indicator,
-                           {.threshold = threshold * data.range, .cap = true});
+            const auto result = isosurface(grid, field, data.isovalue, indicator,
+                                           {.threshold = threshold * data.range, .cap = true});
             const Mesh mesh = to_cgal(result.surface);
             EXPECT_TRUE(CGAL::is_closed(mesh));
             EXPECT_TRUE(CGAL::is_valid_polygon_mesh(mesh));

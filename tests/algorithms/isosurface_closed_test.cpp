@@ -38,9 +38,8 @@ TEST_P(ClosedSurface, AtEveryThreshold) {
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : thresholds) {
             SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
-            const auto result =
-                isosurface(grid, field, data.isovalue, indicator,
-                           {.threshold = threshold * data.range, .verify = true});
+            const auto result = isosurface(grid, field, data.isovalue, indicator,
+                                           {.threshold = threshold * data.range, .verify = true});
             const SurfaceReport report = surface_report(result.surface);
             EXPECT_GT(report.triangles, 0U);
             EXPECT_EQ(report.boundary_edges, result.surface.boundary.size());
@@ -61,8 +60,7 @@ TEST_P(ClosedSurface, CappedEnclosesTheRegionAboveTheIsovalue) {
             // Half a step beside the integers, so that no node belongs to both.
             const double isovalue = sign * (data.isovalue - (data.range > 1 ? 0.25 : 0));
             const LatticeField field(grid, std::span<const float>(data.values));
-            const auto result =
-                isosurface(grid, field, isovalue, {.threshold = 0.01, .cap = true});
+            const auto result = isosurface(grid, field, isovalue, {.threshold = 0.01, .cap = true});
             const SurfaceReport report = surface_report(result.surface);
             expect_closed(report);
             EXPECT_TRUE(report.closed());
@@ -147,10 +145,8 @@ TEST(Saturation, WithoutItAGyroidIsLostWhole) {
     const HierarchicalIndicator indicator(grid, field);
     const Unsaturated unsaturated(grid, field, indicator);
     const double threshold = 1e-4;  // the centre of the cube is interpolated to rounding
-    const auto sound =
-        isosurface(grid, field, data.isovalue, indicator, {.threshold = threshold});
-    const auto lost =
-        isosurface(grid, field, data.isovalue, unsaturated, {.threshold = threshold});
+    const auto sound = isosurface(grid, field, data.isovalue, indicator, {.threshold = threshold});
+    const auto lost = isosurface(grid, field, data.isovalue, unsaturated, {.threshold = threshold});
     EXPECT_GT(sound.surface.simplices.size(), 10000U);
     EXPECT_EQ(lost.surface.simplices.size(), 0U);
 }

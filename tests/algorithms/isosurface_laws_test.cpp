@@ -49,8 +49,8 @@ std::vector<Point> finest_vertices(const SampledField& data, const Samples& n) {
                             std::swap(va, vb);
                             std::swap(a, b);
                         }
-                        const double t = std::clamp((data.isovalue - va) / (vb - va), 0x1p-20,
-                                                    1 - 0x1p-20);
+                        const double t =
+                            std::clamp((data.isovalue - va) / (vb - va), 0x1p-20, 1 - 0x1p-20);
                         Point p{};
                         for (std::size_t k = 0; k < 3; ++k) p[k] = a[k] + t * (b[k] - a[k]);
                         vertices.push_back(p);
@@ -112,12 +112,12 @@ TEST(ErrorBound, HoldsOnTheSurfaceAgainstTheFinestGrid) {
                 double worst = 0;
                 for (const auto& t : surface.simplices) {
                     const Point centre =
-                        (1.0 / 3) * (surface.vertices[t[0]] + surface.vertices[t[1]] +
-                                     surface.vertices[t[2]]);
+                        (1.0 / 3) *
+                        (surface.vertices[t[0]] + surface.vertices[t[1]] + surface.vertices[t[2]]);
                     for (const Point& p : {surface.vertices[t[0]], surface.vertices[t[1]],
                                            surface.vertices[t[2]], centre}) {
-                        worst = std::max(worst, std::abs(evaluate_leaves(data.values, n, p) -
-                                                         data.isovalue));
+                        worst = std::max(
+                            worst, std::abs(evaluate_leaves(data.values, n, p) - data.isovalue));
                     }
                 }
                 // Cuts are moved by up to 2^-20 of a coarse edge.
@@ -259,9 +259,8 @@ TEST(Isosurface, CanBeCancelled) {
     const SampledField data = sampled_fields(n)[3];
     const LatticeField field(grid, std::span<const float>(data.values));
     int calls = 0;
-    const auto result = isosurface(grid, field, data.isovalue, {.progress = [&](const auto&) {
-                                       return ++calls < 3;
-                                   }});
+    const auto result = isosurface(grid, field, data.isovalue,
+                                   {.progress = [&](const auto&) { return ++calls < 3; }});
     EXPECT_TRUE(result.cancelled);
     EXPECT_EQ(calls, 3);
 }

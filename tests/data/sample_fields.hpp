@@ -71,12 +71,11 @@ inline std::vector<SampledField> sampled_fields(const Samples& n) {
     fields.push_back({"integer noise",
                       sample(n, [&](double, double, double) { return double(random() % 3); }), 1,
                       2});
-    fields.push_back({"plateaus",
-                      sample(n,
-                             [](double x, double y, double z) {
-                                 return std::floor(16 * distance_to_centre(x, y, z));
-                             }),
-                      6, 14});
+    fields.push_back(
+        {"plateaus",
+         sample(n, [](double x, double y,
+                      double z) { return std::floor(16 * distance_to_centre(x, y, z)); }),
+         6, 14});
     return fields;
 }
 

@@ -78,7 +78,9 @@ TEST(AnyGrid, GivesTheSameSurfaceWithDerivedKeys) {
     for (std::uint32_t e = 0; forest.cells.size() < 4000; ++e) {
         forest.refine(e, red_tetrahedron_rule());
     }
-    const ForestField<3> field(forest, [](const Point& x) { return norm(x - Point{0.4, 0.5, 0.6}); });
+    const ForestField<3> field(forest, [](const Point& x) {
+        return norm(x - Point{0.4, 0.5, 0.6});
+    });
     expect_same_three_ways(forest, field, 0.3, {.normals = true, .cap = true});
 }
 

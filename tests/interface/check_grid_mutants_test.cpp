@@ -93,8 +93,7 @@ const Rule* staged_rule(std::size_t face, std::mt19937& random) {
     const std::size_t turn = random() % 2;
     r.new_nodes[12 + face] = mean_of({edge_between(loop[turn], loop[turn + 1]),
                                       edge_between(loop[turn + 2], loop[(turn + 3) % 4])});
-    keep.push_back(
-        std::make_unique<Rule>(make_rule("staged", r.parent, r.new_nodes, r.children)));
+    keep.push_back(std::make_unique<Rule>(make_rule("staged", r.parent, r.new_nodes, r.children)));
     return keep.back().get();
 }
 
@@ -221,8 +220,8 @@ std::map<Law, Mutator<dim>> mutators() {
         std::fill(f.field.values.begin(), f.field.values.end(), 1.0);
         const std::uint32_t father = random_refined(g, r);
         auto& cells = g.forest.cells;
-        const auto heir = static_cast<std::uint32_t>(
-            cells[father].first_child + r() % cells[father].rule->children.size());
+        const auto heir = static_cast<std::uint32_t>(cells[father].first_child +
+                                                     r() % cells[father].rule->children.size());
         cells[heir] = cells[father];  // its children are those of its father, for ever
         return true;
     };
@@ -266,7 +265,8 @@ int run_mutants(Law law) {
         std::mt19937 random(seed);
         MutantGrid<dim> grid = random_grid<dim>(seed, random);
         // A linear function is its own interpolant everywhere.
-        MutantField<dim> field(grid, [](const Point& x) { return x[0] + 2 * x[1] - 3 * x[2] + 0.5; });
+        MutantField<dim> field(grid,
+                               [](const Point& x) { return x[0] + 2 * x[1] - 3 * x[2] + 0.5; });
         const CheckOptions options{.max_depth = 30, .hanging_values = law == Law::hanging_value};
         if (law == Law::hanging_value) {
             if (check_grid(grid, field, options)) continue;  // deformed boxes are not linear

@@ -61,8 +61,7 @@ double worst_jump(const Forest<dim>& forest, const ForestField<dim>& field,
             const std::size_t b = t.edge[e][1];
             const auto at = value.find(mean_key(s.key[a] + s.key[b], 2));
             if (at != value.end()) {
-                worst = std::max(worst,
-                                 std::abs(at->second - midpoint(s.value[a], s.value[b])));
+                worst = std::max(worst, std::abs(at->second - midpoint(s.value[a], s.value[b])));
             }
         }
         for (std::size_t f = 0; f < t.faces; ++f) {
@@ -100,7 +99,7 @@ void expect_single_valued(const Forest<dim>& forest) {
     const ForestField<dim> field(forest, bumps);
     const HierarchicalIndicator indicator(forest, field);
     const Traversal<Forest<dim>, ForestField<dim>, everything> walk(forest, field,
-                                                                   indicator.hanging());
+                                                                    indicator.hanging());
     std::size_t before = 0;
     for (const double epsilon : {1e9, 0.5, 0.1, 0.01, 0.0}) {
         const Threshold<HierarchicalIndicator> criterion{&indicator, epsilon};
@@ -158,8 +157,8 @@ TEST(Projection, ReproducesLinearFunctionsAtAnyThreshold) {
 
 /// Copies below copies: rules without new nodes, which are never shown to a visitor.
 TEST(Copies, AreLookedThrough) {
-    static const Rule copy = make_rule("copy", Shape::triangle, {},
-                                       {{Shape::triangle, {1, 2, 0}, 1, {}}});
+    static const Rule copy =
+        make_rule("copy", Shape::triangle, {}, {{Shape::triangle, {1, 2, 0}, 1, {}}});
     Forest<2> plain = kuhn<2>(0);
     Forest<2> copied = kuhn<2>(0);
     static const Rule red =
@@ -181,19 +180,19 @@ TEST(Copies, AreLookedThrough) {
                 [&](const auto&) { ++elements; });
         return std::pair(elements, indicator.node_count());
     };
-    for (const double epsilon : {0.0, 0.1, 1e9}) EXPECT_EQ(count(plain, epsilon), count(copied, epsilon));
+    for (const double epsilon : {0.0, 0.1, 1e9})
+        EXPECT_EQ(count(plain, epsilon), count(copied, epsilon));
     EXPECT_EQ(count(copied, 0).first, 8U);
     EXPECT_EQ(count(copied, 1e9).first, 2U);
 }
 
 TEST(Weights, OfAThirdAreClampedAndKeyedApart) {
-    static const Rule thirds = make_rule(
-        "thirds", Shape::segment,
-        {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),
-         weighted_mean_of({{0, 1.0 / 3}, {1, 2.0 / 3}})},
-        {{Shape::segment, {0, 2}, 1, {}},
-         {Shape::segment, {2, 3}, 1, {}},
-         {Shape::segment, {3, 1}, 1, {}}});
+    static const Rule thirds = make_rule("thirds", Shape::segment,
+                                         {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),
+                                          weighted_mean_of({{0, 1.0 / 3}, {1, 2.0 / 3}})},
+                                         {{Shape::segment, {0, 2}, 1, {}},
+                                          {Shape::segment, {2, 3}, 1, {}},
+                                          {Shape::segment, {3, 1}, 1, {}}});
     const std::array<NodeKey, 4> keys{11, 12};
     EXPECT_NE(derived_key(thirds.new_nodes[0], keys.data()),
               derived_key(thirds.new_nodes[1], keys.data()));

@@ -41,8 +41,8 @@ int main(int, char** argv) {
     for (int z = 0, i = 0; z < nz; ++z) {
         for (int y = 0; y < ny; ++y) {
             for (int x = 0; x < nx; ++x, ++i) {
-                samples[i] = static_cast<unsigned char>(
-                    250 - 20 * std::hypot(x - 9.0, y - 11.0, z - 8.0));
+                samples[i] =
+                    static_cast<unsigned char>(250 - 20 * std::hypot(x - 9.0, y - 11.0, z - 8.0));
                 if (std::hypot(x - 9.0, y - 11.0, z - 8.0) > 12) samples[i] = 10;
             }
         }
@@ -53,8 +53,7 @@ int main(int, char** argv) {
     write<vtkNIFTIImageWriter>(image, folder + "v.nii");
     write<vtkNIFTIImageWriter>(image, folder + "v.nii.gz");
     const auto size = static_cast<std::streamsize>(nx) * ny * nz;
-    std::ofstream(folder + "v.raw", std::ios::binary)
-        .write(reinterpret_cast<char*>(samples), size);
+    std::ofstream(folder + "v.raw", std::ios::binary).write(reinterpret_cast<char*>(samples), size);
     std::ofstream nrrd(folder + "v.nrrd", std::ios::binary);
     nrrd << "NRRD0004\ntype: unsigned char\ndimension: 3\nsizes: 20 24 18\n"
             "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,1,0) (0,0,2)\n"

@@ -18,8 +18,8 @@ namespace nestgrid {
 struct NewNodes {
     const Rule& rule;
     std::span<const NodeKey> keys;
-    int level;          ///< of the nodes: one more than that of the element
-    NodeMask outside;   ///< nodes at which no element may stop
+    int level;         ///< of the nodes: one more than that of the element
+    NodeMask outside;  ///< nodes at which no element may stop
 };
 
 template <class C>

@@ -66,8 +66,7 @@ public:
     std::uint64_t epoch() const { return epoch_; }  ///< of the grid this was computed on
 
     std::size_t memory_bytes() const {
-        return dense_.capacity() * sizeof(Entry) + sparse_.memory_bytes() +
-               hanging_.memory_bytes();
+        return dense_.capacity() * sizeof(Entry) + sparse_.memory_bytes() + hanging_.memory_bytes();
     }
 
 private:
@@ -147,7 +146,8 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     node_count_ = grid.node_count();
     dense_.assign(node_count_, {});
     std::vector<float> bound(node_count_, 0.0F);  // of finer nodes at first, then the node's own
-    for (std::size_t i = 0; i < node_count_; ++i) add_value(field.value(static_cast<NodeKey>(i)), limit);
+    for (std::size_t i = 0; i < node_count_; ++i)
+        add_value(field.value(static_cast<NodeKey>(i)), limit);
     grid.for_each_star([&](const Star& star) {
         std::array<Real, max_corners> parent;
         Stencil stencil;
@@ -225,9 +225,8 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
                 } else {
                     value[corners + n] = given[n * stride];
                     add_value(given[n * stride], limit);
-                    node.offset = std::max(
-                        node.offset,
-                        detail::offset_above(stencil, value.data(), value[corners + n]));
+                    node.offset = std::max(node.offset, detail::offset_above(stencil, value.data(),
+                                                                             value[corners + n]));
                 }
                 node.entry.stop = std::max(node.entry.stop, (split.outside >> n & 1U) != 0
                                                                 ? bfloat16_infinity
@@ -270,8 +269,7 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
         for (const Node& node : nodes) dense_.push_back(node.entry);
     } else {
         sparse_.reserve(slots.size());
-        slots.for_each(
-            [&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });
+        slots.for_each([&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });
     }
 }
 

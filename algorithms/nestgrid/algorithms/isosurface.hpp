@@ -51,9 +51,9 @@ struct Isosurface {
     TraversalCounts counts;
     /// On every triangle U differs from C by at most this, U being the data on the finest grid.
     double error_bound = 0;
-    bool cancelled = false;           ///< by options.progress; the surface is then a part
-    std::size_t table_bytes = 0;      ///< hash tables used while extracting
-    std::size_t stack_bytes = 0;      ///< depth of the traversal times the size of one state
+    bool cancelled = false;       ///< by options.progress; the surface is then a part
+    std::size_t table_bytes = 0;  ///< hash tables used while extracting
+    std::size_t stack_bytes = 0;  ///< depth of the traversal times the size of one state
 };
 
 namespace detail {
@@ -98,8 +98,7 @@ private:
     Index node_vertex(std::size_t corner);
     Index edge_vertex(const State& s, std::size_t a, std::size_t b);
     Index add_vertex(KeyPair key, const Point& x, const Vertex& where);
-    void add_simplex(typename Surface<dimension, ElementOf<Grid>>::Simplex simplex,
-                     const State& s);
+    void add_simplex(typename Surface<dimension, ElementOf<Grid>>::Simplex simplex, const State& s);
     void add_contour(const State& s, const Contour& contour);
     void add_cap(const State& s);
     void load(const State& s);
@@ -117,10 +116,10 @@ private:
     double element_bound_ = 0;  // of the element inspected last
     int deepest_ = 0;
     KeyTable<KeyPair, Index> vertex_of_;
-    std::array<NodeKey, max_corners> key_{};   // of the element being extracted
+    std::array<NodeKey, max_corners> key_{};  // of the element being extracted
     std::array<Point, max_corners> x_{};
     std::array<Index, max_corners> slot_{};
-    KeyTable<NodeKey, Index> gradient_of_;     // only for normals
+    KeyTable<NodeKey, Index> gradient_of_;  // only for normals
     std::vector<Point> gradient_;
     std::vector<Vertex> where_;
 };
@@ -161,8 +160,7 @@ Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const 
 template <class Grid, class Field, class Indicator>
     requires requires(const Indicator& i) { i.stop(NodeKey{}); }
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
-                                                        double isovalue,
-                                                        const Indicator& indicator,
+                                                        double isovalue, const Indicator& indicator,
                                                         const IsosurfaceOptions& options = {}) {
     if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
     const Threshold<Indicator> criterion{&indicator, options.threshold};

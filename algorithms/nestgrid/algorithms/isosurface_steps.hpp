@@ -58,10 +58,11 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator>::load(const State& s) {
 template <class Grid, class Field, class S, class Indicator>
 void IsosurfaceVisitor<Grid, Field, S, Indicator>::extract(const State& s) {
     if (!is_simplex(s.shape)) {
-        throw GridError("isosurfaces are extracted from triangles and tetrahedra, but an element "
-                        "on level " + std::to_string(s.level) + " below coarse element " +
-                        std::to_string(s.coarse) + " is a " +
-                        std::string(topology(s.shape).name));
+        throw GridError(
+            "isosurfaces are extracted from triangles and tetrahedra, but an element "
+            "on level " +
+            std::to_string(s.level) + " below coarse element " + std::to_string(s.coarse) +
+            " is a " + std::string(topology(s.shape).name));
     }
     const auto corners = static_cast<std::size_t>(s.corner_count());
     unsigned pattern = 0;
@@ -88,13 +89,13 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_simplex(
     if (s.orientation < 0) std::swap(simplex[0], simplex[1]);
     result_.surface.simplices.push_back(simplex);
     if (options_->elements) {
-        result_.surface.element_of.push_back(
-            static_cast<Index>(result_.surface.elements.size()));
+        result_.surface.element_of.push_back(static_cast<Index>(result_.surface.elements.size()));
     }
 }
 
 template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_contour(const State& s, const Contour& contour) {
+void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_contour(const State& s,
+                                                               const Contour& contour) {
     const Topology& t = topology(s.shape);
     std::array<Index, 4> v{};
     for (std::size_t i = 0; i < contour.count; ++i) {
@@ -157,7 +158,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_cap(const State& s) {
 
 template <class Grid, class Field, class S, class Indicator>
 auto IsosurfaceVisitor<Grid, Field, S, Indicator>::add_vertex(KeyPair key, const Point& x,
-                                                   const Vertex& where) -> Index {
+                                                              const Vertex& where) -> Index {
     std::vector<Point>& vertices = result_.surface.vertices;
     if (vertices.size() > std::numeric_limits<Index>::max() - 1) {
         throw GridError("the surface has more than 2^32 vertices");
@@ -180,8 +181,8 @@ auto IsosurfaceVisitor<Grid, Field, S, Indicator>::node_vertex(std::size_t corne
 }
 
 template <class Grid, class Field, class S, class Indicator>
-auto IsosurfaceVisitor<Grid, Field, S, Indicator>::edge_vertex(const State& s, std::size_t a, std::size_t b)
-    -> Index {
+auto IsosurfaceVisitor<Grid, Field, S, Indicator>::edge_vertex(const State& s, std::size_t a,
+                                                               std::size_t b) -> Index {
     const KeyPair key(key_[a], key_[b]);
     if (!options_->verify) {
         if (const Index* known = vertex_of_.find(key)) return *known;
@@ -197,7 +198,7 @@ auto IsosurfaceVisitor<Grid, Field, S, Indicator>::edge_vertex(const State& s, s
 /// Section 8: the gradient as a vector-valued function, projected with the same S.
 template <class Grid, class Field, class S, class Indicator>
 Point IsosurfaceVisitor<Grid, Field, S, Indicator>::projected_gradient(const State& s,
-                                                            std::size_t corner) const {
+                                                                       std::size_t corner) const {
     if constexpr (offers_corner_gradients<Field, Context<Grid>, const ElementOf<Grid>&,
                                           std::span<Point>>) {
         if ((s.interpolated >> corner & 1U) != 0 && s.father != nullptr) {
@@ -205,16 +206,18 @@ Point IsosurfaceVisitor<Grid, Field, S, Indicator>::projected_gradient(const Sta
             return node_gradient(*s.father, *s.made_by, child.corner[corner]);
         }
         std::array<Point, max_corners> g;
-        call_corner_gradients(walk_->field(), *s.context, s.element,
-                              std::span<Point>(g.data(), static_cast<std::size_t>(s.corner_count())));
+        call_corner_gradients(
+            walk_->field(), *s.context, s.element,
+            std::span<Point>(g.data(), static_cast<std::size_t>(s.corner_count())));
         return g[corner];
     }
     return {};
 }
 
 template <class Grid, class Field, class S, class Indicator>
-Point IsosurfaceVisitor<Grid, Field, S, Indicator>::node_gradient(const State& father, const Rule& rule,
-                                                       std::size_t node) const {
+Point IsosurfaceVisitor<Grid, Field, S, Indicator>::node_gradient(const State& father,
+                                                                  const Rule& rule,
+                                                                  std::size_t node) const {
     const auto corners = static_cast<std::size_t>(father.corner_count());
     if (node < corners) return projected_gradient(father, node);
     const Stencil& stencil = rule.new_nodes[node - corners];
@@ -243,8 +246,8 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator>::load_gradients(const State& s
         for (std::size_t f = 0; f < corners; ++f) {
             const FaceTopology& face = topology(s.shape).face[f];
             const Point e = x_[face.corner[1]] - x_[face.corner[0]];
-            mean = mean + (s.orientation * double(s.value[f * State::components])) *
-                              Point{-e[1], e[0], 0};
+            mean = mean +
+                   (s.orientation * double(s.value[f * State::components])) * Point{-e[1], e[0], 0};
         }
     }
     for (std::size_t i = 0; i < corners; ++i) {
@@ -292,8 +295,7 @@ template <class Grid, class Field, class S, class Indicator>
 auto IsosurfaceVisitor<Grid, Field, S, Indicator>::take() -> Result {
     if (options_->normals) compute_normals();
     result_.table_bytes = vertex_of_.memory_bytes() + gradient_of_.memory_bytes() +
-                          gradient_.capacity() * sizeof(Point) +
-                          where_.capacity() * sizeof(Vertex);
+                          gradient_.capacity() * sizeof(Point) + where_.capacity() * sizeof(Vertex);
     result_.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(State);
     return std::move(result_);
 }

@@ -19,8 +19,8 @@ struct ProjectVisitor {
     template <class State>
     Decision inspect(const State& s, const Split& split) {
         if (split.rule == nullptr) return {Visit::stop, 0};
-        const NodeMask mask = criterion(NewNodes{*split.rule, split.keys, s.level + 1,
-                                                 split.outside});
+        const NodeMask mask =
+            criterion(NewNodes{*split.rule, split.keys, s.level + 1, split.outside});
         return {mask == split.rule->all() ? Visit::stop : Visit::descend, mask};
     }
     template <class State>

@@ -36,9 +36,8 @@ inline double distance_above(double a, double b) {
 inline float sum_above(float a, float b) {
     const double s = static_cast<double>(a) + static_cast<double>(b);
     if (s == std::numeric_limits<double>::infinity()) return static_cast<float>(s);
-    return float_above(sum_error(a, b, s) > 0
-                           ? std::nextafter(s, std::numeric_limits<double>::infinity())
-                           : s);
+    return float_above(
+        sum_error(a, b, s) > 0 ? std::nextafter(s, std::numeric_limits<double>::infinity()) : s);
 }
 
 inline constexpr std::uint16_t bfloat16_infinity = 0x7F80;

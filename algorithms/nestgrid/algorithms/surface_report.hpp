@@ -22,8 +22,8 @@ struct SurfaceReport {
     std::size_t vertices = 0;  ///< that belong to a triangle
     std::size_t edges = 0;
     std::size_t triangles = 0;
-    std::size_t open_edges = 0;       ///< of one triangle only, inside the domain: cracks
-    std::size_t boundary_edges = 0;   ///< of one triangle only, on the boundary of the domain
+    std::size_t open_edges = 0;            ///< of one triangle only, inside the domain: cracks
+    std::size_t boundary_edges = 0;        ///< of one triangle only, on the boundary of the domain
     std::size_t nonmanifold_edges = 0;     ///< of more than two triangles
     std::size_t misoriented_edges = 0;     ///< of two triangles that disagree about the outside
     std::size_t nonmanifold_vertices = 0;  ///< whose triangles do not form one fan
@@ -123,8 +123,7 @@ std::size_t count_components(const Surface<3, Element>& surface, const std::vect
     }
     std::vector<std::size_t> component(surface.vertices.size());
     if (component.empty()) return 0;
-    const auto all = static_cast<std::size_t>(
-        boost::connected_components(graph, component.data()));
+    const auto all = static_cast<std::size_t>(boost::connected_components(graph, component.data()));
     return all - (surface.vertices.size() - used_vertices);  // unused vertices stand alone
 }
 
@@ -180,8 +179,7 @@ SurfaceReport surface_report(const Surface<3, Element>& surface) {
     report.vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
     report.nonmanifold_vertices = detail::count_nonmanifold_vertices(surface, fans);
     report.components = detail::count_components(surface, sides, report.vertices);
-    report.euler = static_cast<long long>(report.vertices) -
-                   static_cast<long long>(report.edges) +
+    report.euler = static_cast<long long>(report.vertices) - static_cast<long long>(report.edges) +
                    static_cast<long long>(report.triangles);
     if (report.closed()) report.volume = volume;
     return report;

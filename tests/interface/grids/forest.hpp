@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <nestgrid/grid.hpp>
-#include <nestgrid/keys.hpp>
 #include <nestgrid/key_table.hpp>
+#include <nestgrid/keys.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid_test {
@@ -68,7 +68,8 @@ public:
         for (const std::uint32_t n : nodes) local.push_back(keys[n]);
         for (const Stencil& s : rule.new_nodes) {
             const NodeKey key = derived_key(s, local.data());
-            const auto [at, is_new] = by_key_.insert(key, static_cast<std::uint32_t>(positions.size()));
+            const auto [at, is_new] =
+                by_key_.insert(key, static_cast<std::uint32_t>(positions.size()));
             const std::uint32_t node = *at;
             if (is_new) {
                 Point x{0, 0, 0};
@@ -115,7 +116,8 @@ public:
     }
     NodeMask coarse_values(std::size_t i, std::span<double> out) const {
         const auto& cell = forest_->cells[forest_->coarse(i).element];
-        for (std::size_t k = 0; k < topology(cell.shape).corners; ++k) out[k] = values[cell.nodes[k]];
+        for (std::size_t k = 0; k < topology(cell.shape).corners; ++k)
+            out[k] = values[cell.nodes[k]];
         return 0;
     }
     NodeMask new_values(std::uint32_t e, NodeMask which, std::span<double> out) const {

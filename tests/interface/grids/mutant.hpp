@@ -18,8 +18,7 @@ public:
     using Element = std::uint32_t;
     static constexpr int dimension = dim;
 
-    explicit MutantGrid(const Forest<dim>& f)
-        : forest{f}, positions{f.positions}, keys{f.keys} {
+    explicit MutantGrid(const Forest<dim>& f) : forest{f}, positions{f.positions}, keys{f.keys} {
         const HangingNodes derived = derive_hanging_nodes(forest);
         for (std::uint32_t n = 0; n < keys.size(); ++n) {
             if (derived.contains(keys[n])) hanging.insert(n);
@@ -39,9 +38,7 @@ public:
     }
     void children(Element e, std::span<Element> out) const { forest.children(e, out); }
 
-    bool offers(Feature feature) const {
-        return (features & static_cast<unsigned>(feature)) != 0;
-    }
+    bool offers(Feature feature) const { return (features & static_cast<unsigned>(feature)) != 0; }
     void corner_keys(Element e, std::span<NodeKey> out) const {
         const auto& cell = forest.cells[e];
         for (std::size_t k = 0; k < topology(cell.shape).corners; ++k) {

@@ -71,9 +71,7 @@ public:
     std::size_t coarse_count() const { return block_total_ * permutations_; }
     CoarseElement<Element> coarse(std::size_t i) const;
 
-    const Rule* split(const Element& e) const {
-        return is_unit(e) ? nullptr : rules_[e.tag];
-    }
+    const Rule* split(const Element& e) const { return is_unit(e) ? nullptr : rules_[e.tag]; }
 
     void children(const Element& e, std::span<Element> out) const {
         const Place z = middle(e);
@@ -204,12 +202,12 @@ private:
     void stars_of_step(std::uint32_t step, unsigned odd, Function& function) const;
 
     LatticeGeometry<dim> geometry_;
-    std::array<std::uint32_t, size_> cells_{};          // of the domain
+    std::array<std::uint32_t, size_> cells_{};  // of the domain
     std::array<std::uint32_t, size_> padded_cells_{};
     std::array<std::size_t, size_> blocks_{};
-    std::array<std::size_t, size_> node_stride_{};      // in the padded lattice
-    std::array<std::size_t, size_> sample_stride_{};    // in the samples
-    std::array<const Rule*, corners_> rules_{};         // by tag
+    std::array<std::size_t, size_> node_stride_{};    // in the padded lattice
+    std::array<std::size_t, size_> sample_stride_{};  // in the samples
+    std::array<const Rule*, corners_> rules_{};       // by tag
     std::size_t block_total_ = 0;
     std::size_t node_total_ = 0;
     int levels_ = 0;
@@ -222,9 +220,9 @@ private:
 template <int dim, class Sample>
 class LatticeField {
 public:
-    using value_type = std::conditional_t<
-        std::is_same_v<Sample, float> || (std::is_integral_v<Sample> && sizeof(Sample) <= 2),
-        float, double>;
+    using value_type = std::conditional_t<std::is_same_v<Sample, float> ||
+                                              (std::is_integral_v<Sample> && sizeof(Sample) <= 2),
+                                          float, double>;
     using Grid = LatticeBisection<dim>;
     using Element = typename Grid::Element;
 
@@ -233,8 +231,7 @@ public:
         : grid_{&grid}, samples_{samples} {
         if (samples.size() != grid.sample_count()) {
             throw InvalidInput("the field has " + std::to_string(samples.size()) +
-                               " samples, but the lattice " +
-                               std::to_string(grid.sample_count()));
+                               " samples, but the lattice " + std::to_string(grid.sample_count()));
         }
     }
 

@@ -210,13 +210,11 @@ Point LatticeField<dim, Sample>::gradient(typename Grid::Place p) const {
     const std::size_t centre = grid_->sample(p);
     Point along{0, 0, 0};  // per unit length along the axes
     for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
-        const std::size_t x =
-            std::min<std::size_t>(grid_->at(p, d), grid_->samples(d) - 1);
+        const std::size_t x = std::min<std::size_t>(grid_->at(p, d), grid_->samples(d) - 1);
         const std::size_t up = x + 1 < grid_->samples(d) ? 1 : 0;
         const std::size_t down = x > 0 ? 1 : 0;
-        const double rise =
-            static_cast<double>(samples_[centre + up * grid_->sample_stride(d)]) -
-            static_cast<double>(samples_[centre - down * grid_->sample_stride(d)]);
+        const double rise = static_cast<double>(samples_[centre + up * grid_->sample_stride(d)]) -
+                            static_cast<double>(samples_[centre - down * grid_->sample_stride(d)]);
         along[d] = rise / (static_cast<double>(up + down) * g.spacing[d]);
     }
     // The gradient is the inverse transpose of the direction matrix times `along`.
