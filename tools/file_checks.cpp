@@ -58,7 +58,7 @@ TextHeader read_text_header(const fs::path& path, char separator, const std::str
     };
     for (int i = 0; i < 1000 && std::getline(file, line); ++i) {
         header.length += line.size() + 1;
-        header.ended = line.find_first_not_of("\r") == std::string::npos && !file.eof();
+        header.ended = line.find_first_not_of('\r') == std::string::npos && !file.eof();
         if (header.ended) break;
         const std::size_t at = line.find(separator);
         if (at == std::string::npos) continue;

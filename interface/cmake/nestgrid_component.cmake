@@ -56,7 +56,7 @@ endfunction()
 function(nestgrid_warnings target)
   target_compile_options(
     ${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:CXX>:-Wconversion>
-                      $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+                      $<$<AND:$<CXX_COMPILER_ID:GNU>,$<NOT:$<BOOL:${CMAKE_CXX_CLANG_TIDY}>>>:-Wno-restrict>
                       $<$<BOOL:${NESTGRID_WERROR}>:-Werror>)
 endfunction()
 

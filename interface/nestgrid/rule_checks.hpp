@@ -108,7 +108,7 @@ inline void complete_stencil(const Rule& rule, Stencil& s) {
 
 inline std::optional<std::string> find_stencil_violation(const Rule& rule) {
     const std::string name = "rule '" + rule.name + "': ";
-    const std::size_t corners = static_cast<std::size_t>(rule.corner_count());
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
         const Stencil& s = rule.new_nodes[n];
         const std::string who = name + "new node " + std::to_string(n);

@@ -176,7 +176,7 @@ template <class Grid, class Field>
 void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
     using Real = typename Field::value_type;
     constexpr double limit = std::numeric_limits<Real>::max() / 8;
-    constexpr std::size_t stride = static_cast<std::size_t>(detail::components_of<Field>());
+    constexpr auto stride = static_cast<std::size_t>(detail::components_of<Field>());
     const Traversal<Grid, Field, Needs{.keys = true}> walk(grid, field, hanging());
     const int levels = count_levels(walk);
     std::vector<Node> nodes(dense_key_count(grid));
