@@ -117,7 +117,7 @@ void print_info(const Volume& volume) {
     line("padded_nodes", grid.node_count());
     line("block_cells", std::size_t{1} << static_cast<unsigned>(grid.block_levels()));
     line("coarse_elements", grid.coarse_count());
-    line("levels", static_cast<std::size_t>(3 * grid.block_levels() + 1));
+    line("levels", 3 * static_cast<std::size_t>(grid.block_levels()) + 1);
     std::size_t leaves = 6;
     for (std::size_t d = 0; d < 3; ++d) leaves *= grid.samples(d) - 1;
     line("leaf_elements", leaves);

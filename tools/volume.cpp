@@ -193,7 +193,7 @@ Volume read_nifti(const Reading& reading, bool compressed) {
     reading.check();
     std::array<int, 6> extent{};
     reader->GetDataExtent(extent.data());
-    std::uintmax_t expected =
+    auto expected =
         static_cast<std::uintmax_t>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
     for (std::size_t d = 0; d < 3; ++d) {
         expected *= static_cast<std::uintmax_t>(extent[2 * d + 1] - extent[2 * d] + 1);

@@ -23,7 +23,7 @@ struct Census {
     std::size_t leaves = 0;
     std::size_t inner = 0;
     std::size_t greatest_depth = 0;
-    const char* base = nullptr;
+    std::uintptr_t base = 0;
     std::size_t stack = 0;
 
     template <class State>
@@ -31,8 +31,9 @@ struct Census {
         if (split.rule != nullptr) ++inner;
         greatest_depth = std::max(greatest_depth, static_cast<std::size_t>(s.level));
         const char here = 0;
-        if (base == nullptr) base = &here;
-        stack = std::max(stack, static_cast<std::size_t>(std::abs(base - &here)));
+        const auto at = reinterpret_cast<std::uintptr_t>(&here);
+        if (base == 0) base = at;
+        stack = std::max<std::size_t>(stack, at > base ? at - base : base - at);
         return {};
     }
     template <class State>

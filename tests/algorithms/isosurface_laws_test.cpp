@@ -21,7 +21,8 @@ namespace {
 std::vector<Point> finest_vertices(const SampledField& data, const Samples& n) {
     std::vector<Point> vertices;
     const auto index = [&](int x, int y, int z) {
-        return static_cast<std::size_t>(x + n[0] * (y + n[1] * z));
+        const int at = x + n[0] * (y + n[1] * z);
+        return static_cast<std::size_t>(at);
     };
     for (int z = 0; z < n[2]; ++z) {
         for (int y = 0; y < n[1]; ++y) {

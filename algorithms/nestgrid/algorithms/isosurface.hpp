@@ -104,6 +104,7 @@ private:
     void load(const State& s);
     void load_gradients(const State& s);
     Point projected_gradient(const State& s, std::size_t corner) const;
+    std::array<Point, max_corners> own_gradients(const State& s) const;
     Point node_gradient(const State& father, const Rule& rule, std::size_t node) const;
     void compute_normals();
 

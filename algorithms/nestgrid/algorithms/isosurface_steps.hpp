@@ -199,19 +199,24 @@ auto IsosurfaceVisitor<Grid, Field, S, Indicator>::edge_vertex(const State& s, s
 template <class Grid, class Field, class S, class Indicator>
 Point IsosurfaceVisitor<Grid, Field, S, Indicator>::projected_gradient(const State& s,
                                                                        std::size_t corner) const {
+    if ((s.interpolated >> corner & 1U) != 0 && s.father != nullptr) {
+        const Child& child = s.made_by->children[s.child];
+        return node_gradient(*s.father, *s.made_by, child.corner[corner]);
+    }
+    return own_gradients(s)[corner];
+}
+
+template <class Grid, class Field, class S, class Indicator>
+auto IsosurfaceVisitor<Grid, Field, S, Indicator>::own_gradients(const State& s) const
+    -> std::array<Point, max_corners> {
+    std::array<Point, max_corners> g{};
     if constexpr (offers_corner_gradients<Field, Context<Grid>, const ElementOf<Grid>&,
                                           std::span<Point>>) {
-        if ((s.interpolated >> corner & 1U) != 0 && s.father != nullptr) {
-            const Child& child = s.made_by->children[s.child];
-            return node_gradient(*s.father, *s.made_by, child.corner[corner]);
-        }
-        std::array<Point, max_corners> g;
         call_corner_gradients(
             walk_->field(), *s.context, s.element,
             std::span<Point>(g.data(), static_cast<std::size_t>(s.corner_count())));
-        return g[corner];
     }
-    return {};
+    return g;
 }
 
 template <class Grid, class Field, class S, class Indicator>
@@ -250,11 +255,22 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator>::load_gradients(const State& s
                    (s.orientation * double(s.value[f * State::components])) * Point{-e[1], e[0], 0};
         }
     }
+    std::array<Point, max_corners> exact;  // asked for once, where a node is met for the first time
+    bool asked = false;
     for (std::size_t i = 0; i < corners; ++i) {
         const auto [at, is_new] =
             gradient_of_.insert(key_[i], static_cast<Index>(gradient_.size()));
         slot_[i] = *at;
-        if (is_new) gradient_.push_back(own ? projected_gradient(s, i) : Point{0, 0, 0});
+        if (is_new) {
+            const bool interpolated = (s.interpolated >> i & 1U) != 0;
+            if (own && !interpolated && !asked) {
+                exact = own_gradients(s);
+                asked = true;
+            }
+            gradient_.push_back(!own           ? Point{0, 0, 0}
+                                : interpolated ? projected_gradient(s, i)
+                                               : exact[i]);
+        }
         if (!own) gradient_[slot_[i]] = gradient_[slot_[i]] + mean;
     }
 }
