@@ -23,12 +23,16 @@ int with_models(const nestgrid_grid* grid, const nestgrid_field* field, char* me
                 std::size_t size, Function&& function) noexcept {
     const auto with_values = [&](const auto& g) {
         if (field->value_type == NESTGRID_FLOAT) return function(g, AnyField<float>(*field));
-        return function(g, AnyField<double>(*field));
+        if (field->value_type == NESTGRID_DOUBLE) return function(g, AnyField<double>(*field));
+        throw InvalidInput("the value_type " + std::to_string(field->value_type) +
+                           " of the field is neither float nor double");
     };
     try {
         if (grid == nullptr || field == nullptr) throw InvalidInput("a table is NULL");
-        return grid->dimension == 2 ? with_values(AnyGrid<2>(*grid))
-                                    : with_values(AnyGrid<3>(*grid));
+        if (grid->dimension == 2) return with_values(AnyGrid<2>(*grid));
+        if (grid->dimension == 3) return with_values(AnyGrid<3>(*grid));
+        throw InvalidInput("the table is of a grid of dimension " +
+                           std::to_string(grid->dimension) + ", not 2 or 3");
     } catch (const InvalidInput& e) {
         say(e.what(), message, size);
         return 1;

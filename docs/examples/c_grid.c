@@ -77,14 +77,14 @@ static int split(const void* self, void* context, const nestgrid_element* e, int
     return 0;
 }
 
-static int children(const void* self, void* context, const nestgrid_element* e,
+static int children(const void* self, void* context, const nestgrid_element* e, size_t count,
                     nestgrid_element* out) {
     const triangle t = load(e);
     float x[6][2];
     (void)self;
     (void)context;
     all_nodes(&t, x);
-    for (int c = 0; c < 4; ++c) {
+    for (size_t c = 0; c < count; ++c) {
         triangle child;
         for (int k = 0; k < 3; ++k) memcpy(child.x[k], x[quarters[c].corner[k]], sizeof x[0]);
         child.level = t.level + 1;

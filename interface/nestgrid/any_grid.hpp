@@ -67,7 +67,7 @@ public:
     }
     const Rule* split(const Element& e, AnyContext& c) const;
     void children(const Element& e, std::span<Element> out, AnyContext& c) const {
-        check(table_->children(table_->self, c.state(), &e, out.data()), "children");
+        check(table_->children(table_->self, c.state(), &e, out.size(), out.data()), "children");
     }
 
     bool offers(Feature feature) const;
@@ -103,7 +103,9 @@ public:
         return ask<unsigned>(table_->boundary_faces, "boundary_faces", e, c);
     }
     std::uint64_t epoch() const {
-        return table_->epoch == nullptr ? 0 : table_->epoch(table_->self);
+        std::uint64_t epoch = 0;
+        if (table_->epoch != nullptr) check(table_->epoch(table_->self, &epoch), "epoch");
+        return epoch;
     }
 
 private:
@@ -137,7 +139,7 @@ public:
 
     /// Around a model on a grid of the type Grid; both are borrowed.
     template <class Grid, class Field>
-    AnyField(const Grid&, const Field& field) : AnyField(make_table<Grid>(field)) {}
+    AnyField(const Grid& grid, const Field& field) : AnyField(make_table(grid, field)) {}
 
     NodeMask coarse_values(std::size_t i, std::span<Real> out, AnyContext& c) const {
         std::uint64_t missing = 0;

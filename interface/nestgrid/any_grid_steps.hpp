@@ -18,15 +18,24 @@ inline Rule rule_from_table(const nestgrid_rule& r) {
         if (s <= 0 || s >= shape_count) bad("the shape " + std::to_string(s) + " does not exist");
         return static_cast<Shape>(s);
     };
-    if (r.new_node_count < 0 || r.new_node_count > max_new_nodes) bad("more than 64 new nodes");
-    if (r.child_count < 0 || r.child_count > max_children) bad("more than 64 children");
+    if (r.new_node_count < 0 || r.new_node_count > max_new_nodes) {
+        bad(std::to_string(r.new_node_count) + " new nodes, not 0 to 64");
+    }
+    if (r.child_count < 1 || r.child_count > max_children) {
+        bad(std::to_string(r.child_count) + " children, not 1 to 64");
+    }
     if ((r.new_node_count > 0 && r.new_nodes == nullptr) || r.children == nullptr) {
         bad("its tables are NULL");
     }
     std::vector<Stencil> nodes;
     for (const nestgrid_stencil& s :
          std::span(r.new_nodes, static_cast<std::size_t>(r.new_node_count))) {
-        if (s.count < 0 || s.count > max_corners) bad("a stencil has more than 8 parents");
+        if (s.count < 2 || s.count > max_corners) {
+            bad("a stencil has " + std::to_string(s.count) + " parents, not 2 to 8");
+        }
+        if (s.number < 0 || s.number > 255) {
+            bad("a stencil has the number " + std::to_string(s.number) + ", not 0 to 255");
+        }
         Stencil stencil;
         stencil.count = static_cast<std::uint8_t>(s.count);
         stencil.number = static_cast<std::uint8_t>(s.number);
@@ -41,6 +50,9 @@ inline Rule rule_from_table(const nestgrid_rule& r) {
     for (const nestgrid_child& c : std::span(r.children, static_cast<std::size_t>(r.child_count))) {
         Child child;
         child.shape = shape(c.shape);
+        if (c.orientation != 1 && c.orientation != -1) {
+            bad("a child has an orientation that is neither 1 nor -1");
+        }
         child.orientation = static_cast<std::int8_t>(c.orientation);
         for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
             if (c.corner[i] < 0 || c.corner[i] > 255) bad("a corner of a child is no node");
@@ -96,6 +108,10 @@ CoarseElement<nestgrid_element> AnyGrid<dim>::coarse(std::size_t i, AnyContext& 
         throw GridError("coarse element " + std::to_string(i) + " has the shape " +
                         std::to_string(coarse.shape) + ", which does not exist");
     }
+    if (coarse.orientation != 1 && coarse.orientation != -1) {
+        throw GridError("coarse element " + std::to_string(i) +
+                        " has an orientation that is neither 1 nor -1");
+    }
     CoarseElement<Element> result;
     result.element = coarse.element;
     result.shape = static_cast<Shape>(coarse.shape);
@@ -110,7 +126,9 @@ CoarseElement<nestgrid_element> AnyGrid<dim>::coarse(std::size_t i, AnyContext& 
 template <int dim>
 const Rule* AnyGrid<dim>::split(const Element& e, AnyContext& c) const {
     if (table_->library_split != nullptr) {
-        return static_cast<const Rule*>(table_->library_split(table_->self, c.state(), &e));
+        const void* known = nullptr;
+        check(table_->library_split(table_->self, c.state(), &e, &known), "split");
+        return static_cast<const Rule*>(known);
     }
     int rule = -1;
     check(table_->split(table_->self, c.state(), &e, &rule), "split");
@@ -151,9 +169,13 @@ template <int dim>
 template <class Function>
 void AnyGrid<dim>::keys(Function function, const char* operation, const Element& e,
                         std::span<NodeKey> out, AnyContext& c) const {
-    std::array<std::uint64_t, max_new_nodes> keys{};  // also holds the keys of the corners
-    check(function(table_->self, c.state(), &e, keys.data()), operation);
-    std::copy_n(keys.begin(), std::min(out.size(), keys.size()), out.begin());
+    if constexpr (std::is_same_v<NodeKey, std::uint64_t>) {
+        check(function(table_->self, c.state(), &e, out.size(), out.data()), operation);
+    } else {
+        std::array<std::uint64_t, max_new_nodes> keys{};  // also holds the keys of the corners
+        check(function(table_->self, c.state(), &e, out.size(), keys.data()), operation);
+        std::copy_n(keys.begin(), out.size(), out.begin());
+    }
 }
 
 template <class Real, int component_count>

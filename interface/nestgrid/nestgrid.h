@@ -6,10 +6,10 @@
  * complete grid.
  *
  * All functions are reentrant and return 0, or another number where they fail; nothing is thrown
- * through them. `context` is what make_context returned for the task that calls, or NULL. Optional
- * functions may be NULL. `count` is the number of nodes that `out` has room for. `size` is sizeof
- * the table as its author compiled it, so that tables can grow: what lies beyond it counts as NULL
- * or 0.
+ * through them. `context` is what make_context returned for the task that calls, NULL without it.
+ * Optional functions may be NULL. `out` has `count` places: as many as the element has corners, or
+ * its rule new nodes or children. `size` is sizeof the table as its author compiled it, so that
+ * tables can grow: what lies beyond it counts as NULL or 0.
  */
 #ifndef NESTGRID_H
 #define NESTGRID_H
@@ -83,12 +83,14 @@ typedef struct nestgrid_grid {
     int (*coarse)(const void* self, void* context, size_t i, nestgrid_coarse* out);
     /* *rule: the number of the rule that refines e, or -1 on a leaf */
     int (*split)(const void* self, void* context, const nestgrid_element* e, int* rule);
-    int (*children)(const void* self, void* context, const nestgrid_element* e,
+    int (*children)(const void* self, void* context, const nestgrid_element* e, size_t count,
                     nestgrid_element* out);
 
     /* Optional. */
-    int (*corner_keys)(const void* self, void* context, const nestgrid_element* e, uint64_t* out);
-    int (*new_keys)(const void* self, void* context, const nestgrid_element* e, uint64_t* out);
+    int (*corner_keys)(const void* self, void* context, const nestgrid_element* e, size_t count,
+                       uint64_t* out);
+    int (*new_keys)(const void* self, void* context, const nestgrid_element* e, size_t count,
+                    uint64_t* out);
     size_t node_count; /* own keys lie below it; 0 where they are not dense */
     int (*corner_positions)(const void* self, void* context, const nestgrid_element* e,
                             size_t count, double (*out)[3]);
@@ -100,12 +102,13 @@ typedef struct nestgrid_grid {
     int (*outside)(const void* self, void* context, const nestgrid_element* e, uint64_t* nodes);
     int (*boundary_faces)(const void* self, void* context, const nestgrid_element* e,
                           unsigned* faces);
-    uint64_t (*epoch)(const void* self);
+    int (*epoch)(const void* self, uint64_t* epoch);
     void* (*make_context)(const void* self);
     void (*free_context)(const void* self, void* context);
 
     /* Of the library's own tables, instead of `rules` and `split`; NULL in all others. */
-    const void* (*library_split)(const void* self, void* context, const nestgrid_element* e);
+    int (*library_split)(const void* self, void* context, const nestgrid_element* e,
+                         const void** rule);
 } nestgrid_grid;
 
 /* Values are float or double as value_type says; component c of node n goes to

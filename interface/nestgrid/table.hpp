@@ -4,17 +4,25 @@
 // Generating the C tables of nestgrid.h from any model of NestedGrid and NodalField.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
+#include <string>
 #include <type_traits>
 
 #include <nestgrid/nestgrid.h>
-#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/error.hpp>
 #include <nestgrid/operations.hpp>
 
 namespace nestgrid {
 
 namespace detail {
 
+static_assert(NESTGRID_SEGMENT == static_cast<int>(Shape::segment));
+static_assert(NESTGRID_TRIANGLE == static_cast<int>(Shape::triangle));
+static_assert(NESTGRID_QUADRILATERAL == static_cast<int>(Shape::quadrilateral));
+static_assert(NESTGRID_TETRAHEDRON == static_cast<int>(Shape::tetrahedron));
+static_assert(NESTGRID_PYRAMID == static_cast<int>(Shape::pyramid));
+static_assert(NESTGRID_PRISM == static_cast<int>(Shape::prism));
 static_assert(NESTGRID_HEXAHEDRON == static_cast<int>(Shape::hexahedron));
 
 template <class Real>
@@ -38,7 +46,7 @@ inline void check_code(int code, const char* what, const char* operation) {
                     " failed with code " + std::to_string(code));
 }
 
-/// Nothing is thrown through a table.
+/// Nothing is thrown through a table: 1 stands for InvalidInput, 2 for GridError, 3 for the rest.
 template <class Function>
 int guarded(Function&& function) noexcept {
     try {
@@ -63,19 +71,21 @@ struct GridTable {
     static const Grid& grid(const void* self) { return *static_cast<const Grid*>(self); }
     static Element load(const nestgrid_element* e) {
         Element element;
-        std::memcpy(&element, e, sizeof(element));
+        std::memcpy(static_cast<void*>(&element), e, sizeof(element));
         return element;
     }
     static void store(const Element& element, nestgrid_element* e) {
+        *e = {};
         std::memcpy(e, &element, sizeof(element));
     }
-    /// Hands the task's state to function, or a fresh one where the grid has none.
+    /// Hands the task's state to function, or an empty one where the grid has none.
     template <class Function>
     static decltype(auto) with(void* context, Function&& function) {
         if constexpr (std::is_same_v<Context<Grid>, NoContext>) {
             NoContext none;
             return function(none);
         } else {
+            if (context == nullptr) throw GridError("the grid's make_context failed");
             return function(*static_cast<Context<Grid>*>(context));
         }
     }
@@ -96,44 +106,37 @@ struct GridTable {
             out->orientation = c.orientation;
         });
     }
-    static const void* library_split(const void* self, void* context, const nestgrid_element* e) {
-        return with(context, [&](auto& ctx) { return call_split(grid(self), ctx, load(e)); });
+    static int library_split(const void* self, void* context, const nestgrid_element* e,
+                             const void** rule) {
+        return guarded([&] {
+            *rule = with(context, [&](auto& ctx) { return call_split(grid(self), ctx, load(e)); });
+        });
     }
     static int children(const void* self, void* context, const nestgrid_element* e,
-                        nestgrid_element* out) {
+                        std::size_t count, nestgrid_element* out) {
         return guarded([&] {
-            with(context, [&](auto& ctx) {
-                const Element element = load(e);
-                std::array<Element, max_children> children;
-                const std::size_t count = call_split(grid(self), ctx, element)->children.size();
-                call_children(grid(self), ctx, element, std::span<Element>(children.data(), count));
-                for (std::size_t k = 0; k < count; ++k) store(children[k], out + k);
-            });
+            std::array<Element, max_children> children;
+            const std::span<Element> wanted = std::span(children).first(count);
+            with(context, [&](auto& ctx) { call_children(grid(self), ctx, load(e), wanted); });
+            for (std::size_t k = 0; k < count; ++k) store(children[k], out + k);
         });
     }
     static int corner_keys(const void* self, void* context, const nestgrid_element* e,
-                           std::uint64_t* out) {
+                           std::size_t count, std::uint64_t* out) {
         return guarded([&] {
-            std::array<NodeKey, max_corners> keys{};
-            with(context, [&](auto& ctx) {
-                call_corner_keys(grid(self), ctx, load(e), std::span<NodeKey>(keys));
-            });
-            for (std::size_t k = 0; k < keys.size(); ++k)
-                out[k] = static_cast<std::uint64_t>(keys[k]);
+            std::array<NodeKey, max_corners> keys;
+            const std::span<NodeKey> wanted = std::span(keys).first(count);
+            with(context, [&](auto& ctx) { call_corner_keys(grid(self), ctx, load(e), wanted); });
+            std::transform(wanted.begin(), wanted.end(), out, narrow);
         });
     }
     static int new_keys(const void* self, void* context, const nestgrid_element* e,
-                        std::uint64_t* out) {
+                        std::size_t count, std::uint64_t* out) {
         return guarded([&] {
-            with(context, [&](auto& ctx) {
-                const Element element = load(e);
-                std::array<NodeKey, max_new_nodes> keys{};
-                const std::size_t count = call_split(grid(self), ctx, element)->new_nodes.size();
-                call_new_keys(grid(self), ctx, element, std::span<NodeKey>(keys.data(), count));
-                for (std::size_t k = 0; k < count; ++k) {
-                    out[k] = static_cast<std::uint64_t>(keys[k]);
-                }
-            });
+            std::array<NodeKey, max_new_nodes> keys;
+            const std::span<NodeKey> wanted = std::span(keys).first(count);
+            with(context, [&](auto& ctx) { call_new_keys(grid(self), ctx, load(e), wanted); });
+            std::transform(wanted.begin(), wanted.end(), out, narrow);
         });
     }
     static int corner_positions(const void* self, void* context, const nestgrid_element* e,
@@ -181,15 +184,19 @@ struct GridTable {
                           [&](auto& ctx) { return call_boundary_faces(grid(self), ctx, load(e)); });
         });
     }
-    static std::uint64_t grid_epoch(const void* self) { return epoch(grid(self)); }
+    static int grid_epoch(const void* self, std::uint64_t* out) {
+        return guarded([&] { *out = epoch(grid(self)); });
+    }
+    /// NULL where the grid throws: every operation of the task then fails.
     static void* make(const void* self) {
-        if constexpr (std::is_same_v<Context<Grid>, NoContext>) {
-            return nullptr;
-        } else {
-            return new Context<Grid>(make_context(grid(self)));
-        }
+        void* context = nullptr;
+        guarded([&] { context = new Context<Grid>(make_context(grid(self))); });
+        return context;
     }
     static void free(const void*, void* context) { delete static_cast<Context<Grid>*>(context); }
+
+private:
+    static std::uint64_t narrow(NodeKey key) { return static_cast<std::uint64_t>(key); }
 };
 
 template <class Grid, class Field>
@@ -279,9 +286,9 @@ nestgrid_grid make_table(const Grid& grid) {
     return t;
 }
 
-/// The table of a field on a grid of the type Grid; the field is borrowed.
+/// The table of a field on a grid of the same type as the first argument; the field is borrowed.
 template <class Grid, class Field>
-nestgrid_field make_table(const Field& field) {
+nestgrid_field make_table(const Grid&, const Field& field) {
     static_assert(require_nodal_field<Field, Grid>());
     using Table = detail::FieldTable<Grid, Field>;
     nestgrid_field t{};

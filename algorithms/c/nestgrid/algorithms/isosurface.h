@@ -25,9 +25,10 @@ typedef struct nestgrid_surface {
     void* owner;
 } nestgrid_surface;
 
-/* The isosurface of component 0 under the hierarchical indicator with the given threshold, in units
- * of the data. Returns 0, or another number and a sentence in `message`, which has room for
- * message_size characters and may be NULL. Free the result with nestgrid_surface_free. */
+/* The isosurface of a field of one component under the hierarchical indicator with the given
+ * threshold, in units of the data. Returns 0, or another number and a sentence in `message`, which
+ * has room for message_size characters and may be NULL; the surface is then empty. Free the result
+ * with nestgrid_surface_free. */
 int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_field* field, double isovalue,
                         double threshold, nestgrid_surface* out, char* message,
                         size_t message_size);
