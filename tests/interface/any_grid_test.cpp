@@ -132,6 +132,20 @@ TEST(AnyGrid, GivesTheSameSurfaceFromTheRequiredOperations) {
                           {});
 }
 
+TEST(AnyGrid, GivesTheSameLinesWithUnequalWeights) {
+    const Rule thirds = make_rule("thirds", Shape::triangle,
+                                  {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),
+                                   weighted_mean_of({{0, 0.5}, {2, 0.3}, {3, 0.2}}, 1)},
+                                  {{Shape::triangle, {0, 3, 4}, 1, {}},
+                                   {Shape::triangle, {3, 2, 4}, 1, {}},
+                                   {Shape::triangle, {2, 0, 4}, 1, {}},
+                                   {Shape::triangle, {3, 1, 2}, 1, {}}});
+    Forest<2> forest = kuhn<2>(0);
+    for (std::uint32_t e = 0; forest.cells.size() < 200; ++e) forest.refine(e, thirds);
+    const ForestField<2> field(forest, [](const Point& x) { return norm(x); });
+    expect_same_every_way(forest, field, 0.7, {&thirds}, {});
+}
+
 TEST(AnyGrid, GivesTheSameSurfaceWhereNodesHang) {
     std::mt19937 random(3);
     Forest<3> forest = kuhn<3>(3);
