@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Adaptive quadtrees and octrees over any coarse grid of quadrilaterals or hexahedra, straight or
+// deformed. Nodes hang where neighbours differ; the grid knows which.
+#pragma once
+
+#include <nestgrid/adapters/stored_grid.hpp>
+#include <nestgrid/standard_rules.hpp>
+
+namespace nestgrid {
+
+template <int dim>
+struct Octree {
+    static_assert(dim == 2 || dim == 3);
+    static constexpr int dimension = dim;
+    static constexpr int max_corners = 1 << dim;
+    static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
+    static constexpr int max_children = 1 << dim;
+    static constexpr int block_height = 1;
+    static constexpr bool conforming = false;
+    static constexpr bool coarsens_by_node = false;
+    static constexpr const char* name = "octree";
+    static constexpr Shape shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
+
+    /// Elements that share an edge or a face differ by one level at most.
+    bool balanced = true;
+
+    static bool refines(Shape s) { return s == shape; }
+
+    static std::shared_ptr<const Rule> make_rule(std::uint64_t descriptor) {
+        if (descriptor != 1) throw InvalidInput("an octree has one rule only");
+        return {std::shared_ptr<const Rule>(), &dyadic_rule(shape)};
+    }
+    static bool is_temporary(std::uint64_t) { return false; }
+
+    std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
+        return std::vector<std::int8_t>(grid.element_count(), 1);
+    }
+
+    template <class Tree>
+    static std::uint16_t halve(Tree& tree) {
+        return tree.table.rule(1, false, [] { return make_rule(1); });
+    }
+
+    template <class Tree>
+    static std::uint16_t rule_for(Tree& tree, const typename Tree::Element&, Mark mark) {
+        if (mark != Mark::refine) throw InvalidInput("an octree has no rule for this mark");
+        return halve(tree);
+    }
+
+    template <class Tree>
+    void close(Tree& tree) const {
+        if (!balanced) return;
+        const Topology& t = topology(shape);
+        // A face whose other side is two levels finer has halves of its edges split.
+        tree.close([&](const typename Tree::Element& e) -> std::uint16_t {
+            for (std::size_t i = 0; i < t.edges; ++i) {
+                const std::uint32_t m =
+                    tree.midpoint(e.corner[t.edge[i][0]], e.corner[t.edge[i][1]]);
+                if (m != no_node && tree.half_split(m)) return halve(tree);
+            }
+            return 0;
+        });
+    }
+};
+
+/// Adaptive quadrilaterals (dim = 2, in the plane or in space) or hexahedra (3).
+template <int dim>
+using OctreeGrid = StoredGrid<Octree<dim>>;
+
+}  // namespace nestgrid

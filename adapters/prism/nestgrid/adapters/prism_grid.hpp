@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Prisms, triangle times segment, refined into 8 (isotropic), 4 (horizontal) or 2 (vertical).
+//
+// Invariants:
+//   - the isotropic rule is horizontal, then vertical; so the node in the middle of a
+//     quadrilateral face lies between the midpoints of its lower and its upper edge;
+//   - where a face is refined in both directions, all elements at it did so in the same order.
+// Consequence: every node has one stencil. A mixture that would give a node two is refused.
+#pragma once
+
+#include <nestgrid/adapters/stored_grid.hpp>
+#include <nestgrid/standard_rules.hpp>
+
+namespace nestgrid {
+
+struct Prism {
+    static constexpr int dimension = 3;
+    static constexpr int max_corners = 6;
+    static constexpr int max_new_nodes = 12;
+    static constexpr int max_children = 8;
+    static constexpr int block_height = 1;
+    static constexpr bool conforming = false;
+    static constexpr bool coarsens_by_node = false;
+    static constexpr const char* name = "prism";
+
+    static bool refines(Shape s) { return s == Shape::prism; }
+
+    static std::shared_ptr<const Rule> make_rule(std::uint64_t descriptor) {
+        if (descriptor > 2) throw InvalidInput("there is no such refinement of a prism");
+        return {std::shared_ptr<const Rule>(), &prism_rule(static_cast<PrismSplit>(descriptor))};
+    }
+    static bool is_temporary(std::uint64_t) { return false; }
+
+    std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
+        return std::vector<std::int8_t>(grid.element_count(), 1);
+    }
+
+    template <class Tree>
+    static std::uint16_t rule_for(Tree& tree, const typename Tree::Element&, Mark mark) {
+        const PrismSplit split = mark == Mark::refine_horizontally ? PrismSplit::horizontal
+                                 : mark == Mark::refine_vertically ? PrismSplit::vertical
+                                                                   : PrismSplit::isotropic;
+        const auto number = static_cast<std::uint64_t>(split);
+        return tree.table.rule(number, false, [&] { return make_rule(number); });
+    }
+
+    /// \throw InvalidInput where a node would get two stencils
+    template <class Tree>
+    void close(const Tree& tree) const {
+        for (const auto& e : tree.elements) {
+            if (!e.alive) continue;
+            for (std::size_t i = 0; i < 3; ++i) check_edge(tree, e.corner[i], e.corner[i + 3]);
+        }
+    }
+
+private:
+    /// A vertical edge between midpoints of two horizontal ones, a-b below and c-d above: its face
+    /// was refined horizontally first. The same face must not be refined vertically first.
+    template <class Tree>
+    static void check_edge(const Tree& tree, std::uint32_t below, std::uint32_t above) {
+        const auto& [a, b, face_below, unused_below] = tree.parents[below];
+        const auto& [c, d, face_above, unused_above] = tree.parents[above];
+        if (a == no_node || c == no_node) return;
+        for (const auto& [left, right] : {std::pair{c, d}, std::pair{d, c}}) {
+            const std::uint32_t p = tree.midpoint(a, left);
+            const std::uint32_t q = tree.midpoint(b, right);
+            if (p == no_node || q == no_node || tree.midpoint(p, q) == no_node) continue;
+            const Point x = tree.position[tree.midpoint(p, q)];
+            throw InvalidInput(
+                "prisms at the face around (" + std::to_string(x[0]) + ", " +
+                std::to_string(x[1]) + ", " + std::to_string(x[2]) +
+                ") are refined horizontally and then vertically, and the other way round: the "
+                "node in its middle would have two stencils");
+        }
+    }
+};
+
+/// Adaptive prisms.
+using PrismGrid = StoredGrid<Prism>;
+
+/// Layers of prisms over a surface of triangles.
+/// \param surface oriented; its nodes move along `direction` for each layer
+/// \param thickness of each layer, from the surface on, > 0
+/// \throw InvalidInput for other shapes, no layer, or a thickness or direction that is no positive
+///        number
+inline CoarseGrid extrude(const CoarseGrid& surface, std::span<const double> thickness,
+                          const Point& direction = {0, 0, 1}) {
+    if (thickness.empty()) throw InvalidInput("no layer to extrude");
+    if (!(norm(direction) > 0) || !std::isfinite(norm(direction))) {
+        throw InvalidInput("the direction of extrusion has no length");
+    }
+    const auto nodes = static_cast<std::uint32_t>(surface.nodes.size());
+    std::vector<Point> x;
+    double height = 0;
+    const Point up = 1 / norm(direction) * direction;
+    for (std::size_t layer = 0; layer <= thickness.size(); ++layer) {
+        for (std::size_t i = 0; i < nodes; ++i) x.push_back(surface.nodes[i] + height * up);
+        if (layer == thickness.size()) break;
+        if (!(thickness[layer] > 0) || !std::isfinite(thickness[layer])) {
+            throw InvalidInput("the thickness of layer " + std::to_string(layer) +
+                               " is no positive number");
+        }
+        height += thickness[layer];
+    }
+    CoarseGrid grid;
+    grid.dimension = 3;
+    grid.nodes = Coordinates(std::move(x));
+    for (std::uint32_t layer = 0; layer < thickness.size(); ++layer) {
+        for (std::size_t e = 0; e < surface.element_count(); ++e) {
+            const auto of = surface.element(e);
+            if (surface.shapes[e] != Shape::triangle) {
+                throw InvalidInput("element " + std::to_string(e) +
+                                   " of the surface is no triangle");
+            }
+            std::array<std::uint32_t, 6> prism{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                prism[i] = of[i] + layer * nodes;
+                prism[i + 3] = of[i] + (layer + 1) * nodes;
+            }
+            grid.add(Shape::prism, prism);
+        }
+    }
+    return grid;
+}
+
+}  // namespace nestgrid

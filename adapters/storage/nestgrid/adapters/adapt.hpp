@@ -1,0 +1,402 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One adaptation: unpack the hierarchy, coarsen, refine, close, write it anew.
+#pragma once
+
+#include <utility>
+
+#include <nestgrid/adapters/stored_grid.hpp>
+
+namespace nestgrid::detail {
+
+template <class Family>
+class Adapter {
+public:
+    using Grid = StoredGrid<Family>;
+    using Tree = WorkTree<Family::max_corners>;
+    using Element = typename Grid::Element;
+
+    explicit Adapter(Grid& grid) : grid_{grid}, table_{grid.table_}, tree_{table_} {}
+
+    template <class Marker>
+    Adaptation run(Marker& marker) {
+        unpack(marker);
+        coarsen();
+        tree_.activate();
+        const auto count = static_cast<std::uint32_t>(tree_.elements.size());
+        for (std::uint32_t e = 0; e < count; ++e) {
+            if (!tree_.is_leaf(tree_.elements[e]) || tree_.elements[e].mark < Mark::refine) {
+                continue;
+            }
+            ++result_.marked;
+            tree_.refine(e, Family::rule_for(tree_, tree_.elements[e], tree_.elements[e].mark));
+        }
+        grid_.family_.close(tree_);
+        if constexpr (!Family::conforming) find_hanging();
+        pack();
+        report();
+        commit();
+        return std::move(result_);
+    }
+
+private:
+    // Unpacking.
+    template <class Marker>
+    void unpack(Marker& marker);
+    template <class Marker>
+    void unpack(const Element& e, std::uint32_t place, Marker& marker);
+    template <class Marker>
+    Mark ask(const Element& e, Shape shape, int level, Marker& marker);
+    template <class Marker>
+    Mark ask_children(const Element& e, const Rule& rule, int level, Marker& marker);
+
+    void coarsen();
+    bool all_children_want_it(const typename Tree::Element& e) const;
+
+    // Nodes that hang.
+    void find_hanging();
+    void hang_edge(std::uint32_t a, std::uint32_t b);
+    void hang_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+    void hang_quadrilateral(const std::array<std::uint32_t, 4>& corner);
+    bool hang(std::uint32_t node);
+
+    // Packing.
+    struct Block {
+        std::vector<std::uint16_t> tree;   // rules in preorder
+        std::vector<std::uint32_t> inner;  // elements that have them
+        std::vector<std::uint32_t> exits;
+    };
+    void collect(std::uint32_t e, int height, Block& block) const;
+    bool is_refined(std::uint32_t e) const { return tree_.elements[e].rule != 0; }
+    void pack();
+    std::uint32_t pack(std::uint16_t pattern, const std::vector<std::uint32_t>& exits);
+
+    void report();
+    void commit();
+
+    Grid& grid_;
+    PatternTable table_;
+    Tree tree_;
+    Adaptation result_;
+    std::size_t coarse_ = 0;
+    std::vector<std::uint32_t> root_, words_, hanging_;
+    std::vector<bool> used_;
+    std::size_t leaves_ = 0;
+};
+
+template <class Family>
+template <class Marker>
+void Adapter<Family>::unpack(Marker& marker) {
+    const std::size_t coarse_nodes = grid_.coarse_.nodes.size();
+    tree_.add_nodes(grid_.node_count_);
+    for (std::size_t i = 0; i < coarse_nodes; ++i) {
+        tree_.add_coarse_node(static_cast<std::uint32_t>(i), grid_.coarse_.nodes[i]);
+    }
+    for (std::size_t i = 0; i < grid_.coarse_count(); ++i) {
+        const auto c = grid_.coarse(i);
+        typename Tree::Element e;
+        e.shape = c.shape;
+        e.corner = c.element.corner;
+        tree_.elements.push_back(e);
+    }
+    for (std::size_t i = 0; i < grid_.coarse_count(); ++i) {
+        coarse_ = i;
+        unpack(grid_.coarse(i).element, static_cast<std::uint32_t>(i), marker);
+    }
+}
+
+template <class Family>
+template <class Marker>
+void Adapter<Family>::unpack(const Element& e, std::uint32_t place, Marker& marker) {
+    const unsigned code = grid_.code_of(e);
+    const int level = tree_.elements[place].level;
+    if (code == 0) {
+        tree_.elements[place].mark = ask(e, tree_.elements[place].shape, level, marker);
+        return;
+    }
+    const std::uint16_t number = table_[code].inner[e.inner].rule;
+    const StoredRule& stored = table_.rule(number);
+    const Rule& rule = *stored.rule;
+    std::array<std::uint32_t, max_new_nodes> node;
+    grid_.for_each_new_node(e, [&](std::size_t k, std::uint32_t n) { node[k] = n; });
+    const std::span<const std::uint32_t> nodes(node.data(), stored.nodes.size());
+    if (stored.temporary) {
+        tree_.remember(tree_.elements[place], number, nodes);
+        tree_.elements[place].mark = ask_children(e, rule, level, marker);
+        return;
+    }
+    const std::uint32_t child = tree_.restore(place, number, nodes);
+    std::array<Element, static_cast<std::size_t>(Grid::max_children)> below;
+    grid_.children(e, std::span(below).first(rule.children.size()));
+    for (std::uint32_t k = 0; k < rule.children.size(); ++k) unpack(below[k], child + k, marker);
+}
+
+template <class Family>
+template <class Marker>
+Mark Adapter<Family>::ask(const Element& e, Shape shape, int level, Marker& marker) {
+    const std::size_t n = topology(shape).corners;
+    std::array<Point, max_corners> x;
+    for (std::size_t i = 0; i < n; ++i) x[i] = tree_.position[e.corner[i]];
+    return marker(Leaf{shape, level, coarse_, {x.data(), n}, {e.corner.data(), n}});
+}
+
+/// Children made by the closure: refined if one wants it, coarsened if all of them do.
+template <class Family>
+template <class Marker>
+Mark Adapter<Family>::ask_children(const Element& e, const Rule& rule, int level, Marker& marker) {
+    std::array<Element, static_cast<std::size_t>(Grid::max_children)> below;
+    grid_.children(e, std::span(below).first(rule.children.size()));
+    Mark least = Mark::refine, most = Mark::coarsen;
+    for (std::size_t k = 0; k < rule.children.size(); ++k) {
+        const Mark mark = ask(below[k], rule.children[k].shape, level + 1, marker);
+        least = std::min(least, mark);
+        most = std::max(most, mark);
+    }
+    return most >= Mark::refine ? most : most == Mark::coarsen ? least : Mark::keep;
+}
+
+template <class Family>
+bool Adapter<Family>::all_children_want_it(const typename Tree::Element& e) const {
+    if (!e.alive || e.rule == 0) return false;
+    for (std::size_t k = 0; k < tree_.rule(e).children.size(); ++k) {
+        const auto& child = tree_.elements[e.child + k];
+        if (child.rule != 0 || child.mark != Mark::coarsen) return false;
+    }
+    return true;
+}
+
+template <class Family>
+void Adapter<Family>::coarsen() {
+    std::vector<std::uint32_t> families;
+    for (std::uint32_t e = 0; e < tree_.elements.size(); ++e) {
+        if (all_children_want_it(tree_.elements[e])) families.push_back(e);
+    }
+    if constexpr (Family::coarsens_by_node) {
+        // A node goes if all elements around it come from families that made it and go.
+        std::vector<bool> stays(tree_.position.size(), false);
+        std::vector<std::uint32_t> goes(tree_.elements.size(), no_node);
+        for (const std::uint32_t e : families) {
+            for (std::size_t k = 0; k < tree_.rule(tree_.elements[e]).children.size(); ++k) {
+                goes[tree_.elements[e].child + k] = tree_.nodes(tree_.elements[e])[0];
+            }
+        }
+        for (std::size_t e = 0; e < tree_.elements.size(); ++e) {
+            const auto& element = tree_.elements[e];
+            if (!tree_.is_leaf(element)) continue;
+            for (std::size_t i = 0; i < topology(element.shape).corners; ++i) {
+                if (element.corner[i] != goes[e]) stays[element.corner[i]] = true;
+            }
+        }
+        std::erase_if(families, [&](std::uint32_t e) {
+            return bool{stays[tree_.nodes(tree_.elements[e])[0]]};
+        });
+    }
+    for (const std::uint32_t e : families) tree_.coarsen(tree_.elements[e]);
+    result_.coarsened = families.size();
+}
+
+/// \return whether the node is there, which then hangs
+template <class Family>
+bool Adapter<Family>::hang(std::uint32_t node) {
+    if (node == no_node) return false;
+    hanging_[node / 32] |= 1U << node % 32;
+    return true;
+}
+
+template <class Family>
+void Adapter<Family>::hang_edge(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t m = tree_.midpoint(a, b);
+    if (!hang(m)) return;
+    hang_edge(a, m);
+    hang_edge(m, b);
+}
+
+template <class Family>
+void Adapter<Family>::hang_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const std::uint32_t ab = tree_.midpoint(a, b);
+    const std::uint32_t bc = tree_.midpoint(b, c);
+    const std::uint32_t ca = tree_.midpoint(c, a);
+    if (ab == no_node || bc == no_node || ca == no_node) return;
+    hang_edge(ab, bc);
+    hang_edge(bc, ca);
+    hang_edge(ca, ab);
+    hang_triangle(a, ab, ca);
+    hang_triangle(ab, b, bc);
+    hang_triangle(ca, bc, c);
+    hang_triangle(ab, bc, ca);
+}
+
+/// \param corner in tensor order
+template <class Family>
+void Adapter<Family>::hang_quadrilateral(const std::array<std::uint32_t, 4>& corner) {
+    const auto [a, b, c, d] = corner;
+    const std::uint32_t ab = tree_.midpoint(a, b);
+    const std::uint32_t cd = tree_.midpoint(c, d);
+    const std::uint32_t ac = tree_.midpoint(a, c);
+    const std::uint32_t bd = tree_.midpoint(b, d);
+    const bool across = ab != no_node && cd != no_node;
+    const bool along = ac != no_node && bd != no_node;
+    const std::uint32_t m = across && along ? tree_.centre({ab, cd, ac, bd}) : no_node;
+    if (hang(m)) {
+        for (const std::uint32_t side : {ab, cd, ac, bd}) hang_edge(side, m);
+        hang_quadrilateral({a, ab, ac, m});
+        hang_quadrilateral({ab, b, m, bd});
+        hang_quadrilateral({ac, m, c, cd});
+        hang_quadrilateral({m, bd, cd, d});
+        return;
+    }
+    if (across) {
+        hang_edge(ab, cd);
+        hang_quadrilateral({a, ab, c, cd});
+        hang_quadrilateral({ab, b, cd, d});
+    }
+    if (along) {
+        hang_edge(ac, bd);
+        hang_quadrilateral({a, b, ac, bd});
+        hang_quadrilateral({ac, bd, c, d});
+    }
+}
+
+template <class Family>
+void Adapter<Family>::find_hanging() {
+    hanging_.assign((tree_.position.size() + 31) / 32, 0);
+    for (const auto& e : tree_.elements) {
+        if (!tree_.is_leaf(e)) continue;
+        const Topology& t = topology(e.shape);
+        for (std::size_t i = 0; i < t.edges; ++i) {
+            hang_edge(e.corner[t.edge[i][0]], e.corner[t.edge[i][1]]);
+        }
+        for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
+            const auto at = [&](int i) { return e.corner[t.face[f].tensor_corner(i)]; };
+            if (t.face[f].corners == 3) {
+                hang_triangle(at(0), at(1), at(2));
+            } else {
+                hang_quadrilateral({at(0), at(1), at(2), at(3)});
+            }
+        }
+    }
+}
+
+template <class Family>
+void Adapter<Family>::collect(std::uint32_t e, int height, Block& block) const {
+    const auto& element = tree_.elements[e];
+    if (height == 0 || element.rule == 0) {
+        block.tree.push_back(0);
+        block.exits.push_back(e);
+        return;
+    }
+    block.tree.push_back(element.rule);
+    block.inner.push_back(e);
+    const auto n = static_cast<std::uint32_t>(tree_.rule(element).children.size());
+    for (std::uint32_t k = 0; k < n; ++k) collect(element.child + k, height - 1, block);
+}
+
+template <class Family>
+void Adapter<Family>::pack() {
+    used_.assign(tree_.position.size(), false);
+    root_.assign(grid_.coarse_count(), Grid::none_);
+    for (std::size_t i = 0; i < grid_.coarse_.nodes.size(); ++i) {
+        used_[i] = true;
+    }
+    for (std::uint32_t e = 0; e < grid_.coarse_count(); ++e) {
+        if (!is_refined(e)) {
+            ++leaves_;
+            continue;
+        }
+        root_[e] = pack(static_cast<std::uint16_t>(tree_.elements[e].shape), {e});
+    }
+    words_.shrink_to_fit();
+}
+
+/// Writes the record of an element that is refined by `pattern` and has `exits`.
+template <class Family>
+std::uint32_t Adapter<Family>::pack(std::uint16_t pattern,
+                                    const std::vector<std::uint32_t>& exits) {
+    std::vector<Block> blocks(exits.size());
+    std::vector<std::uint16_t> codes(exits.size(), 0);
+    std::array<std::uint32_t, max_entities> reference;
+    std::array<std::uint32_t, max_entities / 32> mask{};
+    for (std::size_t j = 0; j < exits.size(); ++j) {
+        if (!is_refined(exits[j])) {
+            ++leaves_;
+            continue;
+        }
+        collect(exits[j], Family::block_height, blocks[j]);
+        codes[j] = table_.pattern(blocks[j].tree);
+        const Pattern& refined = table_[codes[j]];
+        const auto& entity_of_exit = table_[pattern].exits[j].entity;
+        for (std::size_t i = 0; i < refined.inner.size(); ++i) {
+            const auto nodes = tree_.nodes(tree_.elements[blocks[j].inner[i]]);
+            for (std::size_t k = 0; k < nodes.size(); ++k) {
+                const unsigned entity = entity_of_exit[refined.inner[i].entity[k]];
+                mask[entity / 32] |= 1U << entity % 32;
+                reference[entity] = nodes[k];
+                used_[nodes[k]] = true;
+            }
+        }
+        for (const std::uint32_t e : blocks[j].exits) {
+            if (is_refined(e)) codes[j] |= Grid::has_record_;
+        }
+    }
+    const auto at = static_cast<std::uint32_t>(words_.size());
+    if (words_.size() + 2 * max_entities >= Grid::none_) {
+        throw GridError("the store of a grid is full: more than 16 GiB");
+    }
+    for (std::size_t j = 0; j < codes.size(); j += 2) {
+        const std::uint32_t high = j + 1 < codes.size() ? codes[j + 1] : 0U;
+        words_.push_back(codes[j] | high << 16U);
+    }
+    words_.insert(words_.end(), mask.begin(),
+                  mask.begin() + static_cast<std::ptrdiff_t>(table_[pattern].mask_words()));
+    std::size_t link = words_.size();
+    for (const std::uint16_t code : codes) {
+        if ((code & Grid::has_record_) != 0) words_.push_back(Grid::none_);
+    }
+    for (unsigned entity = 0; entity < static_cast<unsigned>(max_entities); ++entity) {
+        if ((mask[entity / 32] >> entity % 32 & 1U) != 0) words_.push_back(reference[entity]);
+    }
+    for (std::size_t j = 0; j < codes.size(); ++j) {
+        if ((codes[j] & Grid::has_record_) != 0) {
+            const auto number = static_cast<std::uint16_t>(codes[j] & ~Grid::has_record_);
+            const std::uint32_t below = pack(number, blocks[j].exits);
+            words_[link++] = below;
+        } else if (codes[j] != 0) {
+            leaves_ += blocks[j].exits.size();
+        }
+    }
+    return at;
+}
+
+template <class Family>
+void Adapter<Family>::report() {
+    for (std::size_t i = 0; i < tree_.created.size(); ++i) {
+        if (!used_[tree_.created[i]]) continue;
+        result_.created.push_back(tree_.created[i]);
+        for (std::size_t k = tree_.created_first[i]; k < tree_.created_first[i + 1]; ++k) {
+            result_.parent.push_back(tree_.created_parent[k]);
+        }
+        result_.first_parent.push_back(static_cast<std::uint32_t>(result_.parent.size()));
+    }
+}
+
+template <class Family>
+void Adapter<Family>::commit() {
+    std::size_t count = used_.size();
+    while (count > 0 && !used_[count - 1]) --count;
+    if (!hanging_.empty()) {
+        hanging_.resize((count + 31) / 32);
+        hanging_.shrink_to_fit();
+    }
+    grid_.table_ = std::move(table_);
+    grid_.root_ = std::move(root_);
+    grid_.words_ = std::move(words_);
+    grid_.hanging_ = std::move(hanging_);
+    grid_.node_count_ = count;
+    grid_.used_node_count_ =
+        static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true));
+    grid_.leaf_count_ = leaves_;
+    ++grid_.epoch_;
+}
+
+}  // namespace nestgrid::detail

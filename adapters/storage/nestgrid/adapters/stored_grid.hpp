@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One economical store for all families of hierarchies (paper, section 8): coordinates and
+// elements of the coarse grid, below it patterns and references to new nodes.
+//
+// Invariants:
+//   - a record belongs to a refined element that has a refined exit. It holds, in 32-bit words,
+//     the pattern of every exit (16 bits: 0 for a leaf, the highest bit where the exit has a
+//     record), the set of entities that carry a node, the places of the exits' records, and one
+//     reference per entity in the set;
+//   - records stand in the order of a depth-first traversal; one record per coarse element, with
+//     the pattern "unrefined", is the root.
+// Consequences: a leaf costs 16 bits, a node one reference in each family of siblings that makes
+// it, and nothing depends on the history of the grid: an adaptation writes the store anew.
+#pragma once
+
+#include <bit>
+#include <optional>
+
+#include <nestgrid/adapters/coarse_checks.hpp>
+#include <nestgrid/adapters/work_tree.hpp>
+#include <nestgrid/operations.hpp>
+
+namespace nestgrid {
+
+/// A leaf, as a marker sees it.
+struct Leaf {
+    Shape shape = Shape::point;
+    int level = 0;                           ///< refinements above it
+    std::size_t coarse = 0;                  ///< coarse element it descends from
+    std::span<const Point> corners;          ///< positions
+    std::span<const std::uint32_t> nodes;    ///< numbers of the corners
+
+    Point centre() const {
+        Point sum{0, 0, 0};
+        for (const Point& x : corners) sum = sum + x;
+        return 1.0 / static_cast<double>(corners.size()) * sum;
+    }
+};
+
+/// What an adaptation has done.
+struct Adaptation {
+    std::size_t marked = 0;     ///< leaves marked for refinement
+    std::size_t coarsened = 0;  ///< families that were marked for coarsening and carried out
+    /// Nodes that are new, in an order in which parents come first, and the parents of the i-th:
+    /// parent[first_parent[i]] ... parent[first_parent[i + 1] - 1]. A new value is their mean.
+    std::vector<std::uint32_t> created;
+    std::vector<std::uint32_t> first_parent{0};
+    std::vector<std::uint32_t> parent;
+
+    /// Values at new nodes by interpolation; others are untouched.
+    /// \param values one per node of the grid; is resized to `node_count`
+    template <class Real>
+    void interpolate(std::vector<Real>& values, std::size_t node_count) const {
+        values.resize(node_count);
+        for (std::size_t i = 0; i < created.size(); ++i) {
+            Real sum = 0;
+            for (std::size_t k = first_parent[i]; k < first_parent[i + 1]; ++k) {
+                sum += values[parent[k]];
+            }
+            values[created[i]] = sum / static_cast<Real>(first_parent[i + 1] - first_parent[i]);
+        }
+    }
+};
+
+namespace detail {
+template <class Family>
+class Adapter;
+template <class Family>
+class GridFile;
+}  // namespace detail
+
+/// A nested grid that owns its hierarchy. A family says which shapes and rules there are and what
+/// its closure demands.
+template <class Family>
+class StoredGrid {
+public:
+    static constexpr int dimension = Family::dimension;
+    static constexpr int max_corners = Family::max_corners;
+    static constexpr int max_new_nodes = Family::max_new_nodes;
+    static constexpr int max_children = Family::max_children;
+
+    struct Element {
+        std::array<std::uint32_t, static_cast<std::size_t>(Family::max_corners)> corner;
+        std::uint32_t record;   ///< where the pattern of the refined element stands, or none_
+        std::uint16_t pattern;  ///< that this record belongs to
+        std::uint8_t exit;      ///< of that pattern, which is the refined element
+        std::uint8_t inner;     ///< element inside the pattern that refines it
+    };
+
+    /// \throw InvalidInput where the coarse grid fails check_and_orient(), or the family has no
+    ///        rule for a shape of it
+    explicit StoredGrid(CoarseGrid coarse, const Family& family = {},
+                        const CoarseChecks& checks = {});
+
+    // Required operations.
+    std::size_t coarse_count() const { return coarse_.element_count(); }
+    CoarseElement<Element> coarse(std::size_t i) const;
+    const Rule* split(const Element& e) const {
+        const unsigned code = code_of(e);
+        if (code == 0) return nullptr;
+        return table_.rule(table_[code].inner[e.inner].rule).rule.get();
+    }
+    void children(const Element& e, std::span<Element> out) const;
+
+    // Optional operations.
+    std::size_t node_count() const { return node_count_; }
+    void corner_keys(const Element& e, std::span<NodeKey> out) const {
+        std::copy_n(e.corner.begin(), out.size(), out.begin());
+    }
+    void new_keys(const Element& e, std::span<NodeKey> out) const {
+        for_each_new_node(e, [&](std::size_t k, std::uint32_t node) { out[k] = node; });
+    }
+    bool conforming() const requires(Family::conforming) { return true; }
+    NodeMask constrained(const Element& e) const requires(!Family::conforming) {
+        NodeMask mask = 0;
+        if (code_of(e) == 0 || hanging_.empty()) return mask;
+        for_each_new_node(e, [&](std::size_t k, std::uint32_t node) {
+            mask |= NodeMask{hanging_[node / 32] >> (node % 32) & 1U} << k;
+        });
+        return mask;
+    }
+    std::uint64_t epoch() const { return epoch_; }
+
+    /// Calls function(k, node) for every new node k of a refined element.
+    template <class Function>
+    void for_each_new_node(const Element& e, Function&& function) const;
+
+    /// One step of adaptation: asks marker(Leaf) for the Mark of every leaf, refines and coarsens,
+    /// and does what the family's closure demands. Nodes keep their numbers; new ones take free
+    /// numbers. Where it throws, the grid is as before.
+    /// \throw InvalidInput for a mark that the family does not have
+    template <class Marker>
+    Adaptation adapt(Marker&& marker);
+
+    Adaptation refine_uniformly() {
+        return adapt([](const Leaf&) { return Mark::refine; });
+    }
+
+    /// Calls function(Leaf) for every leaf, in the order of a depth-first traversal.
+    template <class Function>
+    void for_each_leaf(Function&& function) const;
+
+    /// Positions of all nodes; numbers that are not in use are at the origin.
+    std::vector<Point> node_positions() const;
+
+    const CoarseGrid& coarse_grid() const { return coarse_; }
+    const Family& family() const { return family_; }
+    std::size_t leaf_count() const { return leaf_count_; }
+    /// Nodes that are in use; node_count() bounds their numbers.
+    std::size_t used_node_count() const { return used_node_count_; }
+    bool hangs(std::uint32_t node) const {
+        return !hanging_.empty() && (hanging_[node / 32] >> (node % 32) & 1U) != 0;
+    }
+
+    /// Topology and references, without the coarse grid.
+    std::size_t memory_bytes() const {
+        return (words_.capacity() + root_.capacity() + hanging_.capacity()) * sizeof(words_[0]);
+    }
+
+private:
+    friend class detail::Adapter<Family>;
+    friend class detail::GridFile<Family>;
+    static constexpr std::uint32_t none_ = 0xFFFFFFFFU;
+    static constexpr unsigned has_record_ = 0x8000U;
+
+    struct Record {
+        const std::uint32_t* codes;
+        const std::uint32_t* mask;
+        const std::uint32_t* links;
+        const std::uint32_t* references;
+    };
+
+    unsigned raw_code(std::uint32_t record, unsigned exit) const {
+        return words_[record + exit / 2] >> (exit % 2 * 16) & 0xFFFFU;
+    }
+    unsigned code_of(const Element& e) const {
+        return e.record == none_ ? 0 : raw_code(e.record, e.exit) & ~has_record_;
+    }
+    Record record(const Element& e) const {
+        const Pattern& p = table_[e.pattern];
+        const std::uint32_t* at = words_.data() + e.record;
+        Record r{at, at + p.code_words(), nullptr, nullptr};
+        r.links = r.mask + p.mask_words();
+        r.references = r.links;
+        for (std::size_t i = 0; i < p.code_words(); ++i) {
+            r.references += std::popcount(r.codes[i] & 0x80008000U);
+        }
+        return r;
+    }
+    std::uint32_t link(const Element& e) const {
+        if ((raw_code(e.record, e.exit) & has_record_) == 0) return none_;
+        const Record r = record(e);
+        std::size_t before = 0;
+        for (std::size_t i = 0; i < e.exit / 2U; ++i) {
+            before += static_cast<std::size_t>(std::popcount(r.codes[i] & 0x80008000U));
+        }
+        if (e.exit % 2 == 1 && (r.codes[e.exit / 2] & 0x8000U) != 0) ++before;
+        return r.links[before];
+    }
+
+    CoarseGrid coarse_;
+    Family family_;
+    PatternTable table_;
+    std::vector<std::uint32_t> root_;     // record of each coarse element, or none_
+    std::vector<std::uint32_t> words_;    // records
+    std::vector<std::uint32_t> hanging_;  // one bit per node
+    std::vector<std::int8_t> orientation_;
+    std::size_t node_count_ = 0;
+    std::size_t used_node_count_ = 0;
+    std::size_t leaf_count_ = 0;
+    std::uint64_t epoch_ = 0;
+};
+
+/// Values at the nodes of a stored grid, by node number, borrowed.
+template <class Grid, class Real>
+class NodeField {
+public:
+    using value_type = Real;
+    using Element = typename Grid::Element;
+
+    /// \throw InvalidInput where there is not one value per node number
+    NodeField(const Grid& grid, std::span<const Real> values) : grid_{&grid}, values_{values} {
+        if (values.size() != grid.node_count()) {
+            throw InvalidInput("the field has " + std::to_string(values.size()) +
+                               " values, but the grid " + std::to_string(grid.node_count()) +
+                               " nodes");
+        }
+    }
+    NodeField(const Grid& grid, const std::vector<Real>& values)
+        : NodeField(grid, std::span<const Real>(values)) {}
+
+    NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
+        const auto nodes = grid_->coarse_grid().element(i);
+        for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = values_[nodes[k]];
+        return 0;
+    }
+    NodeMask new_values(const Element& e, NodeMask, std::span<Real> out) const {
+        grid_->for_each_new_node(
+            e, [&](std::size_t k, std::uint32_t node) { out[k] = values_[node]; });
+        return 0;
+    }
+    Real value(NodeKey node) const { return values_[static_cast<std::size_t>(node)]; }
+
+private:
+    const Grid* grid_;
+    std::span<const Real> values_;
+};
+
+}  // namespace nestgrid
+
+#include <nestgrid/adapters/adapt.hpp>
+#include <nestgrid/adapters/stored_grid_steps.hpp>

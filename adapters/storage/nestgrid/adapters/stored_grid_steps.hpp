@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nestgrid/adapters/stored_grid.hpp>
+
+namespace nestgrid {
+
+template <class Family>
+StoredGrid<Family>::StoredGrid(CoarseGrid coarse, const Family& family, const CoarseChecks& checks)
+    : coarse_{std::move(coarse)}, family_{family} {
+    check_and_orient(coarse_, checks);
+    for (std::size_t i = 0; i < coarse_.element_count(); ++i) {
+        if (!Family::refines(coarse_.shapes[i])) {
+            throw InvalidInput(std::string("a ") + Family::name + " hierarchy has no rule for a " +
+                               std::string(topology(coarse_.shapes[i]).name) + " (element " +
+                               std::to_string(i) + ")");
+        }
+    }
+    orientation_ = family_.prepare(coarse_);
+    root_.assign(coarse_.element_count(), none_);
+    leaf_count_ = coarse_.element_count();
+    node_count_ = used_node_count_ = coarse_.nodes.size();
+}
+
+template <class Family>
+auto StoredGrid<Family>::coarse(std::size_t i) const -> CoarseElement<Element> {
+    CoarseElement<Element> c;
+    c.shape = coarse_.shapes[i];
+    c.orientation = orientation_[i];
+    const auto nodes = coarse_.element(i);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        c.corners[k] = coarse_.nodes[nodes[k]];
+        c.ids[k] = c.element.corner[k] = nodes[k];
+    }
+    c.element.record = root_[i];
+    c.element.pattern = static_cast<std::uint16_t>(c.shape);
+    c.element.exit = c.element.inner = 0;
+    return c;
+}
+
+template <class Family>
+template <class Function>
+void StoredGrid<Family>::for_each_new_node(const Element& e, Function&& function) const {
+    const Record r = record(e);
+    const auto& entity_of_exit = table_[e.pattern].exits[e.exit].entity;
+    const Pattern::Inner& inner = table_[code_of(e)].inner[e.inner];
+    for (std::size_t k = 0; k < inner.entity.size(); ++k) {
+        const unsigned entity = entity_of_exit[inner.entity[k]];
+        std::size_t rank = static_cast<std::size_t>(
+            std::popcount(r.mask[entity / 32] & ((1U << entity % 32) - 1U)));
+        for (std::size_t i = 0; i < entity / 32; ++i) {
+            rank += static_cast<std::size_t>(std::popcount(r.mask[i]));
+        }
+        function(k, r.references[rank]);
+    }
+}
+
+template <class Family>
+void StoredGrid<Family>::children(const Element& e, std::span<Element> out) const {
+    const unsigned code = code_of(e);
+    const Pattern::Inner& inner = table_[code].inner[e.inner];
+    const Rule& rule = *table_.rule(inner.rule).rule;
+    std::array<std::uint32_t, static_cast<std::size_t>(max_corners + max_new_nodes)> node;
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    std::copy_n(e.corner.begin(), corners, node.begin());
+    for_each_new_node(e, [&](std::size_t k, std::uint32_t n) { node[corners + k] = n; });
+    const std::uint32_t below = link(e);
+    for (std::size_t c = 0; c < out.size(); ++c) {
+        const Child& child = rule.children[c];
+        Element& o = out[c];
+        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+            o.corner[i] = node[child.corner[i]];
+        }
+        const Pattern::Target target = inner.child[c];
+        if (target.exit) {
+            o.record = below;
+            o.pattern = static_cast<std::uint16_t>(code);
+            o.exit = target.number;
+            o.inner = 0;
+        } else {
+            o.record = e.record;
+            o.pattern = e.pattern;
+            o.exit = e.exit;
+            o.inner = target.number;
+        }
+    }
+}
+
+template <class Family>
+template <class Marker>
+Adaptation StoredGrid<Family>::adapt(Marker&& marker) {
+    return detail::Adapter<Family>(*this).run(marker);
+}
+
+namespace detail {
+
+/// Walks a stored grid with the positions of its nodes.
+template <class Grid, class Visitor>
+class PositionWalk {
+public:
+    PositionWalk(const Grid& grid, Visitor& visitor) : grid_{grid}, visitor_{visitor} {}
+
+    void run() {
+        for (std::size_t i = 0; i < grid_.coarse_count(); ++i) {
+            const auto c = grid_.coarse(i);
+            coarse_ = i;
+            visit(c.element, c.shape, 0, c.corners.data());
+        }
+    }
+
+private:
+    using Element = typename Grid::Element;
+
+    void visit(const Element& e, Shape shape, int level, const Point* corners) {
+        const std::size_t n = topology(shape).corners;
+        visitor_(Leaf{shape, level, coarse_, {corners, n}, {e.corner.data(), n}},
+                 grid_.split(e) == nullptr);
+        const Rule* rule = grid_.split(e);
+        if (rule == nullptr) return;
+        std::array<Point, static_cast<std::size_t>(Grid::max_corners + Grid::max_new_nodes)> x;
+        std::copy_n(corners, n, x.begin());
+        for (std::size_t k = 0; k < rule->new_nodes.size(); ++k) {
+            const Stencil& s = rule->new_nodes[k];
+            Point sum{0, 0, 0};
+            for (std::size_t i = 0; i < s.count; ++i) sum = sum + s.weight[i] * x[s.parent[i]];
+            x[n + k] = sum;
+        }
+        std::array<Element, static_cast<std::size_t>(Grid::max_children)> child;
+        grid_.children(e, std::span(child).first(rule->children.size()));
+        for (std::size_t c = 0; c < rule->children.size(); ++c) {
+            const Child& to = rule->children[c];
+            std::array<Point, static_cast<std::size_t>(Grid::max_corners)> y;
+            for (std::size_t i = 0; i < topology(to.shape).corners; ++i) y[i] = x[to.corner[i]];
+            visit(child[c], to.shape, level + 1, y.data());
+        }
+    }
+
+    const Grid& grid_;
+    Visitor& visitor_;
+    std::size_t coarse_ = 0;
+};
+
+}  // namespace detail
+
+template <class Family>
+template <class Function>
+void StoredGrid<Family>::for_each_leaf(Function&& function) const {
+    const auto visit = [&](const Leaf& element, bool is_leaf) {
+        if (is_leaf) function(element);
+    };
+    detail::PositionWalk<StoredGrid, decltype(visit)>(*this, visit).run();
+}
+
+template <class Family>
+std::vector<Point> StoredGrid<Family>::node_positions() const {
+    std::vector<Point> x(node_count_, Point{0, 0, 0});
+    for_each_leaf([&](const Leaf& leaf) {
+        for (std::size_t i = 0; i < leaf.nodes.size(); ++i) x[leaf.nodes[i]] = leaf.corners[i];
+    });
+    return x;
+}
+
+}  // namespace nestgrid

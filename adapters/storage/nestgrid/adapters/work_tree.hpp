@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A hierarchy unpacked, for the time of one adaptation.
+//
+// Invariants:
+//   - a node is known by the two nodes it lies between, a face's centre by the midpoints of two of
+//     its edges: exact keys, no coordinates, no adjacency;
+//   - a node is active while some refined element makes it; an edge is split while its midpoint
+//     is active.
+// Consequence: closures ask for the state of an edge by its two ends, and elements that share it
+// agree without knowing each other.
+#pragma once
+
+#include <limits>
+
+#include <nestgrid/adapters/pattern.hpp>
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid {
+
+/// What a marker wants with a leaf.
+enum class Mark : std::int8_t {
+    coarsen = -1,  ///< carried out where all leaves of a family agree and the closure permits
+    keep = 0,
+    refine = 1,           ///< by the full rule of its shape; one bisection
+    refine_horizontally,  ///< prisms: four
+    refine_vertically,    ///< prisms: two
+};
+
+inline constexpr std::uint32_t no_node = 0xFFFFFFFFU;
+
+template <int corners>
+class WorkTree {
+public:
+    struct Element {
+        std::array<std::uint32_t, static_cast<std::size_t>(corners)> corner{};
+        std::uint32_t child = 0;  ///< first one
+        std::uint32_t nodes = 0;  ///< of its new nodes in `new_nodes`
+        std::uint16_t rule = 0;   ///< 0 for a leaf
+        Shape shape = Shape::point;
+        std::uint8_t level = 0;
+        Mark mark = Mark::keep;
+        bool alive = true;
+    };
+
+    explicit WorkTree(PatternTable& patterns) : table{patterns} {}
+
+    PatternTable& table;
+    std::vector<Element> elements;         // the coarse ones first
+    std::vector<std::uint32_t> new_nodes;  // of refined elements
+    std::vector<Point> position;           // of nodes, as all below
+    std::vector<std::array<std::uint32_t, 4>> parents;
+    std::vector<std::uint32_t> created;  // in order
+    std::vector<std::uint32_t> created_first{0};  // place of each one's parents in
+    std::vector<std::uint32_t> created_parent;
+
+    const Rule& rule(const Element& e) const { return *table.rule(e.rule).rule; }
+    std::span<const std::uint32_t> nodes(const Element& e) const {
+        return {new_nodes.data() + e.nodes, table.rule(e.rule).nodes.size()};
+    }
+    bool is_leaf(const Element& e) const { return e.alive && e.rule == 0; }
+
+    void add_nodes(std::size_t count) {
+        position.resize(count);
+        parents.resize(count, {no_node, no_node, no_node, no_node});
+        state_.resize(count, 0);
+    }
+
+    void add_coarse_node(std::uint32_t node, const Point& x) {
+        position[node] = x;
+        state_[node] |= known_;
+    }
+
+    /// The active node in the middle of an edge, or no_node.
+    std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) const {
+        return active(by_key_.find(pair(a, b)));
+    }
+    /// The active node in the middle of a face, from the midpoints of its edges.
+    std::uint32_t centre(const std::array<std::uint32_t, 4>& midpoints) const {
+        return active(by_key_.find(face_key(midpoints)));
+    }
+    bool half_split(std::uint32_t midpoint) const { return (state_[midpoint] & half_) != 0; }
+
+    /// Refines a leaf; makes the nodes that are not there. Its children are leaves.
+    /// \return the first child
+    std::uint32_t refine(std::uint32_t leaf, std::uint16_t rule_number);
+
+    /// Unpacking: refines a leaf with nodes that are known.
+    std::uint32_t restore(std::uint32_t leaf, std::uint16_t rule_number,
+                          std::span<const std::uint32_t> nodes);
+    /// Unpacking: the nodes of a temporary refinement, which is not restored.
+    void remember(const Element& e, std::uint16_t rule_number,
+                  std::span<const std::uint32_t> nodes);
+
+    /// Undoes the refinement of an element whose children are leaves.
+    void coarsen(Element& e) {
+        const std::size_t n = rule(e).children.size();
+        for (std::size_t k = 0; k < n; ++k) elements[e.child + k].alive = false;
+        e.rule = 0;
+    }
+
+    /// Finds out which nodes are active; afterwards refine() keeps that up to date.
+    void activate();
+
+    /// Refines leaves by closure(element), a rule or 0, until it says 0 for all of them.
+    /// Later sweeps look only at leaves at edges that have changed.
+    template <class Closure>
+    void close(Closure&& closure);
+
+private:
+    static constexpr std::uint8_t active_ = 1, half_ = 2, known_ = 4;
+    struct Present {};
+
+    static std::uint64_t pair(std::uint32_t a, std::uint32_t b) {
+        return a < b ? std::uint64_t{a} << 32U | b : std::uint64_t{b} << 32U | a;
+    }
+    static std::uint64_t face_key(const std::array<std::uint32_t, 4>& m) {
+        return std::min(pair(m[0], m[1]), pair(m[2], m[3]));
+    }
+    std::uint32_t active(const std::uint32_t* node) const {
+        return node != nullptr && (state_[*node] & active_) != 0 ? *node : no_node;
+    }
+    using Local = std::array<std::uint32_t, max_corners + max_new_nodes>;
+
+    std::uint64_t key(const NodeRecipe& recipe, const Local& local) const {
+        const auto at = [&](std::size_t i) { return local[recipe.of[i]]; };
+        if (recipe.kind == NodeRecipe::Kind::edge) return pair(at(0), at(1));
+        if (recipe.kind == NodeRecipe::Kind::face) return face_key({at(0), at(1), at(2), at(3)});
+        return pair(at(0), at(1)) | std::uint64_t{1} << 63U;
+    }
+    void describe(std::uint32_t node, const NodeRecipe& recipe, const Stencil& stencil,
+                  const Local& local);
+    std::uint32_t free_node();
+    std::uint32_t attach(std::uint32_t leaf, std::uint16_t rule_number, const Local& local);
+    void activate(std::uint32_t node);
+    bool changed(const Element& e) const;
+
+    KeyTable<std::uint64_t, std::uint32_t> by_key_;
+    std::vector<std::uint8_t> state_;
+    std::uint32_t next_free_ = 0;
+    bool noting_ = false;
+    KeyTable<std::uint64_t, Present> changed_, changing_;  // edges
+};
+
+}  // namespace nestgrid
+
+#include <nestgrid/adapters/work_tree_steps.hpp>
