@@ -107,7 +107,8 @@ private:
             probe_edge(ab, cd);
             probe_quadrilateral(a, ab, c, cd);
             probe_quadrilateral(ab, b, cd, d);
-        } else if (exists(ac) && exists(bd)) {
+        }
+        if (exists(ac) && exists(bd)) {
             probe_edge(ac, bd);
             probe_quadrilateral(a, b, ac, bd);
             probe_quadrilateral(ac, bd, c, d);

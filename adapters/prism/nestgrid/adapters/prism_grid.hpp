@@ -50,30 +50,57 @@ struct Prism {
     template <class Tree>
     void close(const Tree& tree) const {
         for (const auto& e : tree.elements) {
-            if (!e.alive) continue;
-            for (std::size_t i = 0; i < 3; ++i) check_edge(tree, e.corner[i], e.corner[i + 3]);
+            if (!e.alive || e.rule == 0) continue;
+            const auto split = static_cast<PrismSplit>(tree.table.rule(e.rule).descriptor);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t k = (i + 1) % 3;
+                const Face face{e.corner[i], e.corner[k], e.corner[i + 3], e.corner[k + 3]};
+                if (split == PrismSplit::vertical) {
+                    check_columns(tree, face);
+                    continue;
+                }
+                check_layers(tree, face);
+                if (split == PrismSplit::horizontal) continue;
+                const std::uint32_t below = tree.midpoint(face[0], face[1]);
+                const std::uint32_t above = tree.midpoint(face[2], face[3]);
+                check_columns(tree, {face[0], below, face[2], above});
+                check_columns(tree, {below, face[1], above, face[3]});
+            }
         }
     }
 
 private:
-    /// A vertical edge between midpoints of two horizontal ones, a-b below and c-d above: its face
-    /// was refined horizontally first. The same face must not be refined vertically first.
+    using Face = std::array<std::uint32_t, 4>;  // in tensor order, the second direction upwards
+
+    /// A face whose layers meet columns on one side: no layer of it may be cut into columns, for
+    /// the node there would lie between the sides of the face, not between top and bottom.
     template <class Tree>
-    static void check_edge(const Tree& tree, std::uint32_t below, std::uint32_t above) {
-        const auto& [a, b, face_below, unused_below] = tree.parents[below];
-        const auto& [c, d, face_above, unused_above] = tree.parents[above];
-        if (a == no_node || c == no_node) return;
-        for (const auto& [left, right] : {std::pair{c, d}, std::pair{d, c}}) {
-            const std::uint32_t p = tree.midpoint(a, left);
-            const std::uint32_t q = tree.midpoint(b, right);
-            if (p == no_node || q == no_node || tree.midpoint(p, q) == no_node) continue;
-            const Point x = tree.position[tree.midpoint(p, q)];
-            throw InvalidInput(
-                "prisms at the face around (" + std::to_string(x[0]) + ", " +
-                std::to_string(x[1]) + ", " + std::to_string(x[2]) +
-                ") are refined horizontally and then vertically, and the other way round: the "
-                "node in its middle would have two stencils");
-        }
+    static void check_layers(const Tree& tree, const Face& f) {
+        const std::uint32_t p = tree.midpoint(f[0], f[2]);
+        const std::uint32_t q = tree.midpoint(f[1], f[3]);
+        if (p == no_node || q == no_node) return;
+        refuse_if_there(tree, tree.midpoint(p, q));
+        check_layers(tree, {f[0], f[1], p, q});
+        check_layers(tree, {p, q, f[2], f[3]});
+    }
+    /// The same with layers and columns exchanged.
+    template <class Tree>
+    static void check_columns(const Tree& tree, const Face& f) {
+        const std::uint32_t p = tree.midpoint(f[0], f[1]);
+        const std::uint32_t q = tree.midpoint(f[2], f[3]);
+        if (p == no_node || q == no_node) return;
+        refuse_if_there(tree, tree.midpoint(p, q));
+        check_columns(tree, {f[0], p, f[2], q});
+        check_columns(tree, {p, f[1], q, f[3]});
+    }
+    template <class Tree>
+    static void refuse_if_there(const Tree& tree, std::uint32_t node) {
+        if (node == no_node) return;
+        const Point x = tree.position[node];
+        throw InvalidInput("prisms at the face around (" + std::to_string(x[0]) + ", " +
+                           std::to_string(x[1]) + ", " + std::to_string(x[2]) +
+                           ") are refined horizontally and then vertically, and the other way "
+                           "round: the node in its middle would have two stencils");
     }
 };
 

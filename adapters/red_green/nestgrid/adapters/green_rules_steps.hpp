@@ -36,10 +36,7 @@ public:
         } else if (state_.shape == Shape::tetrahedron) {
             tetrahedron();
         } else {
-            Loop loop;
-            for (std::size_t f = 0; f < topology_.faces; ++f) {
-                loop.push_back(topology_.face[f].corner[0]);
-            }
+            const Loop loop = state_.shape == Shape::triangle ? Loop{0, 1, 2} : Loop{0, 1, 3, 2};
             for (const Loop& l : subdivided(loop, 0)) add_child(l);
         }
         return std::make_shared<const Rule>(

@@ -238,7 +238,8 @@ void Adapter<Family>::hang_quadrilateral(const std::array<std::uint32_t, 4>& cor
     const bool across = ab != no_node && cd != no_node;
     const bool along = ac != no_node && bd != no_node;
     const std::uint32_t m = across && along ? tree_.centre({ab, cd, ac, bd}) : no_node;
-    if (hang(m)) {
+    if (m != no_node && tree_.is_centre(m)) {
+        hang(m);
         for (const std::uint32_t side : {ab, cd, ac, bd}) hang_edge(side, m);
         hang_quadrilateral({a, ab, ac, m});
         hang_quadrilateral({ab, b, m, bd});

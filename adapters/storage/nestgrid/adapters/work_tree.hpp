@@ -80,6 +80,8 @@ public:
     std::uint32_t centre(const std::array<std::uint32_t, 4>& midpoints) const {
         return active(by_key_.find(face_key(midpoints)));
     }
+    /// Whether a node was made as the centre of a face, not as the midpoint of an edge.
+    bool is_centre(std::uint32_t node) const { return parents[node][2] != no_node; }
     bool half_split(std::uint32_t midpoint) const { return (state_[midpoint] & half_) != 0; }
 
     /// Refines a leaf; makes the nodes that are not there. Its children are leaves.
