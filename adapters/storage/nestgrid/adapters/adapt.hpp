@@ -4,6 +4,7 @@
 // One adaptation: unpack the hierarchy, coarsen, refine, close, write it anew.
 #pragma once
 
+#include <deque>
 #include <utility>
 
 #include <nestgrid/adapters/stored_grid.hpp>
@@ -32,6 +33,7 @@ public:
             ++result_.marked;
             tree_.refine(e, Family::rule_for(tree_, tree_.elements[e], tree_.elements[e].mark));
         }
+        for (auto e = count; e < tree_.elements.size(); ++e) tree_.open.push_back(e);
         grid_.family_.close(tree_);
         if constexpr (!Family::conforming) find_hanging();
         pack();
@@ -41,6 +43,8 @@ public:
     }
 
 private:
+    static constexpr int max_exits_ = std::max(Family::max_children, 1 << Family::block_height);
+
     // Unpacking.
     template <class Marker>
     void unpack(Marker& marker);
@@ -56,7 +60,7 @@ private:
 
     // Nodes that hang.
     void find_hanging();
-    void hang_edge(std::uint32_t a, std::uint32_t b);
+    bool hang_edge(std::uint32_t a, std::uint32_t b);
     void hang_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
     void hang_quadrilateral(const std::array<std::uint32_t, 4>& corner);
     bool hang(std::uint32_t node);
@@ -66,11 +70,22 @@ private:
         std::vector<std::uint16_t> tree;   // rules in preorder
         std::vector<std::uint32_t> inner;  // elements that have them
         std::vector<std::uint32_t> exits;
+
+        void clear() {
+            tree.clear();
+            inner.clear();
+            exits.clear();
+        }
+    };
+    struct Level {  // room for one record, used again
+        std::array<Block, static_cast<std::size_t>(max_exits_)> block;
+        std::array<std::uint16_t, static_cast<std::size_t>(max_exits_)> code;
     };
     void collect(std::uint32_t e, int height, Block& block) const;
     bool is_refined(std::uint32_t e) const { return tree_.elements[e].rule != 0; }
     void pack();
-    std::uint32_t pack(std::uint16_t pattern, const std::vector<std::uint32_t>& exits);
+    std::uint32_t pack(std::uint16_t pattern, std::span<const std::uint32_t> exits,
+                       std::size_t depth);
 
     void report();
     void commit();
@@ -82,6 +97,7 @@ private:
     std::size_t coarse_ = 0;
     std::vector<std::uint32_t> root_, words_, hanging_;
     std::vector<bool> used_;
+    std::deque<Level> levels_;
     std::size_t leaves_ = 0;
 };
 
@@ -192,7 +208,10 @@ void Adapter<Family>::coarsen() {
             return bool{stays[tree_.nodes(tree_.elements[e])[0]]};
         });
     }
-    for (const std::uint32_t e : families) tree_.coarsen(tree_.elements[e]);
+    for (const std::uint32_t e : families) {
+        tree_.coarsen(tree_.elements[e]);
+        tree_.open.push_back(e);
+    }
     result_.coarsened = families.size();
 }
 
@@ -205,11 +224,12 @@ bool Adapter<Family>::hang(std::uint32_t node) {
 }
 
 template <class Family>
-void Adapter<Family>::hang_edge(std::uint32_t a, std::uint32_t b) {
+bool Adapter<Family>::hang_edge(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t m = tree_.midpoint(a, b);
-    if (!hang(m)) return;
+    if (!hang(m)) return false;
     hang_edge(a, m);
     hang_edge(m, b);
+    return true;
 }
 
 template <class Family>
@@ -265,9 +285,11 @@ void Adapter<Family>::find_hanging() {
     for (const auto& e : tree_.elements) {
         if (!tree_.is_leaf(e)) continue;
         const Topology& t = topology(e.shape);
+        bool whole = true;
         for (std::size_t i = 0; i < t.edges; ++i) {
-            hang_edge(e.corner[t.edge[i][0]], e.corner[t.edge[i][1]]);
+            if (hang_edge(e.corner[t.edge[i][0]], e.corner[t.edge[i][1]])) whole = false;
         }
+        if (whole) continue;  // a face is refined with its edges
         for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
             const auto at = [&](int i) { return e.corner[t.face[f].tensor_corner(i)]; };
             if (t.face[f].corners == 3) {
@@ -305,7 +327,7 @@ void Adapter<Family>::pack() {
             ++leaves_;
             continue;
         }
-        root_[e] = pack(static_cast<std::uint16_t>(tree_.elements[e].shape), {e});
+        root_[e] = pack(static_cast<std::uint16_t>(tree_.elements[e].shape), {&e, 1}, 0);
     }
     words_.shrink_to_fit();
 }
@@ -313,16 +335,19 @@ void Adapter<Family>::pack() {
 /// Writes the record of an element that is refined by `pattern` and has `exits`.
 template <class Family>
 std::uint32_t Adapter<Family>::pack(std::uint16_t pattern,
-                                    const std::vector<std::uint32_t>& exits) {
-    std::vector<Block> blocks(exits.size());
-    std::vector<std::uint16_t> codes(exits.size(), 0);
+                                    std::span<const std::uint32_t> exits, std::size_t depth) {
+    if (levels_.size() <= depth) levels_.emplace_back();
+    auto& blocks = levels_[depth].block;
+    const std::span<std::uint16_t> codes(levels_[depth].code.data(), exits.size());
     std::array<std::uint32_t, max_entities> reference;
     std::array<std::uint32_t, max_entities / 32> mask{};
     for (std::size_t j = 0; j < exits.size(); ++j) {
+        codes[j] = 0;
         if (!is_refined(exits[j])) {
             ++leaves_;
             continue;
         }
+        blocks[j].clear();
         collect(exits[j], Family::block_height, blocks[j]);
         codes[j] = table_.pattern(blocks[j].tree);
         const Pattern& refined = table_[codes[j]];
@@ -360,7 +385,7 @@ std::uint32_t Adapter<Family>::pack(std::uint16_t pattern,
     for (std::size_t j = 0; j < codes.size(); ++j) {
         if ((codes[j] & Grid::has_record_) != 0) {
             const auto number = static_cast<std::uint16_t>(codes[j] & ~Grid::has_record_);
-            const std::uint32_t below = pack(number, blocks[j].exits);
+            const std::uint32_t below = pack(number, blocks[j].exits, depth + 1);
             words_[link++] = below;
         } else if (codes[j] != 0) {
             leaves_ += blocks[j].exits.size();

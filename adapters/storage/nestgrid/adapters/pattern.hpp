@@ -17,6 +17,7 @@
 #include <memory>
 #include <vector>
 
+#include <nestgrid/key_table.hpp>
 #include <nestgrid/rule.hpp>
 
 namespace nestgrid {
@@ -100,6 +101,7 @@ private:
     std::vector<Pattern> patterns_;
     std::map<std::uint64_t, std::uint16_t> rule_number_;
     std::map<std::vector<std::uint16_t>, std::uint16_t> pattern_number_;
+    KeyTable<std::uint64_t, std::uint16_t> short_number_;  // of small trees
 };
 
 /// Number of entities of a shape.

@@ -191,7 +191,29 @@ inline std::uint16_t PatternTable::add_rule(std::uint64_t descriptor, bool tempo
     return number;
 }
 
+namespace detail {
+
+/// A tree of one rule, or of at most 15 entries below 16, as one number; 0 for others.
+inline std::uint64_t short_name(const std::vector<std::uint16_t>& tree) {
+    if (std::all_of(tree.begin() + 1, tree.end(), [](std::uint16_t r) { return r == 0; })) {
+        return std::uint64_t{1} << 63U | tree[0];
+    }
+    if (tree.size() > 15) return 0;
+    std::uint64_t name = 1;
+    for (const std::uint16_t rule : tree) {
+        if (rule >= 16) return 0;
+        name = name << 4U | rule;
+    }
+    return name;
+}
+
+}  // namespace detail
+
 inline std::uint16_t PatternTable::pattern(const std::vector<std::uint16_t>& tree) {
+    const std::uint64_t name = detail::short_name(tree);
+    if (name != 0) {
+        if (const std::uint16_t* known = short_number_.find(name)) return *known;
+    }
     const auto found = pattern_number_.find(tree);
     if (found != pattern_number_.end()) return found->second;
     if (patterns_.size() >= 0x8000) throw GridError("too many patterns of refinement");
@@ -199,6 +221,7 @@ inline std::uint16_t PatternTable::pattern(const std::vector<std::uint16_t>& tre
     patterns_.push_back(detail::PatternBuilder(rules_, tree).build(shape));
     const auto number = static_cast<std::uint16_t>(patterns_.size() - 1);
     pattern_number_.emplace(tree, number);
+    if (name != 0) short_number_.insert(name, number);
     return number;
 }
 

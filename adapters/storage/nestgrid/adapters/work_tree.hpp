@@ -65,6 +65,7 @@ public:
         position.resize(count);
         parents.resize(count, {no_node, no_node, no_node, no_node});
         state_.resize(count, 0);
+        touched_.resize(count, 0);
     }
 
     void add_coarse_node(std::uint32_t node, const Point& x) {
@@ -74,6 +75,7 @@ public:
 
     /// The active node in the middle of an edge, or no_node.
     std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) const {
+        if ((state_[a] & state_[b] & end_) == 0) return no_node;
         return active(by_key_.find(pair(a, b)));
     }
     /// The active node in the middle of a face, from the midpoints of its edges.
@@ -105,13 +107,16 @@ public:
     /// Finds out which nodes are active; afterwards refine() keeps that up to date.
     void activate();
 
-    /// Refines leaves by closure(element), a rule or 0, until it says 0 for all of them.
-    /// Later sweeps look only at leaves at edges that have changed.
+    /// Refines leaves by closure(element), a rule or 0, until it says 0 for all of them. Looks only
+    /// at leaves that are new since activate(), at those in `open`, and at edges that have changed.
     template <class Closure>
     void close(Closure&& closure);
 
+    std::vector<std::uint32_t> open;  ///< leaves that close() must look at
+
 private:
     static constexpr std::uint8_t active_ = 1, half_ = 2, known_ = 4;
+    static constexpr std::uint8_t end_ = 8;  // of a split edge
     struct Present {};
 
     static std::uint64_t pair(std::uint32_t a, std::uint32_t b) {
@@ -136,13 +141,21 @@ private:
     std::uint32_t free_node();
     std::uint32_t attach(std::uint32_t leaf, std::uint16_t rule_number, const Local& local);
     void activate(std::uint32_t node);
+    void note_change(std::uint32_t a, std::uint32_t b) {
+        changing_.insert(pair(a, b), {});
+        touched_[a] = touched_[b] = sweep_ + 1;
+    }
     bool changed(const Element& e) const;
+    template <class Closure>
+    void close_open(Closure& closure);
 
     KeyTable<std::uint64_t, std::uint32_t> by_key_;
     std::vector<std::uint8_t> state_;
     std::uint32_t next_free_ = 0;
     bool noting_ = false;
-    KeyTable<std::uint64_t, Present> changed_, changing_;  // edges
+    KeyTable<std::uint64_t, Present> changed_, changing_;  // edges, in this sweep and for the next
+    std::vector<std::uint32_t> touched_;  // last sweep for which an edge at a node has changed
+    std::uint32_t sweep_ = 0;
 };
 
 }  // namespace nestgrid

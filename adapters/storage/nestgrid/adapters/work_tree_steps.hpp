@@ -122,8 +122,10 @@ void WorkTree<corners>::activate(std::uint32_t node) {
     const auto& ends = parents[node];
     if (ends[0] == no_node || ends[2] != no_node) return;  // no midpoint of an edge
     const auto note = [&](std::uint32_t a, std::uint32_t b) {
-        if (noting_) changing_.insert(pair(a, b), {});
+        if (noting_) note_change(a, b);
     };
+    state_[ends[0]] |= end_;
+    state_[ends[1]] |= end_;
     note(ends[0], ends[1]);
     for (const std::size_t side : {0U, 1U}) {
         const std::uint32_t end = ends[side];
@@ -153,8 +155,14 @@ void WorkTree<corners>::activate() {
 template <int corners>
 bool WorkTree<corners>::changed(const Element& e) const {
     const Topology& t = topology(e.shape);
+    int touched = 0;
+    for (std::size_t i = 0; i < t.corners; ++i) touched += touched_[e.corner[i]] >= sweep_ ? 1 : 0;
+    if (touched < 2) return false;
     for (std::size_t i = 0; i < t.edges; ++i) {
-        if (changed_.find(pair(e.corner[t.edge[i][0]], e.corner[t.edge[i][1]])) != nullptr) {
+        const std::uint32_t a = e.corner[t.edge[i][0]];
+        const std::uint32_t b = e.corner[t.edge[i][1]];
+        if (touched_[a] >= sweep_ && touched_[b] >= sweep_ &&
+            changed_.find(pair(a, b)) != nullptr) {
             return true;
         }
     }
@@ -163,24 +171,32 @@ bool WorkTree<corners>::changed(const Element& e) const {
 
 template <int corners>
 template <class Closure>
+void WorkTree<corners>::close_open(Closure& closure) {
+    while (!open.empty()) {
+        const std::uint32_t e = open.back();
+        open.pop_back();
+        if (!is_leaf(elements[e])) continue;
+        const std::uint16_t rule_number = closure(elements[e]);
+        if (rule_number == 0) continue;
+        const std::uint32_t child = refine(e, rule_number);
+        for (std::size_t k = 0; k < rule(elements[e]).children.size(); ++k) {
+            open.push_back(child + static_cast<std::uint32_t>(k));
+        }
+    }
+}
+
+template <int corners>
+template <class Closure>
 void WorkTree<corners>::close(Closure&& closure) {
-    std::vector<std::uint32_t> open;
-    for (bool all = true; all || changing_.size() > 0; all = false) {
+    close_open(closure);
+    while (changing_.size() > 0) {
         changed_ = std::exchange(changing_, {});
+        ++sweep_;
         const auto count = static_cast<std::uint32_t>(elements.size());
         for (std::uint32_t leaf = 0; leaf < count; ++leaf) {
-            if (!is_leaf(elements[leaf]) || !(all || changed(elements[leaf]))) continue;
-            open.assign(1, leaf);
-            while (!open.empty()) {
-                const std::uint32_t e = open.back();
-                open.pop_back();
-                const std::uint16_t rule_number = closure(elements[e]);
-                if (rule_number == 0) continue;
-                const std::uint32_t child = refine(e, rule_number);
-                for (std::size_t k = 0; k < rule(elements[e]).children.size(); ++k) {
-                    open.push_back(child + static_cast<std::uint32_t>(k));
-                }
-            }
+            if (!is_leaf(elements[leaf]) || !changed(elements[leaf])) continue;
+            open.push_back(leaf);
+            close_open(closure);
         }
     }
     changed_ = {};
