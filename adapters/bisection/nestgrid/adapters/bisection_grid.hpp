@@ -35,6 +35,9 @@ struct Bisection {
     static constexpr const char* name = "bisection";
     static constexpr Shape shape = dim == 2 ? Shape::triangle : Shape::tetrahedron;
 
+    std::uint32_t options() const { return 0; }
+    static Bisection from_options(std::uint32_t) { return {}; }
+
     static bool refines(Shape s) { return s == shape; }
 
     /// Rule number `descriptor`, the tag.
@@ -61,6 +64,8 @@ struct Bisection {
         }
         return orientation;
     }
+    /// Whether the corners of all elements are sorted by one order of the nodes.
+    bool is_prepared(const CoarseGrid& grid) const { return has_common_order(grid); }
 
     template <class Tree>
     static std::uint16_t bisect(Tree& tree, const typename Tree::Element& e) {

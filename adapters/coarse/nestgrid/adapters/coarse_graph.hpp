@@ -14,6 +14,7 @@
 #include <boost/graph/connected_components.hpp>
 #include <boost/graph/cuthill_mckee_ordering.hpp>
 #include <boost/graph/sequential_vertex_coloring.hpp>
+#include <boost/graph/topological_sort.hpp>
 
 #include <nestgrid/adapters/coarse.hpp>
 
@@ -203,6 +204,24 @@ inline std::vector<std::uint32_t> node_colours(const CoarseGrid& grid) {
                                                      boost::get(boost::vertex_index, graph)));
     }
     return colour;
+}
+
+/// Whether there is an order of the nodes in which the corners of every element ascend.
+inline bool has_common_order(const CoarseGrid& grid) {
+    boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS> graph(grid.nodes.size());
+    for (std::size_t e = 0; e < grid.element_count(); ++e) {
+        const auto nodes = grid.element(e);
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+            boost::add_edge(nodes[i], nodes[i + 1], graph);
+        }
+    }
+    std::vector<std::size_t> order;
+    try {
+        boost::topological_sort(graph, std::back_inserter(order));
+    } catch (const boost::not_a_dag&) {
+        return false;
+    }
+    return true;
 }
 
 }  // namespace nestgrid

@@ -26,6 +26,9 @@ struct Octree {
     /// Elements that share an edge or a face differ by one level at most.
     bool balanced = true;
 
+    std::uint32_t options() const { return balanced ? 1 : 0; }
+    static Octree from_options(std::uint32_t options) { return {.balanced = options == 1}; }
+
     static bool refines(Shape s) { return s == shape; }
 
     static std::shared_ptr<const Rule> make_rule(std::uint64_t descriptor) {
@@ -37,6 +40,7 @@ struct Octree {
     std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
         return std::vector<std::int8_t>(grid.element_count(), 1);
     }
+    bool is_prepared(const CoarseGrid&) const { return true; }
 
     template <class Tree>
     static std::uint16_t halve(Tree& tree) {

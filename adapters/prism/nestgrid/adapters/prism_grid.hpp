@@ -25,6 +25,9 @@ struct Prism {
     static constexpr bool coarsens_by_node = false;
     static constexpr const char* name = "prism";
 
+    std::uint32_t options() const { return 0; }
+    static Prism from_options(std::uint32_t) { return {}; }
+
     static bool refines(Shape s) { return s == Shape::prism; }
 
     static std::shared_ptr<const Rule> make_rule(std::uint64_t descriptor) {
@@ -36,6 +39,7 @@ struct Prism {
     std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
         return std::vector<std::int8_t>(grid.element_count(), 1);
     }
+    bool is_prepared(const CoarseGrid&) const { return true; }
 
     template <class Tree>
     static std::uint16_t rule_for(Tree& tree, const typename Tree::Element&, Mark mark) {

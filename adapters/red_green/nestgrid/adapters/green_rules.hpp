@@ -34,7 +34,7 @@ struct GreenState {
                std::uint64_t{faces} << 32U | std::uint64_t{other_diagonal} << 40U;
     }
     static GreenState from(std::uint64_t descriptor) {
-        return {static_cast<Shape>(descriptor & 0xFFU),
+        return {static_cast<Shape>(descriptor & 0xFU),
                 static_cast<std::uint32_t>(descriptor >> 16U & 0xFFFU),
                 static_cast<std::uint32_t>(descriptor >> 32U & 0x3FU),
                 (descriptor >> 40U & 1U) != 0};

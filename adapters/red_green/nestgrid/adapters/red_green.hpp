@@ -31,6 +31,9 @@ struct RedGreen {
     static constexpr bool coarsens_by_node = false;
     static constexpr const char* name = "red-green";
 
+    std::uint32_t options() const { return 0; }
+    static RedGreen from_options(std::uint32_t) { return {}; }
+
     static bool refines(Shape s) {
         return topology(s).dimension == dim && topology(s).corners <= corners &&
                (is_simplex(s) || s == Shape::quadrilateral || s == Shape::hexahedron);
@@ -39,9 +42,14 @@ struct RedGreen {
     /// Red rules are the shape, and the diagonal times 16; green ones a GreenState.
     static std::shared_ptr<const Rule> make_rule(std::uint64_t descriptor) {
         const auto shape = static_cast<Shape>(descriptor & 0xFU);
+        if ((descriptor & 0xFU) >= static_cast<unsigned>(shape_count)) {
+            throw InvalidInput("there is no shape " + std::to_string(descriptor & 0xFU));
+        }
         if (is_temporary(descriptor)) {
             const GreenState state = GreenState::from(descriptor);
-            if (state.descriptor() != descriptor || !refines(shape)) {
+            const Topology& t = topology(shape);
+            if (state.descriptor() != descriptor || !refines(shape) ||
+                state.edges >> t.edges != 0 || (state.faces != 0 && shape != Shape::hexahedron)) {
                 throw InvalidInput("there is no such green rule");
             }
             return green_rule(state);
@@ -63,6 +71,8 @@ struct RedGreen {
     std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
         return std::vector<std::int8_t>(grid.element_count(), 1);
     }
+
+    bool is_prepared(const CoarseGrid&) const { return true; }
 
     template <class Tree>
     static std::uint16_t rule_for(Tree& tree, const typename Tree::Element& e, Mark mark) {

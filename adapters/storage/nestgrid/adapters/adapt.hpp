@@ -42,6 +42,28 @@ public:
         return std::move(result_);
     }
 
+    /// Whether the grid is just what an adaptation would have written: nodes fit together, nothing
+    /// is left to close, the hanging nodes are those in the mask.
+    /// \throw GridError, InvalidInput as adaptations do
+    bool is_sound() {
+        tree_.verify = true;
+        const auto keep = [](const Leaf&) { return Mark::keep; };
+        unpack(keep);
+        tree_.activate();
+        for (std::uint32_t e = 0; e < tree_.elements.size(); ++e) tree_.open.push_back(e);
+        grid_.family_.close(tree_);
+        if constexpr (!Family::conforming) find_hanging();
+        pack();
+        if (grid_.hanging_.empty()) {  // of a grid that was never adapted
+            if (std::any_of(hanging_.begin(), hanging_.end(), [](auto w) { return w != 0; })) {
+                return false;
+            }
+            hanging_.clear();
+        }
+        return root_ == grid_.root_ && words_ == grid_.words_ && hanging_ == grid_.hanging_ &&
+               leaves_ == grid_.leaf_count_;
+    }
+
 private:
     static constexpr int max_exits_ = std::max(Family::max_children, 1 << Family::block_height);
 

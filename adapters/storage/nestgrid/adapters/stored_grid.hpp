@@ -162,6 +162,8 @@ public:
 private:
     friend class detail::Adapter<Family>;
     friend class detail::GridFile<Family>;
+    StoredGrid() = default;
+
     static constexpr std::uint32_t none_ = 0xFFFFFFFFU;
     static constexpr unsigned has_record_ = 0x8000U;
 

@@ -88,6 +88,7 @@ public:
 
     /// Refines a leaf; makes the nodes that are not there. Its children are leaves.
     /// \return the first child
+    /// \throw GridError for more than 2^31 nodes or 254 levels
     std::uint32_t refine(std::uint32_t leaf, std::uint16_t rule_number);
 
     /// Unpacking: refines a leaf with nodes that are known.
@@ -113,6 +114,7 @@ public:
     void close(Closure&& closure);
 
     std::vector<std::uint32_t> open;  ///< leaves that close() must look at
+    bool verify = false;              ///< throw where nodes do not fit or close() would refine
 
 private:
     static constexpr std::uint8_t active_ = 1, half_ = 2, known_ = 4;

@@ -39,6 +39,7 @@ std::uint32_t WorkTree<corners>::refine(std::uint32_t leaf, std::uint16_t rule_n
     const Element e = elements[leaf];
     std::copy(e.corner.begin(), e.corner.end(), local.begin());
     const StoredRule& stored = table.rule(rule_number);
+    if (verify && !stored.temporary) throw GridError("the grid is not closed");
     const Rule& r = *stored.rule;
     const auto first = static_cast<std::size_t>(r.corner_count());
     for (std::size_t k = 0; k < stored.nodes.size(); ++k) {
@@ -98,9 +99,13 @@ void WorkTree<corners>::remember(const Element& e, std::uint16_t rule_number,
     const auto first = static_cast<std::size_t>(stored.rule->corner_count());
     std::copy(nodes.begin(), nodes.end(), local.begin() + static_cast<std::ptrdiff_t>(first));
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-        if ((state_[nodes[k]] & known_) != 0) continue;
-        by_key_.insert(key(stored.nodes[k], local), nodes[k]);
-        describe(nodes[k], stored.nodes[k], stored.rule->new_nodes[k], local);
+        const bool known = (state_[nodes[k]] & known_) != 0;
+        if (known && !verify) continue;
+        const auto [same, is_new] = by_key_.insert(key(stored.nodes[k], local), nodes[k]);
+        if (verify && (*same != nodes[k] || is_new == known)) {
+            throw GridError("node " + std::to_string(nodes[k]) + " is at two places");
+        }
+        if (!known) describe(nodes[k], stored.nodes[k], stored.rule->new_nodes[k], local);
     }
 }
 
