@@ -7,6 +7,7 @@
 
 #include <nestgrid/error.hpp>
 
+#include "hierarchy.hpp"
 #include "memory.hpp"
 
 namespace {
@@ -16,8 +17,8 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
-template <class Field>
-Extraction extract_one(const nestgrid::LatticeBisection<3>& grid, const Field& field,
+template <class Grid, class Field>
+Extraction extract_one(const Grid& grid, const Field& field,
                        const nestgrid::HierarchicalIndicator& indicator, double threshold,
                        const ExtractionRequest& request) {
     Extraction e;
@@ -33,12 +34,41 @@ Extraction extract_one(const nestgrid::LatticeBisection<3>& grid, const Field& f
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
-    e.result = nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
+    const auto result = nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
-    e.peak_bytes = peak - std::min(peak, e.result.surface.memory_bytes());
-    e.report = nestgrid::surface_report(e.result.surface);
+    e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
+    e.counts = result.counts;
+    e.error_bound = result.error_bound;
+    e.stack_bytes = result.stack_bytes;
+    if constexpr (Grid::dimension == 3) {
+        e.report = nestgrid::surface_report(result.surface);
+    } else {
+        e.report.vertices = result.surface.vertices.size();
+        e.report.triangles = result.surface.simplices.size();
+    }
+    if (request.keep_surfaces) e.surface = make_poly_data(result.surface);
     return e;
+}
+
+template <class Grid, class Field>
+void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& request,
+                 ExtractionRun& run) {
+    run.dimension = Grid::dimension;
+    const std::size_t before = memory::current();
+    memory::reset_peak();
+    const double start = now();
+    if (request.progress) request.progress("preroll");
+    const nestgrid::HierarchicalIndicator indicator(grid, field);
+    run.preroll_seconds = now() - start;
+    run.preroll_peak_bytes = memory::peak() - before;
+    run.preroll_kept_bytes = indicator.memory_bytes();
+    run.least = indicator.least();
+    run.greatest = indicator.greatest();
+    for (const ThresholdText& t : request.thresholds) {
+        const double threshold = t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
+        run.surfaces.push_back(extract_one(grid, field, indicator, threshold, request));
+    }
 }
 
 }  // namespace
@@ -64,24 +94,27 @@ ExtractionRun extract(const Volume& volume, const ExtractionRequest& request) {
     const nestgrid::LatticeBisection<3> grid(volume.geometry);
     ExtractionRun run;
     run.nodes = volume.sample_count();
-    run.leaf_elements = 6;
-    for (std::size_t d = 0; d < 3; ++d) run.leaf_elements *= grid.samples(d) - 1;
+    run.leaf_elements = leaf_count(grid);
     with_samples(volume, [&](auto samples) {
-        const nestgrid::LatticeField field(grid, samples);
-        const std::size_t before = memory::current();
-        memory::reset_peak();
-        const double start = now();
-        if (request.progress) request.progress("preroll");
-        const nestgrid::HierarchicalIndicator indicator(grid, field);
-        run.preroll_seconds = now() - start;
-        run.preroll_peak_bytes = memory::peak() - before;
-        run.preroll_kept_bytes = indicator.memory_bytes();
-        run.least = indicator.least();
-        run.greatest = indicator.greatest();
-        for (const ThresholdText& t : request.thresholds) {
-            const double threshold =
-                t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
-            run.surfaces.push_back(extract_one(grid, field, indicator, threshold, request));
+        extract_all(grid, nestgrid::LatticeField(grid, samples), request, run);
+    });
+    return run;
+}
+
+ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string& array,
+                      const ExtractionRequest& request) {
+    ExtractionRun run;
+    with_hierarchy(hierarchy, [&](const auto& stored) {
+        using Grid = std::decay_t<decltype(stored.grid)>;
+        if constexpr (is_simplicial<Grid>()) {
+            const nestgrid::NodeField field(stored.grid, field_named(stored.fields, array).values);
+            run.nodes = stored.grid.used_node_count();
+            run.leaf_elements = stored.grid.leaf_count();
+            extract_all(stored.grid, field, request, run);
+        } else {
+            throw nestgrid::GridError(
+                "isosurfaces are available for triangles and tetrahedra; '" + hierarchy.string() +
+                "' is a hierarchy of other elements");
         }
     });
     return run;

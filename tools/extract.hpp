@@ -27,22 +27,27 @@ struct ExtractionRequest {
     std::vector<ThresholdText> thresholds{};
     bool cap = false;
     bool normals = true;
+    bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
 };
 
 /// One surface and what it cost.
 struct Extraction {
     double threshold = 0;
-    nestgrid::Isosurface<3, nestgrid::LatticeBisection<3>::Element> result;
-    nestgrid::SurfaceReport report;
+    vtkSmartPointer<vtkPolyData> surface;  ///< where it is kept
+    nestgrid::TraversalCounts counts;
+    double error_bound = 0;
+    std::size_t stack_bytes = 0;
+    nestgrid::SurfaceReport report;  ///< of isolines: vertices, and segments as triangles
     double seconds = 0;
     std::size_t peak_bytes = 0;  ///< beside the surface itself
 };
 
 struct ExtractionRun {
+    int dimension = 3;
     double least = 0;
     double greatest = 0;
-    std::size_t nodes = 0;          ///< of the samples
+    std::size_t nodes = 0;
     std::size_t leaf_elements = 0;  ///< of the finest grid
     double preroll_seconds = 0;
     std::size_t preroll_peak_bytes = 0;
@@ -51,6 +56,13 @@ struct ExtractionRun {
 };
 
 ExtractionRun extract(const Volume& volume, const ExtractionRequest& request);
+
+/// The same of a field in a file of a hierarchy.
+/// \param array its name; may be empty where there is only one
+/// \throw nestgrid::InvalidInput where there is no such field; nestgrid::GridError for a family
+///        that is not made of triangles or tetrahedra
+ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string& array,
+                      const ExtractionRequest& request);
 
 /// VTK's own contour of the same samples (vtkFlyingEdges3D, without normals), for comparison.
 struct Contour {

@@ -12,7 +12,10 @@
 
 #include <nestgrid/error.hpp>
 
+#include "expression.hpp"
 #include "extract.hpp"
+#include "hierarchy.hpp"
+#include "mesh.hpp"
 #include "picture.hpp"
 #include "print.hpp"
 
@@ -32,12 +35,14 @@ struct Options {
     bool cap = false;
     bool flat = false;
     bool against_vtk = false;
+    MeshRequest mesh;
 };
 
 void add_input_options(CLI::App& command, Options& o) {
-    command.add_option("INPUT", o.input, ".vti, .mhd, .mha, .nrrd, .nii, .nii.gz or .raw")
+    command
+        .add_option("INPUT", o.input, ".vti, .mhd, .mha, .nrrd, .nii, .nii.gz, .raw or .nestgrid")
         ->required();
-    command.add_option("--array", o.array, "point data array of a .vti file");
+    command.add_option("--array", o.array, "point data array of a .vti file, field of a .nestgrid");
     command.add_option("--dims", o.raw.dims, "samples of a .raw file along x,y,z")->delimiter(',');
     command.add_option("--type", o.raw.type,
                        "their type: uint8, int8, uint16, int16, uint32, int32, uint64, int64, "
@@ -85,26 +90,31 @@ void run_isosurface(Options& o) {
     if (!o.image.empty() && o.image.extension() != ".png") {
         throw nestgrid::IoError("'" + o.image.string() + "' is no name of a .png picture");
     }
+    if (is_hierarchy(o.input) && o.against_vtk) {
+        throw nestgrid::InvalidInput("--against-vtk is for volumes");
+    }
+    request.keep_surfaces = !o.output.empty() || !o.image.empty();
     Seconds seconds;
     std::optional<ProgressLine> progress(std::in_place);
     request.progress = [&](const std::string& text) { progress->show(text); };
     progress->show("reading");
     double start = now();
-    const Volume volume = read(o);
+    std::optional<Volume> volume;
+    if (!is_hierarchy(o.input)) volume = read(o);
     seconds.read = now() - start;
-    ExtractionRun run = extract(volume, request);
+    const ExtractionRun run =
+        volume ? extract(*volume, request) : extract(o.input, o.array, request);
 
     start = now();
     std::vector<Panel> panels;
     for (std::size_t i = 0; i < run.surfaces.size(); ++i) {
         const Extraction& e = run.surfaces[i];
-        if (o.output.empty() && o.image.empty()) break;
-        const auto data = make_poly_data(e.result.surface);
+        if (!e.surface) break;
         if (!o.output.empty()) {
             progress->show("writing");
-            write_surface(data, numbered(o.output, i, run.surfaces.size()));
+            write_surface(e.surface, numbered(o.output, i, run.surfaces.size()));
         }
-        panels.push_back({data, caption(e)});
+        panels.push_back({e.surface, caption(e)});
     }
     seconds.write = now() - start;
     start = now();
@@ -116,7 +126,7 @@ void run_isosurface(Options& o) {
     std::optional<Contour> contour;
     if (o.against_vtk) {
         progress->show("contouring with VTK");
-        contour = contour_with_vtk(volume, o.value);
+        contour = contour_with_vtk(*volume, o.value);
     }
     progress.reset();
     if (run.surfaces.size() == 1 && !contour) {
@@ -126,7 +136,53 @@ void run_isosurface(Options& o) {
     }
 }
 
-void run_info(Options& o) { print_info(read(o)); }
+void run_info(Options& o) {
+    if (is_hierarchy(o.input)) {
+        print_info(hierarchy_info(o.input));
+    } else {
+        print_info(read(o));
+    }
+}
+
+void run_mesh(Options& o) {
+    o.mesh.output = o.output;
+    if (!is_hierarchy(o.output)) {
+        throw nestgrid::IoError("'" + o.output.string() + "' is no name of a .nestgrid file");
+    }
+    {
+        ProgressLine progress;
+        o.mesh.progress = [&](const std::string& text) { progress.show(text); };
+        make_hierarchy(o.mesh);
+    }
+    print_info(hierarchy_info(o.output));
+}
+
+void add_mesh_options(CLI::App& command, Options& o) {
+    command
+        .add_option("INPUT", o.mesh.input,
+                    "a surface, .off, .obj, .ply or .stl; tetrahedra, .node and .ele; or a "
+                    "piecewise linear complex to be filled, .poly or .smesh")
+        ->required();
+    command.add_option("--family", o.mesh.family, "red-green, bisection, octree or prism")
+        ->check(CLI::IsMember({"red-green", "bisection", "octree", "prism"}))
+        ->required();
+    command.add_option("--layers", o.mesh.layers, "thicknesses of layers of prisms on a surface")
+        ->delimiter(',');
+    command.add_option("--direction", o.mesh.direction, "of the layers, x,y,z")->delimiter(',');
+    command.add_flag("--unbalanced", o.mesh.unbalanced,
+                     "let neighbours in an octree differ by more than one level");
+    command.add_option("--max-volume", o.mesh.maximum_volume,
+                       "of the tetrahedra that fill a .poly or .smesh");
+    command.add_option("--refine", o.mesh.refine, "uniform refinements");
+    command.add_option("--field", o.mesh.field,
+                       "a name (see below) or an expression in x, y and z, kept at the nodes");
+    command.add_option("--tolerance", o.mesh.tolerance,
+                       "refine until the field is interpolated up to this");
+    command.add_option("--levels", o.mesh.levels, "refinements of an element at most")
+        ->capture_default_str();
+    command.add_option("-o,--output", o.output, ".nestgrid")->required();
+    command.footer("Fields:\n" + Expression::names());
+}
 
 }  // namespace
 
@@ -142,7 +198,9 @@ int main(int argc, char** argv) {
         "head.png\n"
         "  nestgrid isosurface ct.raw --dims 512,512,300 --type int16 --spacing 0.5,0.5,1 \\\n"
         "           --value 300 -o bone.stl\n"
-        "  nestgrid info head.nii.gz");
+        "  nestgrid info head.nii.gz\n"
+        "  nestgrid mesh part.poly --family bisection --field front --tolerance 0.01 -o "
+        "part.nestgrid");
     Options o;
 
     CLI::App* isosurface = app.add_subcommand("isosurface", "extract an adaptive isosurface");
@@ -159,8 +217,10 @@ int main(int argc, char** argv) {
     isosurface->add_flag("--no-normals", o.flat, "leave out the normals");
     isosurface->add_flag("--against-vtk", o.against_vtk,
                          "add VTK's own contour of the same samples to the table");
-    CLI::App* info = app.add_subcommand("info", "describe a volume and its hierarchy");
+    CLI::App* info = app.add_subcommand("info", "describe a volume or a hierarchy");
     add_input_options(*info, o);
+    CLI::App* mesh = app.add_subcommand("mesh", "build a hierarchy on a mesh and refine it");
+    add_mesh_options(*mesh, o);
 
     try {
         app.parse(argc, argv);
@@ -173,6 +233,7 @@ int main(int argc, char** argv) {
     try {
         if (*isosurface) run_isosurface(o);
         if (*info) run_info(o);
+        if (*mesh) run_mesh(o);
         return 0;
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "nestgrid: not enough memory\n");

@@ -46,24 +46,26 @@ void print_result(const ExtractionRun& run, double isovalue, const Seconds& seco
     line("greatest_value", run.greatest);
     line("isovalue", isovalue);
     line("threshold", e.threshold);
-    line("inspect_calls", std::size_t{e.result.counts.calls});
-    line("visited", std::size_t{e.result.counts.visited});
-    line("extracted", std::size_t{e.result.counts.extracted});
-    line("triangles", r.triangles);
+    line("inspect_calls", std::size_t{e.counts.calls});
+    line("visited", std::size_t{e.counts.visited});
+    line("extracted", std::size_t{e.counts.extracted});
+    line(run.dimension == 3 ? "triangles" : "segments", r.triangles);
     line("vertices", r.vertices);
-    line("open_edges", r.open_edges);
-    line("boundary_edges", r.boundary_edges);
-    line("nonmanifold_edges", r.nonmanifold_edges);
-    line("nonmanifold_vertices", r.nonmanifold_vertices);
-    line("components", r.components);
-    line("euler_number", static_cast<double>(r.euler));
-    line("error_bound", e.result.error_bound);
-    line("area", r.area);
-    if (r.closed() && r.triangles > 0) line("volume", std::abs(r.volume));
+    line("error_bound", e.error_bound);
+    if (run.dimension == 3) {
+        line("open_edges", r.open_edges);
+        line("boundary_edges", r.boundary_edges);
+        line("nonmanifold_edges", r.nonmanifold_edges);
+        line("nonmanifold_vertices", r.nonmanifold_vertices);
+        line("components", r.components);
+        line("euler_number", static_cast<double>(r.euler));
+        line("area", r.area);
+        if (r.closed() && r.triangles > 0) line("volume", std::abs(r.volume));
+    }
     line("preroll_peak_bytes", run.preroll_peak_bytes);
     line("preroll_kept_bytes", run.preroll_kept_bytes);
     line("traversal_peak_bytes", e.peak_bytes);
-    line("traversal_stack_bytes", e.result.stack_bytes);
+    line("traversal_stack_bytes", e.stack_bytes);
     line("read_seconds", seconds.read);
     line("preroll_seconds", run.preroll_seconds);
     line("extract_seconds", e.seconds);
@@ -84,14 +86,34 @@ void print_table(const ExtractionRun& run, double isovalue, const Seconds& secon
                 "vertices", "visited", "open edges", "boundary", "MiB extra", "seconds");
     for (const Extraction& e : run.surfaces) {
         std::printf("%-16.6g %10.4g %10zu %10zu %11llu %10zu %8zu %9.1f %9.3f\n", e.threshold,
-                    e.result.error_bound, e.report.triangles, e.report.vertices,
-                    static_cast<unsigned long long>(e.result.counts.visited), e.report.open_edges,
+                    e.error_bound, e.report.triangles, e.report.vertices,
+                    static_cast<unsigned long long>(e.counts.visited), e.report.open_edges,
                     e.report.boundary_edges, mebibytes(e.peak_bytes), e.seconds);
     }
     if (contour) {
         std::printf("%-16s %10s %10zu %10zu %11s %10s %8zu %9s %9.3f\n", "VTK FlyingEdges", "",
                     contour->triangles, contour->vertices, "", "", contour->once_edges, "",
                     contour->seconds);
+    }
+}
+
+void print_info(const HierarchyInfo& info) {
+    line("family", info.family);
+    line("dimension", static_cast<std::size_t>(info.dimension));
+    line("coarse_elements", info.coarse_elements);
+    line("leaf_elements", info.leaves);
+    for (const auto& [shape, count] : info.shapes) {
+        line(("leaf_" + std::string(nestgrid::topology(shape).name)).c_str(), count);
+    }
+    line("nodes", info.nodes);
+    line("hanging_nodes", info.hanging);
+    line("levels", static_cast<std::size_t>(info.levels));
+    line("measure", info.measure);
+    line("bytes_per_leaf", static_cast<double>(info.bytes) / static_cast<double>(info.leaves));
+    for (const FieldRange& f : info.fields) {
+        line("field", f.name);
+        line("least_value", f.least);
+        line("greatest_value", f.greatest);
     }
 }
 
@@ -118,7 +140,5 @@ void print_info(const Volume& volume) {
     line("block_cells", std::size_t{1} << static_cast<unsigned>(grid.block_levels()));
     line("coarse_elements", grid.coarse_count());
     line("levels", 3 * static_cast<std::size_t>(grid.block_levels()) + 1);
-    std::size_t leaves = 6;
-    for (std::size_t d = 0; d < 3; ++d) leaves *= grid.samples(d) - 1;
-    line("leaf_elements", leaves);
+    line("leaf_elements", leaf_count(grid));
 }

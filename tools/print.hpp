@@ -6,6 +6,7 @@
 #include <string>
 
 #include "extract.hpp"
+#include "hierarchy.hpp"
 
 struct Seconds {
     double read = 0;
@@ -21,6 +22,7 @@ void print_table(const ExtractionRun& run, double isovalue, const Seconds& secon
                  const std::optional<Contour>& contour);
 
 void print_info(const Volume& volume);
+void print_info(const HierarchyInfo& info);
 
 /// What stands above a surface in a picture.
 std::string caption(const Extraction& extraction);

@@ -8,19 +8,11 @@
 #include <cstring>
 #include <fstream>
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
-#include <vtkFloatArray.h>
 #include <vtkGLTFWriter.h>
-#include <vtkIntArray.h>
 #include <vtkMultiBlockDataSet.h>
-#include <vtkNew.h>
 #include <vtkOBJWriter.h>
 #include <vtkPLYWriter.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkSTLWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 
@@ -71,40 +63,6 @@ void write_as(const std::string& format, vtkPolyData* surface, const fs::path& p
 }
 
 }  // namespace
-
-vtkSmartPointer<vtkPolyData> make_poly_data(const VolumeSurface& surface) {
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    const vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->SetNumberOfPoints(static_cast<vtkIdType>(surface.vertices.size()));
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
-        points->SetPoint(static_cast<vtkIdType>(v), surface.vertices[v].data());
-    }
-    const vtkNew<vtkCellArray> triangles;
-    const vtkNew<vtkIntArray> element;
-    const vtkNew<vtkIntArray> level;
-    element->SetName("element");
-    level->SetName("level");
-    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        const auto& s = surface.simplices[t];
-        const std::array<vtkIdType, 3> ids{s[0], s[1], s[2]};
-        triangles->InsertNextCell(3, ids.data());
-        element->InsertNextValue(static_cast<int>(surface.element_of[t]));
-        level->InsertNextValue(surface.level_of[surface.element_of[t]]);
-    }
-    data->SetPoints(points);
-    data->SetPolys(triangles);
-    data->GetCellData()->AddArray(element);
-    data->GetCellData()->AddArray(level);
-    if (!surface.normals.empty()) {
-        const vtkNew<vtkFloatArray> normals;
-        normals->SetName("Normals");
-        normals->SetNumberOfComponents(3);
-        for (const nestgrid::Point& n : surface.normals) normals->InsertNextTuple(n.data());
-        data->GetPointData()->SetNormals(normals);
-    }
-    return data;
-}
 
 fs::path temporary_beside(const fs::path& path) {
     return path.parent_path() / ("." + path.stem().string() + "." + std::to_string(getpid()) +

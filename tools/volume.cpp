@@ -289,6 +289,12 @@ void check_samples(const Volume& volume, const fs::path& path) {
 
 }  // namespace
 
+std::size_t leaf_count(const nestgrid::LatticeBisection<3>& grid) {
+    std::size_t leaves = 6;
+    for (std::size_t d = 0; d < 3; ++d) leaves *= grid.samples(d) - 1;
+    return leaves;
+}
+
 std::size_t Volume::sample_count() const {
     return static_cast<std::size_t>(geometry.samples[0]) *
            static_cast<std::size_t>(geometry.samples[1]) *

@@ -38,6 +38,9 @@ struct Volume {
 Volume read_volume(const std::filesystem::path& path, const std::string& array,
                    const RawFormat& raw);
 
+/// Tetrahedra of the finest grid inside the domain.
+std::size_t leaf_count(const nestgrid::LatticeBisection<3>& grid);
+
 /// Calls function(std::span<const Sample>) with the samples in their own type.
 template <class Function>
 auto with_samples(const Volume& volume, Function&& function) {

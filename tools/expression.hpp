@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <nestgrid/geometry.hpp>
+
+namespace mu {
+class Parser;
+}
+
+/// A function of x, y, z: one with a name, or an expression such as sin(3*x)+y*z (muparser).
+class Expression {
+public:
+    /// \throw nestgrid::InvalidInput for an expression that cannot be understood
+    explicit Expression(const std::string& text);
+    ~Expression();
+    Expression(const Expression&) = delete;
+    Expression& operator=(const Expression&) = delete;
+
+    /// \throw nestgrid::InvalidInput where the value is not a number
+    double operator()(const nestgrid::Point& x) const;
+
+    /// Names and what they stand for, one per line.
+    static std::string names();
+
+private:
+    std::unique_ptr<mu::Parser> parser_;
+    mutable nestgrid::Point x_{};
+    std::string text_;
+};

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Hierarchies in files, and which families the program knows.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include <nestgrid/adapters/bisection_grid.hpp>
+#include <nestgrid/adapters/octree_grid.hpp>
+#include <nestgrid/adapters/prism_grid.hpp>
+#include <nestgrid/adapters/red_green.hpp>
+#include <nestgrid/adapters/stored_file.hpp>
+
+/// Whether a file is called like a hierarchy.
+inline bool is_hierarchy(const std::filesystem::path& path) {
+    return path.extension() == ".nestgrid";
+}
+
+/// Whether all elements of a type of grid are triangles or tetrahedra.
+template <class Grid>
+constexpr bool is_simplicial() {
+    return Grid::max_corners == Grid::dimension + 1;
+}
+
+/// Calls function(StoredHierarchy<Family>&) with the hierarchy of a file.
+/// \throw nestgrid::IoError for a file that holds none
+template <class Function>
+void with_hierarchy(const std::filesystem::path& path, Function&& function) {
+    using namespace nestgrid;
+    const HierarchyHeader header = read_hierarchy_header(path);
+    const auto tried = [&]<class Family>() {
+        if (header.family != Family::name || header.dimension != Family::dimension ||
+            header.corners != Family::max_corners) {
+            return false;
+        }
+        auto stored = read_hierarchy<Family>(path);
+        function(stored);
+        return true;
+    };
+    if (tried.template operator()<Bisection<2>>() || tried.template operator()<Bisection<3>>() ||
+        tried.template operator()<RedGreen<2, 3>>() ||
+        tried.template operator()<RedGreen<2, 4>>() ||
+        tried.template operator()<RedGreen<3, 4>>() ||
+        tried.template operator()<RedGreen<3, 8>>() || tried.template operator()<Octree<2>>() ||
+        tried.template operator()<Octree<3>>() || tried.template operator()<Prism>()) {
+        return;
+    }
+    throw IoError("'" + path.string() + "' holds a family this program does not know: " +
+                  header.family);
+}
+
+/// The field with a name; an empty name stands for the only one.
+/// \throw nestgrid::InvalidInput where there is none
+const nestgrid::NamedField& field_named(const std::vector<nestgrid::NamedField>& fields,
+                                        const std::string& name);
+
+struct FieldRange {
+    std::string name;
+    double least = 0;
+    double greatest = 0;
+};
+
+struct HierarchyInfo {
+    std::string family;
+    int dimension = 0;
+    std::size_t coarse_elements = 0;
+    std::size_t leaves = 0;
+    std::map<nestgrid::Shape, std::size_t> shapes;  ///< of the leaves
+    std::size_t nodes = 0;
+    std::size_t hanging = 0;
+    int levels = 0;
+    double measure = 0;  ///< volume or area
+    std::size_t bytes = 0;
+    std::vector<FieldRange> fields;
+};
+
+HierarchyInfo hierarchy_info(const std::filesystem::path& path);

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <nestgrid/adapters/openmesh.hpp>
+#include <nestgrid/adapters/tetgen.hpp>
+
+#include "expression.hpp"
+#include "hierarchy.hpp"
+
+namespace {
+
+using namespace nestgrid;
+
+CoarseGrid read_coarse_grid(const MeshRequest& request) {
+    std::string ending = request.input.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending == ".node" || ending == ".ele" || ending == ".poly" || ending == ".smesh") {
+        TetgenOptions options;
+        if (request.maximum_volume > 0) {
+            options.switches += "a" + std::to_string(request.maximum_volume);
+        }
+        return read_tetgen(request.input.string(), options);
+    }
+    return read_surface(request.input.string());
+}
+
+bool all_simplices(const CoarseGrid& coarse) {
+    return std::all_of(coarse.shapes.begin(), coarse.shapes.end(), is_simplex);
+}
+
+/// Largest distance of the field from its interpolant at the midpoints of edges and the centre.
+double interpolation_error(const Expression& f, const Leaf& leaf) {
+    std::array<double, max_corners> value{};
+    double sum = 0;
+    for (std::size_t i = 0; i < leaf.corners.size(); ++i) {
+        value[i] = f(leaf.corners[i]);
+        sum += value[i];
+    }
+    double error = std::abs(f(leaf.centre()) - sum / static_cast<double>(leaf.corners.size()));
+    const Topology& t = topology(leaf.shape);
+    for (std::size_t e = 0; e < t.edges; ++e) {
+        const auto [a, b] = t.edge[e];
+        error = std::max(error, std::abs(f(0.5 * (leaf.corners[a] + leaf.corners[b])) -
+                                         0.5 * (value[a] + value[b])));
+    }
+    return error;
+}
+
+template <class Grid>
+void refine_and_write(Grid grid, const MeshRequest& request) {
+    const auto tell = [&](int step) {
+        if (!request.progress) return;
+        request.progress("step " + std::to_string(step) + ": " +
+                         std::to_string(grid.leaf_count()) + " elements");
+    };
+    for (int i = 0; i < request.refine; ++i) {
+        grid.refine_uniformly();
+        tell(i + 1);
+    }
+    std::vector<NamedField> fields;
+    if (!request.field.empty()) {
+        const Expression f(request.field);
+        for (int step = 1; request.tolerance > 0; ++step) {
+            const Adaptation done = grid.adapt([&](const Leaf& leaf) {
+                return leaf.level < request.levels &&
+                               interpolation_error(f, leaf) > request.tolerance
+                           ? Mark::refine
+                           : Mark::keep;
+            });
+            tell(step);
+            if (done.marked == 0) break;
+        }
+        NamedField field{request.field, std::vector<double>(grid.node_count(), 0)};
+        grid.for_each_leaf([&](const Leaf& leaf) {
+            for (std::size_t i = 0; i < leaf.nodes.size(); ++i) {
+                field.values[leaf.nodes[i]] = f(leaf.corners[i]);
+            }
+        });
+        fields.push_back(std::move(field));
+    }
+    write_hierarchy(grid, request.output, fields);
+}
+
+void build(CoarseGrid coarse, const MeshRequest& request) {
+    const bool plane = coarse.dimension == 2;
+    if (request.family == "bisection") {
+        return plane ? refine_and_write(BisectionGrid<2>(std::move(coarse)), request)
+                     : refine_and_write(BisectionGrid<3>(std::move(coarse)), request);
+    }
+    if (request.family == "octree") {
+        const bool balanced = !request.unbalanced;
+        return plane ? refine_and_write(OctreeGrid<2>(std::move(coarse), {balanced}), request)
+                     : refine_and_write(OctreeGrid<3>(std::move(coarse), {balanced}), request);
+    }
+    if (request.family == "prism") return refine_and_write(PrismGrid(std::move(coarse)), request);
+    if (all_simplices(coarse)) {
+        return plane ? refine_and_write(RedGreenSimplices<2>(std::move(coarse)), request)
+                     : refine_and_write(RedGreenSimplices<3>(std::move(coarse)), request);
+    }
+    return plane ? refine_and_write(RedGreenGrid<2>(std::move(coarse)), request)
+                 : refine_and_write(RedGreenGrid<3>(std::move(coarse)), request);
+}
+
+}  // namespace
+
+void make_hierarchy(const MeshRequest& request) {
+    if (!request.field.empty()) static_cast<void>(Expression(request.field));
+    if (request.tolerance > 0 && request.field.empty()) {
+        throw InvalidInput("--tolerance needs a --field");
+    }
+    if (!(request.tolerance >= 0)) throw InvalidInput("--tolerance is negative or not a number");
+    if (request.refine < 0) throw InvalidInput("--refine is negative");
+    if (!request.layers.empty() && request.family != "prism") {
+        throw InvalidInput("--layers are for --family prism");
+    }
+    if (request.progress) request.progress("reading");
+    CoarseGrid coarse = read_coarse_grid(request);
+    try {
+        check_and_orient(coarse);
+        // Neighbours in the mesh become neighbours in memory.
+        coarse = reordered(coarse, reverse_cuthill_mckee(coarse));
+        if (request.family == "prism" && coarse.dimension == 2) {
+            if (request.layers.empty()) {
+                throw InvalidInput("prisms are made of a surface: give the thickness of its "
+                                   "--layers");
+            }
+            coarse = extrude(coarse, request.layers,
+                             {request.direction[0], request.direction[1], request.direction[2]});
+        }
+        build(std::move(coarse), request);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput("'" + request.input.string() + "': " + error.what());
+    }
+}

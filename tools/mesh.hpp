@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+struct MeshRequest {
+    std::filesystem::path input;  ///< .off .obj .ply .stl, .node .ele .poly .smesh
+    std::string family;           ///< red-green, bisection, octree, prism
+    std::vector<double> layers;   ///< thicknesses of layers to extrude a surface in, for prisms
+    std::array<double, 3> direction{0, 0, 1};  ///< to extrude along
+    bool unbalanced = false;
+    double maximum_volume = 0;  ///< of the tetrahedra that fill a .poly or .smesh; 0 for any
+    int refine = 0;      ///< uniform refinements
+    std::string field;   ///< name or expression; may be empty
+    double tolerance = 0;  ///< refine until the field is interpolated to this; 0: do not
+    int levels = 30;       ///< refinements at most
+    std::filesystem::path output;
+    std::function<void(const std::string&)> progress{};
+};
+
+/// Builds a hierarchy, refines it and writes it.
+/// \throw nestgrid::IoError, nestgrid::InvalidInput with one sentence about what is wrong
+void make_hierarchy(const MeshRequest& request);
