@@ -4,6 +4,7 @@
 // Surfaces of CGAL as coarse grids; its octree as a nested grid.
 #include <nestgrid/adapters/cgal.hpp>
 
+#include <CGAL/Cartesian.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Simple_cartesian.h>
@@ -139,20 +140,22 @@ private:
 
 struct Leaves {
     std::size_t count = 0;
+    std::size_t inner = 0;
     double volume = 0;
     double worst = 0;
     const Octree* tree;
 
     template <class State>
-    Decision inspect(const State&, const Split&) {
+    Decision inspect(const State&, const Split& split) {
+        if (split.rule != nullptr) ++inner;
         return {};
     }
     template <class State>
     void extract(const State& s) {
         ++count;
         const CGAL::Bbox_3 box = tree->bbox(s.element);
-        const Point low = s.corner[0].position;
-        const Point high = s.corner[7].position;
+        const Point low = s.position[0];
+        const Point high = s.position[7];
         for (std::size_t d = 0; d < 3; ++d) {
             const auto axis = static_cast<int>(d);
             worst = std::max(worst, std::abs(low[d] - box.min(axis)));
@@ -163,17 +166,49 @@ struct Leaves {
 };
 
 TEST(CgalOctree, IsANestedGridAroundASphere) {
-    Points points{{0, 0, 0}, {1, 1, 1}};
-    for (const bool graded : {false, true}) {
+    const CGAL::Sphere_3<Kernel> sphere({0.5, 0.5, 0.5}, 0.09);
+    for (const bool balanced : {true, false}) {
+        Points points{{0, 0, 0}, {1, 1, 1}};
         Octree tree(points, {}, 1.0);
         tree.refine([&](const Octree::Node& node) {
-            const CGAL::Bbox_3 box = tree.bbox(node);
-            const CGAL::Sphere_3<Kernel> sphere({0.5, 0.5, 0.5}, 0.09);
-            return node.depth() < 6 && sphere.has_on_boundary({0.8, 0.5, 0.5}) &&
-                   CGAL::do_intersect(box, sphere);
+            return node.depth() < 6 && CGAL::do_intersect(tree.bbox(node), sphere);
         });
-        (void)graded;
+        if (balanced) tree.grade();
+        std::size_t nodes = 0;
+        std::size_t leaves = 0;
+        for (const Octree::Node& node : tree.traverse<CGAL::Orthtrees::Preorder_traversal>()) {
+            ++nodes;
+            if (node.is_leaf()) ++leaves;
+        }
+        EXPECT_EQ(tree.depth(), 6U);
+        EXPECT_GT(leaves, 5000U);
+
+        const CgalOctree grid(tree);
+        static_assert(NestedGrid<CgalOctree<Octree>>);
+        static_assert(sizeof(CgalOctree<Octree>::Element) == sizeof(void*));
+        const FieldOnOctree field(tree);
+        const auto violation = check_grid(grid, field);
+        EXPECT_FALSE(violation.has_value()) << violation->sentence;
+
+        const Traversal<CgalOctree<Octree>, FieldOnOctree, Needs{.positions = true}> walk(grid,
+                                                                                          field);
+        Leaves found{.tree = &tree};
+        walk.run(found);
+        EXPECT_EQ(found.inner + found.count, nodes);
+        EXPECT_EQ(found.count, leaves);
+        EXPECT_NEAR(found.volume, 1, 1e-12);
+        EXPECT_EQ(found.worst, 0);
     }
+}
+
+TEST(CgalOctree, MayJumpOverLevels) {
+    Points points{{0, 0, 0}, {1, 2, 3}};
+    Octree tree(points);
+    tree.refine([&](const Octree::Node& node) {
+        return node.depth() < (node.global_coordinates()[0] == 0 ? 5 : 2);
+    });
+    const auto violation = check_grid(CgalOctree(tree), FieldOnOctree(tree));
+    EXPECT_FALSE(violation.has_value()) << violation->sentence;
 }
 
 }  // namespace

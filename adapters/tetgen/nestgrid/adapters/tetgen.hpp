@@ -6,9 +6,9 @@
 #pragma once
 
 #include <algorithm>
-#include <set>
 
 #include <nestgrid/adapters/tetgen_files.hpp>
+#include <nestgrid/adapters/tetgen_mesher.hpp>
 
 namespace nestgrid {
 
@@ -36,78 +36,6 @@ inline CoarseGrid coarse_from_tetgen(const tetgenio& mesh) {
         grid.add(Shape::tetrahedron, nodes);
     }
     return grid;
-}
-
-struct TetgenOptions {
-    /// TetGen's switches (its manual, chapter 4) for .poly and .smesh files, such as "pq1.4a0.1":
-    /// quality 1.4, tetrahedra of a volume of 0.1 at most. Nothing is ever printed or written.
-    std::string switches = "pq1.4";
-};
-
-namespace detail {
-
-inline void run_tetgen(std::string switches, tetgenio& plc, tetgenio& mesh) {
-    switches += "Q";
-    ::tetrahedralize(switches.data(), &plc, &mesh);
-    if (switches.find('z') != std::string::npos) mesh.firstnumber = 0;  // which TetGen forgets
-}
-
-/// The facets of a piecewise linear complex that meet where they must not, as TetGen's switch d
-/// finds them.
-inline std::string meeting_facets(tetgenio& plc) {
-    tetgenio found;
-    try {
-        run_tetgen("pd", plc, found);
-    } catch (int) {
-        return "";
-    }
-    std::set<int> facets;
-    for (int i = 0; i < found.numberoftrifaces && found.trifacemarkerlist != nullptr; ++i) {
-        facets.insert(found.trifacemarkerlist[i]);
-    }
-    std::string text;
-    for (const int facet : facets)
-        text += (text.empty() ? ": facet " : ", ") + std::to_string(facet);
-    return text;
-}
-
-}  // namespace detail
-
-/// Fills a piecewise linear complex with tetrahedra.
-/// \throw InvalidInput for a complex that is not closed, intersects itself or is too small or thin
-///        for TetGen, and for wrong switches
-inline void tetrahedralize(tetgenio& plc, tetgenio& mesh, const TetgenOptions& options = {}) {
-    if (plc.numberofpoints < 4) throw InvalidInput("the complex has less than four points");
-    if (options.switches.find('p') == std::string::npos || options.switches.size() > 500) {
-        throw InvalidInput("TetGen's switches '" + options.switches +
-                           "' do not ask for a mesh of "
-                           "a piecewise linear complex, 'p'");
-    }
-    try {
-        detail::run_tetgen(options.switches, plc, mesh);
-    } catch (const int code) {
-        switch (code) {
-            case 1:
-                throw InvalidInput("TetGen has not enough memory for the complex");
-            case 3:
-                throw InvalidInput("the piecewise linear complex intersects itself" +
-                                   detail::meeting_facets(plc));
-            case 4:
-                throw InvalidInput("the complex has too small a feature for TetGen");
-            case 5:
-                throw InvalidInput("two facets of the complex are too close for TetGen");
-            case 10:
-                throw InvalidInput("TetGen refuses the complex or the switches '" +
-                                   options.switches + "'");
-            default:
-                throw InvalidInput("TetGen fails on the complex, error " + std::to_string(code));
-        }
-    }
-    if (mesh.numberoftetrahedra == 0) {
-        throw InvalidInput(
-            "nothing lies inside the complex: its facets do not close, or its "
-            "holes take everything");
-    }
 }
 
 /// The tetrahedra of a pair of files .node and .ele, either of which may be named, or those with
