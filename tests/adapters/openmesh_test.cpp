@@ -103,6 +103,16 @@ TEST(OpenMesh, RefusesDeletedElementsAndPentagons) {
     EXPECT_EQ(coarse_from_openmesh(PolyMesh()).element_count(), 0U);
 }
 
+TEST(OpenMesh, ReadsCommentsAndColours) {
+    const CoarseGrid grid = read_surface(
+        write_file("extras.off",
+                   "OFF # two faces\n4 2 0\n\n# points\n0 0 0\n1 0 0\n0 1 0\n1 1 0 # last\n"
+                   "3 0 1 2 0.5 0.5 0\n3 1 3 2 255 0 0\n"));
+    ASSERT_EQ(grid.element_count(), 2U);
+    EXPECT_EQ(grid.element(1)[1], 3U);
+    EXPECT_DOUBLE_EQ(total_measure(grid), 1);
+}
+
 class OpenMeshFiles : public testing::TestWithParam<const char*> {};
 
 TEST_P(OpenMeshFiles, ComeBack) {

@@ -188,7 +188,7 @@ TEST(TetGenSentences, NameBadComplexes) {
     refused("crossing.smesh",
             "16 3\n" + box_points(0, 0, 1) + box_points(8, 0.5, 1.5) + "12 0\n" + box_faces(0, "") +
                 box_faces(8, "") + "0\n",
-            {"crossing.smesh", "intersects itself", "facets 2, 4, 6, 7, 9, 11"});
+            {"crossing.smesh", "intersects itself", "facets 2 4 6 7 9 11"});
     // A box without its lid.
     const std::string faces = box_faces(0, "");
     refused("open.smesh",
@@ -201,6 +201,12 @@ TEST(TetGenSentences, NameBadComplexes) {
             {"plane.smesh", "is flat"});
     refused("slope.smesh", "4 3\n0 0 0 0\n1 1 0 1\n2 0 1 0\n3 1 1 1\n1\n3 0 1 2\n0\n",
             {"slope.smesh", "flat"});
+    refused("twice.smesh", "5 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 0 1 0\n1\n3 0 1 2\n0\n",
+            {"twice.smesh", "duplicate vertex", "2 and 4"});
+    refused("again.smesh", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n1\n3 0 1 1\n0\n",
+            {"again.smesh", "facet 1 has the point 1 twice"});
+    refused("bent.smesh", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n1\n4 0 1 2 3\n0\n",
+            {"bent.smesh", "facet 1 is not plane"});
     const std::string path = write_file("cavity.poly", cavity_poly);
     expect_sentence<InvalidInput>([&] { read_tetgen(path, {.switches = "r"}); },
                                   {"cavity.poly", "switches 'r'"});

@@ -7,7 +7,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -18,6 +18,7 @@
 #include <OpenMesh/Core/IO/reader/STLReader.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 
+#include <nestgrid/adapters/openmesh_formats.hpp>
 #include <nestgrid/adapters/openmesh_importer.hpp>
 
 namespace nestgrid {
@@ -42,53 +43,6 @@ private:
     std::array<OpenMesh::mostream*, 2> streams_{&omerr(), &omlog()};
     std::array<bool, 2> enabled_{omerr().is_enabled(), omlog().is_enabled()};
 };
-
-/// An STL file is binary if it has 84 bytes and 50 for each of the triangles it declares, and a
-/// complete text if its last line starts with "endsolid".
-inline bool is_binary_stl(const SurfaceImporter& importer, const std::string& content) {
-    const bool text = content.compare(content.find_first_not_of(" \t\r\n"), 5, "solid") == 0;
-    if (content.size() >= 84) {
-        std::uint32_t triangles = 0;
-        std::memcpy(&triangles, content.data() + 80, sizeof triangles);
-        const std::size_t size = 84 + 50 * std::size_t{triangles};
-        if (content.size() == size || (!text && content.size() > size)) return true;
-    }
-    const std::size_t end = content.find_last_not_of(" \t\r\n");
-    const std::size_t line = content.find_last_of('\n', end) + 1;
-    const std::size_t word = content.find_first_not_of(" \t", line);
-    if (!text || content.compare(word, 8, "endsolid") != 0) throw importer.truncated();
-    return false;
-}
-
-/// OpenMesh's reader of .ply believes every word of a header, and looks for its end for ever.
-inline bool is_ply_header(const std::string& content) {
-    static constexpr std::string_view types =
-        " char uchar short ushort int uint float double int8 uint8 int16 uint16 int32 uint32 "
-        "float32 float64 ";
-    const auto is_type = [](const std::string& word) {
-        return types.find(" " + word + " ") != std::string_view::npos;
-    };
-    std::istringstream lines(content);
-    bool in_element = false;
-    for (std::string line; std::getline(lines, line);) {
-        std::istringstream words(line);
-        std::vector<std::string> word{std::istream_iterator<std::string>(words), {}};
-        if (word.empty()) return false;
-        const bool list = word.size() == 5 && word[1] == "list";
-        if (word[0] == "end_header") return true;
-        if (word[0] == "element") {
-            if (word.size() != 3) return false;
-            in_element = true;
-        } else if (word[0] == "property") {
-            if (!in_element || (word.size() != 3 && !list)) return false;
-            if (!is_type(word[list ? 2 : 1]) || (list && !is_type(word[3]))) return false;
-        } else if (word[0] != "ply" && word[0] != "format" && word[0] != "comment" &&
-                   word[0] != "obj_info") {
-            return false;
-        }
-    }
-    return false;
-}
 
 }  // namespace detail
 
@@ -127,7 +81,12 @@ inline CoarseGrid read_surface(const std::string& path) {
         throw IoError("'" + path + "' has no complete header of the format " + ending);
     }
     Options options;
-    if (ending == ".stl" && detail::is_binary_stl(importer, content)) options += Options::Binary;
+    if (ending == ".stl") {
+        const detail::StlKind kind = detail::stl_kind(content);
+        if (kind == detail::StlKind::incomplete) throw importer.truncated();
+        if (kind == detail::StlKind::binary) options += Options::Binary;
+    }
+    if (ending == ".off") content = detail::without_extras(content);
     std::istringstream stream(std::move(content));
     // These two read as much as the header declares, whether it is there or not.
     if (ending == ".off" || ending == ".ply") {
