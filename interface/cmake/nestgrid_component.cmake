@@ -1,11 +1,12 @@
 # nestgrid_component(<name> [HEADERS ...] [SOURCES ...] [DEPENDS <component> ...] [LINK <target> ...]
-#                    [PACKAGES "<find_package arguments>" ...])
+#                    [PACKAGES "<find_package arguments>" ...] [FIND_MODULES <file> ...])
 #
 # Makes the target nestgrid::<name>, in the tree and installed. Each component is an include root of
 # its own, so a component sees the headers of those it depends on and no others. Without SOURCES it
-# is header-only. PACKAGES are found again by whoever asks the installed package for the component.
+# is header-only. PACKAGES are found again by whoever asks the installed package for the component,
+# with FIND_MODULES where they bring none of their own.
 function(nestgrid_component name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;SOURCES;DEPENDS;LINK;PACKAGES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;SOURCES;DEPENDS;LINK;PACKAGES;FIND_MODULES")
   set(target nestgrid_${name})
   if(arg_SOURCES)
     set(scope PUBLIC)
@@ -40,6 +41,9 @@ function(nestgrid_component name)
     # What the installed package needs to know of the component.
     set(text "set(nestgrid_${name}_depends ${arg_DEPENDS})\n")
     set(packages "")
+    if(arg_FIND_MODULES)
+      set(packages "list(PREPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})\n")
+    endif()
     foreach(package IN LISTS arg_PACKAGES)
       string(APPEND packages "find_dependency(${package})\n")
     endforeach()
@@ -47,8 +51,31 @@ function(nestgrid_component name)
     file(WRITE ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-packages.cmake "${packages}")
     install(FILES ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-depends.cmake
                   ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-packages.cmake
+                  ${arg_FIND_MODULES}
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/nestgrid)
   endif()
+endfunction()
+
+# nestgrid_optional(<name> <package> [<more find_package arguments> ...])
+#
+# Defines the option NESTGRID_<NAME>: ON demands the package, OFF leaves the component <name> out,
+# AUTO builds it where the package is found. Sets nestgrid_<name>_wanted.
+function(nestgrid_optional name package)
+  string(TOUPPER NESTGRID_${name} option)
+  set(${option} AUTO CACHE STRING "The component ${name}, which needs ${package}: AUTO, ON or OFF")
+  set_property(CACHE ${option} PROPERTY STRINGS AUTO ON OFF)
+  set(wanted FALSE)
+  if(${option} STREQUAL AUTO)
+    find_package(${package} ${ARGN} QUIET)
+    set(wanted ${${package}_FOUND})
+    if(NOT wanted)
+      message(STATUS "nestgrid: ${package} not found, the component '${name}' is left out")
+    endif()
+  elseif(${option})
+    find_package(${package} ${ARGN} REQUIRED)
+    set(wanted TRUE)
+  endif()
+  set(nestgrid_${name}_wanted ${wanted} PARENT_SCOPE)
 endfunction()
 
 # The warnings of our own programs, tests and compiled components. -Wrestrict of g++ 12 sees overlaps

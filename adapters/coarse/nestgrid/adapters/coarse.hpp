@@ -62,8 +62,8 @@ private:
 struct CoarseGrid {
     int dimension = 3;  ///< of the elements: 2 or 3
     Coordinates nodes;
-    std::vector<Shape> shapes;                 ///< of each element
-    std::vector<std::uint32_t> corners;        ///< nodes, element after element, tensor order
+    std::vector<Shape> shapes;                   ///< of each element
+    std::vector<std::uint32_t> corners;          ///< nodes, element after element, tensor order
     std::vector<std::uint32_t> first_corner{0};  ///< of each element in `corners`, and the end
 
     std::size_t element_count() const { return shapes.size(); }
@@ -81,6 +81,19 @@ struct CoarseGrid {
     }
     void add(Shape shape, std::initializer_list<std::uint32_t> nodes_of_element) {
         add(shape, std::span(nodes_of_element.begin(), nodes_of_element.size()));
+    }
+    /// A face of a surface, its corners in a loop.
+    /// \throw InvalidInput for a polygon that is neither a triangle nor a quadrilateral
+    void add_loop(std::span<const std::uint32_t> loop) {
+        if (loop.size() == 3) {
+            add(Shape::triangle, loop);
+        } else if (loop.size() == 4) {
+            add(Shape::quadrilateral, {loop[0], loop[1], loop[3], loop[2]});
+        } else {
+            throw InvalidInput("face " + std::to_string(element_count()) + " has " +
+                               std::to_string(loop.size()) +
+                               " corners; only triangles and quadrilaterals are supported");
+        }
     }
     /// Coordinates of the corners of an element.
     std::array<Point, max_corners> positions(std::size_t i) const {
