@@ -85,6 +85,7 @@ private:
             const auto found = std::find(known.begin(), known.end(), entity);
             const auto node = static_cast<std::uint8_t>(found - known.begin());
             if (found == known.end()) {
+                if (carrier_.size() == 64) throw GridError("a pattern has too many nodes");
                 known.push_back(entity);
                 carrier_.push_back(static_cast<std::uint8_t>(on));
             }
@@ -108,15 +109,12 @@ private:
         const std::size_t number = pattern_.exits.size();
         for (const std::uint8_t corners : entities(shape)) {
             if (temporary) break;
-            std::vector<std::uint8_t> nodes;
+            std::uint64_t nodes = 0;
             for (std::size_t i = 0; i < corner.size(); ++i) {
-                if ((corners >> i & 1U) != 0) nodes.push_back(corner[i]);
+                if ((corners >> i & 1U) != 0) nodes |= std::uint64_t{1} << corner[i];
             }
-            std::sort(nodes.begin(), nodes.end());
-            exit.entity.push_back(numbers_
-                                      .emplace(std::move(nodes),
-                                               static_cast<std::uint8_t>(numbers_.size()))
-                                      .first->second);
+            const auto next = static_cast<std::uint8_t>(numbers_.size());
+            exit.entity.push_back(numbers_.emplace(nodes, next).first->second);
         }
         pattern_.exits.push_back(std::move(exit));
         return {true, static_cast<std::uint8_t>(number)};
@@ -127,7 +125,7 @@ private:
     std::size_t at_ = 0;
     std::size_t corners_ = 0;
     std::vector<std::uint8_t> carrier_;  // of every node of the pattern
-    std::map<std::vector<std::uint8_t>, std::uint8_t> numbers_;
+    std::map<std::uint64_t, std::uint8_t> numbers_;  // of entities, by their nodes
     Pattern pattern_;
 };
 
