@@ -177,7 +177,7 @@ class RenumberedField {
 public:
     using value_type = float;
 
-    RenumberedField(const Renumbered& grid, const LatticeField<3, float>& field)
+    RenumberedField(const Renumbered& grid, const LatticeField<LatticeBisection<3>, float>& field)
         : grid_{&grid}, field_{&field} {}
     NodeMask coarse_values(std::size_t i, std::span<float> out) const {
         return field_->coarse_values(grid_->other(i), out);
@@ -188,7 +188,7 @@ public:
 
 private:
     const Renumbered* grid_;
-    const LatticeField<3, float>* field_;
+    const LatticeField<LatticeBisection<3>, float>* field_;
 };
 
 TEST(Renumbering, ChangesTheOrderAlone) {

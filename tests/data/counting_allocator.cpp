@@ -2,23 +2,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "counting_allocator.hpp"
 
+#include <malloc.h>
+
 #include <cstdlib>
 #include <new>
 
 namespace {
+
 std::size_t allocations = 0;
+std::size_t bytes = 0;
+
+void release(void* block) {
+    if (block != nullptr) bytes -= malloc_usable_size(block);
+    std::free(block);
 }
+
+}  // namespace
 
 void* operator new(std::size_t size) {
     ++allocations;
-    if (void* block = std::malloc(size == 0 ? 1 : size)) return block;
+    if (void* block = std::malloc(size == 0 ? 1 : size)) {
+        bytes += malloc_usable_size(block);
+        return block;
+    }
     throw std::bad_alloc();
 }
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+void operator delete(void* block) noexcept { release(block); }
+void operator delete(void* block, std::size_t) noexcept { release(block); }
 
 namespace nestgrid_test {
 
 std::size_t allocation_count() { return allocations; }
+std::size_t allocated_bytes() { return bytes; }
 
 }  // namespace nestgrid_test

@@ -17,42 +17,31 @@
 // the samples in a skin of about two cells along that curve; elsewhere nothing.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <limits>
-#include <string>
-#include <type_traits>
-
-#include <nestgrid/error.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/adapters/lattice.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {
 
-/// Where the samples of a lattice lie: origin + direction * (spacing * index).
-template <int dim>
-struct LatticeGeometry {
-    std::array<int, static_cast<std::size_t>(dim)> samples{};  ///< per direction, x fastest, >= 2
-    Point spacing{1, 1, 1};                                    ///< not zero
-    Point origin{0, 0, 0};
-    /// Rows of the direction matrix; its columns are the axes of the lattice in space.
-    std::array<Point, 3> direction{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    /// log2 of the cells of a block along each direction; negative: chosen so that blocks are as
-    /// large as possible while padding adds at most a quarter to the lattice.
-    int block_levels = -1;
-};
-
 /// The grid: dim is 2 (triangles) or 3 (tetrahedra).
 template <int dim>
-class LatticeBisection {
-    static_assert(dim == 2 || dim == 3);
-    static constexpr std::size_t size_ = static_cast<std::size_t>(dim);
-    static constexpr std::size_t corners_ = size_ + 1;
-    static constexpr unsigned bits_ = 21;  // of a coordinate: 20 used, one for sums
+class LatticeBisection : public Lattice<dim> {
+    using Lattice<dim>::size_;
+    using Lattice<dim>::bits_;
+    using Lattice<dim>::cells_;
+    using Lattice<dim>::padded_cells_;
+    using Lattice<dim>::blocks_;
+    using Lattice<dim>::block_total_;
+    using Lattice<dim>::node_stride_;
+    using Lattice<dim>::levels_;
+    using Lattice<dim>::padded_;
+    using Lattice<dim>::handedness_;
+    static constexpr std::size_t corners_ = static_cast<std::size_t>(dim) + 1;
 
 public:
-    /// Lattice coordinates, 21 bits each, x lowest: halving a sum of two halves all of them.
-    using Place = std::uint64_t;
+    using typename Lattice<dim>::Place;
+    using Lattice<dim>::at;
+    using Lattice<dim>::node;
+    using Lattice<dim>::position;
 
     struct Element {
         std::array<Place, corners_> corner;
@@ -64,8 +53,7 @@ public:
     static constexpr int max_new_nodes = 1;
     static constexpr int max_children = 2;
 
-    /// \throw InvalidInput for fewer than 2 or more than 2^20 samples along a direction, for a
-    ///        spacing or direction that is not finite or flat, and for blocks below 0 or beyond 20
+    /// \throw InvalidInput as the Lattice
     explicit LatticeBisection(const LatticeGeometry<dim>& geometry);
 
     std::size_t coarse_count() const { return block_total_ * permutations_; }
@@ -84,7 +72,6 @@ public:
     }
 
     // Optional operations.
-    std::size_t node_count() const { return node_total_; }
     bool conforming() const { return true; }
 
     void corner_keys(const Element& e, std::span<NodeKey> out) const {
@@ -107,7 +94,7 @@ public:
     }
 
     NodeMask outside(const Element& e) const {
-        return padded_ && crosses(e.corner[0], e.corner[e.tag]) ? 1U : 0U;
+        return padded_ && (this->beyond(e.corner[0]) || this->beyond(e.corner[e.tag])) ? 1U : 0U;
     }
 
     /// Face i lies opposite to corner i. All of them for an element across the boundary.
@@ -134,44 +121,8 @@ public:
 
     // What fields need.
     Place middle(const Element& e) const { return (e.corner[0] + e.corner[e.tag]) >> 1U; }
-    std::uint32_t at(Place p, std::size_t d) const {
-        return static_cast<std::uint32_t>(p >> (bits_ * d)) & ((1U << bits_) - 1U);
-    }
-    NodeKey node(Place p) const {
-        std::size_t index = 0;
-        for (std::size_t d = 0; d < size_; ++d) index += at(p, d) * node_stride_[d];
-        return static_cast<NodeKey>(index);
-    }
-    /// Index of the sample at a place of the lattice; padding continues the last samples.
-    std::size_t sample(Place p) const {
-        std::size_t index = 0;
-        for (std::size_t d = 0; d < size_; ++d) {
-            index += std::min(at(p, d), cells_[d]) * sample_stride_[d];
-        }
-        return index;
-    }
-    Place place(NodeKey node) const {
-        auto rest = static_cast<std::size_t>(node);
-        Place p = 0;
-        for (std::size_t d = size_; d-- > 0;) {
-            p |= Place{rest / node_stride_[d]} << (bits_ * d);
-            rest %= node_stride_[d];
-        }
-        return p;
-    }
-    Point position(Place p) const {
-        Point x = geometry_.origin;
-        for (std::size_t d = 0; d < size_; ++d) {
-            const double step = geometry_.spacing[d] * at(p, d);
-            for (std::size_t r = 0; r < 3; ++r) x[r] += geometry_.direction[r][d] * step;
-        }
-        return x;
-    }
-    const LatticeGeometry<dim>& geometry() const { return geometry_; }
-    std::size_t sample_count() const { return sample_stride_[size_ - 1] * samples(size_ - 1); }
-    std::size_t samples(std::size_t d) const { return cells_[d] + 1U; }
-    std::size_t sample_stride(std::size_t d) const { return sample_stride_[d]; }
-    int block_levels() const { return levels_; }
+    Place corner_place(const Element& e, std::size_t k) const { return e.corner[k]; }
+    Place new_place(const Element& e, std::size_t) const { return middle(e); }
 
 private:
     static constexpr std::size_t permutations_ = dim == 2 ? 2 : 6;
@@ -189,80 +140,12 @@ private:
                                         : (Place{1} | Place{1} << bits_ | Place{1} << 2 * bits_);
         return (sum & ones) != 0;
     }
-    /// Whether the segment from a to b leaves the domain.
-    bool crosses(Place a, Place b) const {
-        for (std::size_t d = 0; d < size_; ++d) {
-            if (std::max(at(a, d), at(b, d)) > cells_[d]) return true;
-        }
-        return false;
-    }
-    void choose_blocks();
     std::vector<Move> star_moves(std::uint32_t step, unsigned odd) const;
     template <class Function>
     void stars_of_step(std::uint32_t step, unsigned odd, Function& function) const;
 
-    LatticeGeometry<dim> geometry_;
-    std::array<std::uint32_t, size_> cells_{};  // of the domain
-    std::array<std::uint32_t, size_> padded_cells_{};
-    std::array<std::size_t, size_> blocks_{};
-    std::array<std::size_t, size_> node_stride_{};    // in the padded lattice
-    std::array<std::size_t, size_> sample_stride_{};  // in the samples
-    std::array<const Rule*, corners_> rules_{};       // by tag
-    std::size_t block_total_ = 0;
-    std::size_t node_total_ = 0;
-    int levels_ = 0;
-    bool padded_ = false;
-    std::int8_t handedness_ = 1;
+    std::array<const Rule*, corners_> rules_{};  // by tag
 };
-
-/// Samples of any arithmetic type, borrowed, x fastest. Values are float for types that float holds
-/// exactly (float, and integers of at most 16 bits), double for all others.
-template <int dim, class Sample>
-class LatticeField {
-public:
-    using value_type = std::conditional_t<std::is_same_v<Sample, float> ||
-                                              (std::is_integral_v<Sample> && sizeof(Sample) <= 2),
-                                          float, double>;
-    using Grid = LatticeBisection<dim>;
-    using Element = typename Grid::Element;
-
-    /// \throw InvalidInput where the number of samples is not that of the lattice
-    LatticeField(const Grid& grid, std::span<const Sample> samples)
-        : grid_{&grid}, samples_{samples} {
-        if (samples.size() != grid.sample_count()) {
-            throw InvalidInput("the field has " + std::to_string(samples.size()) +
-                               " samples, but the lattice " + std::to_string(grid.sample_count()));
-        }
-    }
-
-    NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
-        const Element e = grid_->coarse(i).element;
-        for (std::size_t k = 0; k < e.corner.size(); ++k) out[k] = at(e.corner[k]);
-        return 0;
-    }
-    NodeMask new_values(const Element& e, NodeMask, std::span<value_type> out) const {
-        out[0] = at(grid_->middle(e));
-        return 0;
-    }
-    value_type value(NodeKey node) const { return at(grid_->place(node)); }
-
-    /// Central differences of the samples, one-sided at the boundary.
-    void corner_gradients(const Element& e, std::span<Point> out) const {
-        for (std::size_t k = 0; k < e.corner.size(); ++k) out[k] = gradient(e.corner[k]);
-    }
-
-private:
-    value_type at(typename Grid::Place p) const {
-        return static_cast<value_type>(samples_[grid_->sample(p)]);
-    }
-    Point gradient(typename Grid::Place p) const;
-
-    const Grid* grid_;
-    std::span<const Sample> samples_;
-};
-
-template <class Sample, int dim>
-LatticeField(const LatticeBisection<dim>&, std::span<const Sample>) -> LatticeField<dim, Sample>;
 
 }  // namespace nestgrid
 

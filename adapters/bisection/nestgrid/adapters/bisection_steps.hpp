@@ -4,77 +4,16 @@
 // Definitions of bisection.hpp.
 #pragma once
 
-#include <cmath>
-
 #include <nestgrid/adapters/bisection.hpp>
 
 namespace nestgrid {
 
 template <int dim>
 LatticeBisection<dim>::LatticeBisection(const LatticeGeometry<dim>& geometry)
-    : geometry_{geometry} {
-    std::size_t stride = 1;
-    for (std::size_t d = 0; d < size_; ++d) {
-        if (geometry.samples[d] < 2 || geometry.samples[d] > 1 << 20) {
-            throw InvalidInput("a lattice needs 2 to 2^20 samples along each direction, not " +
-                               std::to_string(geometry.samples[d]));
-        }
-        cells_[d] = static_cast<std::uint32_t>(geometry.samples[d] - 1);
-        sample_stride_[d] = stride;
-        stride *= cells_[d] + std::size_t{1};
-    }
-    std::array<Point, 3> axis{{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}};
-    for (std::size_t d = 0; d < size_; ++d) {
-        for (std::size_t r = 0; r < 3; ++r) {
-            axis[d][r] = geometry.direction[r][d] * geometry.spacing[d];
-        }
-    }
-    const double volume = dot(axis[0], cross(axis[1], axis[2]));
-    const double area = norm(cross(axis[0], axis[1]));
-    if (!std::isfinite(volume) || (dim == 3 ? volume : area) == 0 ||
-        !std::isfinite(norm(geometry.origin))) {
-        throw InvalidInput("spacing, direction or origin of the lattice is flat or not finite");
-    }
-    handedness_ = static_cast<std::int8_t>(volume < 0 ? -1 : 1);
-    choose_blocks();
-    node_total_ = block_total_ = 1;
-    for (std::size_t d = 0; d < size_; ++d) {
-        blocks_[d] = padded_cells_[d] >> static_cast<unsigned>(levels_);
-        block_total_ *= blocks_[d];
-        node_stride_[d] = node_total_;
-        node_total_ *= padded_cells_[d] + std::size_t{1};
-        padded_ = padded_ || padded_cells_[d] != cells_[d];
-    }
+    : Lattice<dim>(geometry) {
     for (int tag = 1; tag <= dim; ++tag) {
         rules_[static_cast<std::size_t>(tag)] =
             &bisection_rule(dim == 2 ? Shape::triangle : Shape::tetrahedron, tag);
-    }
-}
-
-template <int dim>
-void LatticeBisection<dim>::choose_blocks() {
-    const auto padding = [&](int levels) {
-        const std::uint32_t block = 1U << static_cast<unsigned>(levels);
-        double growth = 1;
-        for (std::size_t d = 0; d < size_; ++d) {
-            padded_cells_[d] = (cells_[d] + block - 1) / block * block;
-            growth *= (padded_cells_[d] + 1.0) / (cells_[d] + 1.0);
-        }
-        return growth;
-    };
-    if (geometry_.block_levels > 19) {
-        throw InvalidInput("blocks of more than 2^19 cells along each direction");
-    }
-    levels_ = geometry_.block_levels;
-    if (levels_ < 0) {
-        const std::uint32_t longest = *std::max_element(cells_.begin(), cells_.end());
-        levels_ = static_cast<int>(std::bit_width(longest - 1U));
-        const int least = std::min(levels_, 4);
-        while (levels_ > least && padding(levels_) > 1.25) --levels_;
-    }
-    padding(levels_);
-    for (const std::uint32_t cells : padded_cells_) {
-        if (cells >= 1U << 20U) throw InvalidInput("the padded lattice has 2^20 cells or more");
     }
 }
 
@@ -202,31 +141,6 @@ void LatticeBisection<dim>::for_each_star(Function&& function) const {
             }
         }
     }
-}
-
-template <int dim, class Sample>
-Point LatticeField<dim, Sample>::gradient(typename Grid::Place p) const {
-    const LatticeGeometry<dim>& g = grid_->geometry();
-    const std::size_t centre = grid_->sample(p);
-    Point along{0, 0, 0};  // per unit length along the axes
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
-        const std::size_t x = std::min<std::size_t>(grid_->at(p, d), grid_->samples(d) - 1);
-        const std::size_t up = x + 1 < grid_->samples(d) ? 1 : 0;
-        const std::size_t down = x > 0 ? 1 : 0;
-        const double rise = static_cast<double>(samples_[centre + up * grid_->sample_stride(d)]) -
-                            static_cast<double>(samples_[centre - down * grid_->sample_stride(d)]);
-        along[d] = rise / (static_cast<double>(up + down) * g.spacing[d]);
-    }
-    // The gradient is the inverse transpose of the direction matrix times `along`.
-    std::array<Point, 3> axis{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
-        for (std::size_t r = 0; r < 3; ++r) axis[d][r] = g.direction[r][d];
-    }
-    if (dim == 2) axis[2] = cross(axis[0], axis[1]);
-    const double volume = dot(axis[0], cross(axis[1], axis[2]));
-    return (along[0] / volume) * cross(axis[1], axis[2]) +
-           (along[1] / volume) * cross(axis[2], axis[0]) +
-           (along[2] / volume) * cross(axis[0], axis[1]);
 }
 
 }  // namespace nestgrid

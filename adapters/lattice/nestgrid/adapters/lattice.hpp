@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the implicit hierarchies over regular samples share: places of the lattice, blocks of 2^m
+// cells, padding, and the samples as a field.
+//
+// Dimensions that are no multiple of 2^m are padded to the next one. Samples are continued
+// constantly; elements outside are masked, those across the boundary of the domain never stop.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include <nestgrid/error.hpp>
+#include <nestgrid/operations.hpp>
+
+namespace nestgrid {
+
+/// Where the samples of a lattice lie: origin + direction * (spacing * index).
+template <int dim>
+struct LatticeGeometry {
+    std::array<int, static_cast<std::size_t>(dim)> samples{};  ///< per direction, x fastest, >= 2
+    Point spacing{1, 1, 1};                                    ///< not zero
+    Point origin{0, 0, 0};
+    /// Rows of the direction matrix; its columns are the axes of the lattice in space.
+    std::array<Point, 3> direction{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    /// log2 of the cells of a block along each direction; negative: chosen so that blocks are as
+    /// large as possible while padding adds at most a quarter to the lattice.
+    int block_levels = -1;
+};
+
+/// Places, nodes and samples of a padded lattice.
+template <int dim>
+class Lattice {
+    static_assert(dim == 2 || dim == 3);
+
+public:
+    /// Lattice coordinates, 21 bits each, x lowest: halving a sum of two halves all of them.
+    using Place = std::uint64_t;
+
+    /// \throw InvalidInput for fewer than 2 or more than 2^20 samples along a direction, for a
+    ///        spacing or direction that is not finite or flat, and for blocks below 0 or beyond 20
+    explicit Lattice(const LatticeGeometry<dim>& geometry);
+
+    std::size_t node_count() const { return node_total_; }
+    std::uint32_t at(Place p, std::size_t d) const {
+        return static_cast<std::uint32_t>(p >> (bits_ * d)) & ((1U << bits_) - 1U);
+    }
+    NodeKey node(Place p) const {
+        std::size_t index = 0;
+        for (std::size_t d = 0; d < size_; ++d) index += at(p, d) * node_stride_[d];
+        return static_cast<NodeKey>(index);
+    }
+    /// Index of the sample at a place of the lattice; padding continues the last samples.
+    std::size_t sample(Place p) const {
+        std::size_t index = 0;
+        for (std::size_t d = 0; d < size_; ++d) {
+            index += std::min(at(p, d), cells_[d]) * sample_stride_[d];
+        }
+        return index;
+    }
+    Place place(NodeKey node) const {
+        auto rest = static_cast<std::size_t>(node);
+        Place p = 0;
+        for (std::size_t d = size_; d-- > 0;) {
+            p |= Place{rest / node_stride_[d]} << (bits_ * d);
+            rest %= node_stride_[d];
+        }
+        return p;
+    }
+    Point position(Place p) const {
+        Point x = geometry_.origin;
+        for (std::size_t d = 0; d < size_; ++d) {
+            const double step = geometry_.spacing[d] * at(p, d);
+            for (std::size_t r = 0; r < 3; ++r) x[r] += geometry_.direction[r][d] * step;
+        }
+        return x;
+    }
+    const LatticeGeometry<dim>& geometry() const { return geometry_; }
+    std::size_t sample_count() const { return sample_stride_[size_ - 1] * samples(size_ - 1); }
+    std::size_t samples(std::size_t d) const { return cells_[d] + 1U; }
+    std::size_t sample_stride(std::size_t d) const { return sample_stride_[d]; }
+    int block_levels() const { return levels_; }
+
+protected:
+    static constexpr std::size_t size_ = static_cast<std::size_t>(dim);
+    static constexpr unsigned bits_ = 21;  // of a coordinate: 20 used, one for sums
+
+    /// Whether a place lies beyond the domain, in the padding.
+    bool beyond(Place p) const {
+        for (std::size_t d = 0; d < size_; ++d) {
+            if (at(p, d) > cells_[d]) return true;
+        }
+        return false;
+    }
+
+    LatticeGeometry<dim> geometry_;
+    std::array<std::uint32_t, size_> cells_{};  // of the domain
+    std::array<std::uint32_t, size_> padded_cells_{};
+    std::array<std::size_t, size_> blocks_{};
+    std::array<std::size_t, size_> node_stride_{};    // in the padded lattice
+    std::array<std::size_t, size_> sample_stride_{};  // in the samples
+    std::size_t block_total_ = 0;
+    std::size_t node_total_ = 0;
+    int levels_ = 0;
+    bool padded_ = false;
+    std::int8_t handedness_ = 1;
+
+private:
+    void choose_blocks();
+};
+
+/// Samples of any arithmetic type, borrowed, x fastest. Values are float for types that float holds
+/// exactly (float, and integers of at most 16 bits), double for all others.
+template <class Grid, class Sample>
+class LatticeField {
+public:
+    using value_type = std::conditional_t<std::is_same_v<Sample, float> ||
+                                              (std::is_integral_v<Sample> && sizeof(Sample) <= 2),
+                                          float, double>;
+    using Element = typename Grid::Element;
+
+    /// \throw InvalidInput where the number of samples is not that of the lattice
+    LatticeField(const Grid& grid, std::span<const Sample> samples)
+        : grid_{&grid}, samples_{samples} {
+        if (samples.size() != grid.sample_count()) {
+            throw InvalidInput("the field has " + std::to_string(samples.size()) +
+                               " samples, but the lattice " + std::to_string(grid.sample_count()));
+        }
+    }
+
+    NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
+        const Element e = grid_->coarse(i).element;
+        for (std::size_t k = 0; k < corners_; ++k) out[k] = at(grid_->corner_place(e, k));
+        return 0;
+    }
+    NodeMask new_values(const Element& e, NodeMask which, std::span<value_type> out) const {
+        for (std::size_t k = 0; which >> k != 0; ++k) {
+            if ((which >> k & 1U) != 0) out[k] = at(grid_->new_place(e, k));
+        }
+        return 0;
+    }
+    value_type value(NodeKey node) const { return at(grid_->place(node)); }
+
+    /// Central differences of the samples, one-sided at the boundary.
+    void corner_gradients(const Element& e, std::span<Point> out) const {
+        for (std::size_t k = 0; k < corners_; ++k) out[k] = gradient(grid_->corner_place(e, k));
+    }
+
+private:
+    static constexpr std::size_t corners_ = static_cast<std::size_t>(Grid::max_corners);
+
+    value_type at(typename Grid::Place p) const {
+        return static_cast<value_type>(samples_[grid_->sample(p)]);
+    }
+    Point gradient(typename Grid::Place p) const;
+
+    const Grid* grid_;
+    std::span<const Sample> samples_;
+};
+
+template <int dim>
+Lattice<dim>::Lattice(const LatticeGeometry<dim>& geometry)
+    : geometry_{geometry} {
+    std::size_t stride = 1;
+    for (std::size_t d = 0; d < size_; ++d) {
+        if (geometry.samples[d] < 2 || geometry.samples[d] > 1 << 20) {
+            throw InvalidInput("a lattice needs 2 to 2^20 samples along each direction, not " +
+                               std::to_string(geometry.samples[d]));
+        }
+        cells_[d] = static_cast<std::uint32_t>(geometry.samples[d] - 1);
+        sample_stride_[d] = stride;
+        stride *= cells_[d] + std::size_t{1};
+    }
+    std::array<Point, 3> axis{{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}};
+    for (std::size_t d = 0; d < size_; ++d) {
+        for (std::size_t r = 0; r < 3; ++r) {
+            axis[d][r] = geometry.direction[r][d] * geometry.spacing[d];
+        }
+    }
+    const double volume = dot(axis[0], cross(axis[1], axis[2]));
+    const double area = norm(cross(axis[0], axis[1]));
+    if (!std::isfinite(volume) || (dim == 3 ? volume : area) == 0 ||
+        !std::isfinite(norm(geometry.origin))) {
+        throw InvalidInput("spacing, direction or origin of the lattice is flat or not finite");
+    }
+    handedness_ = static_cast<std::int8_t>(volume < 0 ? -1 : 1);
+    choose_blocks();
+    node_total_ = block_total_ = 1;
+    for (std::size_t d = 0; d < size_; ++d) {
+        blocks_[d] = padded_cells_[d] >> static_cast<unsigned>(levels_);
+        block_total_ *= blocks_[d];
+        node_stride_[d] = node_total_;
+        node_total_ *= padded_cells_[d] + std::size_t{1};
+        padded_ = padded_ || padded_cells_[d] != cells_[d];
+    }
+}
+
+template <int dim>
+void Lattice<dim>::choose_blocks() {
+    const auto padding = [&](int levels) {
+        const std::uint32_t block = 1U << static_cast<unsigned>(levels);
+        double growth = 1;
+        for (std::size_t d = 0; d < size_; ++d) {
+            padded_cells_[d] = (cells_[d] + block - 1) / block * block;
+            growth *= (padded_cells_[d] + 1.0) / (cells_[d] + 1.0);
+        }
+        return growth;
+    };
+    if (geometry_.block_levels > 19) {
+        throw InvalidInput("blocks of more than 2^19 cells along each direction");
+    }
+    levels_ = geometry_.block_levels;
+    if (levels_ < 0) {
+        const std::uint32_t longest = *std::max_element(cells_.begin(), cells_.end());
+        levels_ = static_cast<int>(std::bit_width(longest - 1U));
+        const int least = std::min(levels_, 4);
+        while (levels_ > least && padding(levels_) > 1.25) --levels_;
+    }
+    padding(levels_);
+    for (const std::uint32_t cells : padded_cells_) {
+        if (cells >= 1U << 20U) throw InvalidInput("the padded lattice has 2^20 cells or more");
+    }
+}
+
+template <class Grid, class Sample>
+Point LatticeField<Grid, Sample>::gradient(typename Grid::Place p) const {
+    constexpr int dim = Grid::dimension;
+    const LatticeGeometry<dim>& g = grid_->geometry();
+    const std::size_t centre = grid_->sample(p);
+    Point along{0, 0, 0};  // per unit length along the axes
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+        const std::size_t x = std::min<std::size_t>(grid_->at(p, d), grid_->samples(d) - 1);
+        const std::size_t up = x + 1 < grid_->samples(d) ? 1 : 0;
+        const std::size_t down = x > 0 ? 1 : 0;
+        const double rise = static_cast<double>(samples_[centre + up * grid_->sample_stride(d)]) -
+                            static_cast<double>(samples_[centre - down * grid_->sample_stride(d)]);
+        along[d] = rise / (static_cast<double>(up + down) * g.spacing[d]);
+    }
+    // The gradient is the inverse transpose of the direction matrix times `along`.
+    std::array<Point, 3> axis{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+        for (std::size_t r = 0; r < 3; ++r) axis[d][r] = g.direction[r][d];
+    }
+    if (dim == 2) axis[2] = cross(axis[0], axis[1]);
+    const double volume = dot(axis[0], cross(axis[1], axis[2]));
+    return (along[0] / volume) * cross(axis[1], axis[2]) +
+           (along[1] / volume) * cross(axis[2], axis[0]) +
+           (along[2] / volume) * cross(axis[0], axis[1]);
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Implicit quadtrees and octrees over regular samples: nothing is stored, the samples stay where
+// they are. An element is its lowest corner on the lattice and its size.
+#pragma once
+
+#include <nestgrid/adapters/lattice.hpp>
+#include <nestgrid/standard_rules.hpp>
+
+namespace nestgrid {
+
+/// The grid: dim is 2 (quadrilaterals) or 3 (hexahedra).
+template <int dim>
+class LatticeOctree : public Lattice<dim> {
+    using Lattice<dim>::size_;
+    using Lattice<dim>::bits_;
+    using Lattice<dim>::cells_;
+    using Lattice<dim>::blocks_;
+    using Lattice<dim>::block_total_;
+    using Lattice<dim>::levels_;
+    using Lattice<dim>::padded_;
+    using Lattice<dim>::handedness_;
+
+public:
+    using typename Lattice<dim>::Place;
+    using Lattice<dim>::at;
+    using Lattice<dim>::node;
+    using Lattice<dim>::position;
+
+    struct Element {
+        Place low;
+        std::uint8_t level;  ///< 2^level cells along each direction
+    };
+
+    static constexpr int dimension = dim;
+    static constexpr int max_corners = 1 << dim;
+    static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
+    static constexpr int max_children = 1 << dim;
+
+    /// \throw InvalidInput as the Lattice
+    explicit LatticeOctree(const LatticeGeometry<dim>& geometry)
+        : Lattice<dim>(geometry),
+          rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
+        const std::vector<Point> nodes = reference_nodes(*rule_);
+        for (std::size_t k = 0; k < max_new_nodes; ++k) {
+            for (std::size_t d = 0; d < size_; ++d) {
+                const double halves = 2 * nodes[max_corners + k][d];
+                half_steps_[k] |= static_cast<Place>(halves) << (bits_ * d);
+            }
+        }
+    }
+
+    std::size_t coarse_count() const { return block_total_; }
+    CoarseElement<Element> coarse(std::size_t i) const {
+        CoarseElement<Element> c;
+        c.shape = rule_->parent;
+        c.orientation = handedness_;
+        c.element.level = static_cast<std::uint8_t>(levels_);
+        c.element.low = 0;
+        for (std::size_t d = 0; d < size_; ++d) {
+            c.element.low |= Place{i % blocks_[d]} << (bits_ * d + c.element.level);
+            i /= blocks_[d];
+        }
+        for (std::size_t k = 0; k < max_corners; ++k) {
+            c.corners[k] = position(corner_place(c.element, k));
+            c.ids[k] = static_cast<std::uint64_t>(node(corner_place(c.element, k)));
+        }
+        return c;
+    }
+    const Rule* split(const Element& e) const { return e.level == 0 ? nullptr : rule_; }
+    void children(const Element& e, std::span<Element> out) const {
+        const auto level = static_cast<std::uint8_t>(e.level - 1);
+        for (std::size_t k = 0; k < max_children; ++k) {
+            out[k] = {corner_place({e.low, level}, k), level};
+        }
+    }
+
+    // Optional operations.
+    bool conforming() const { return true; }
+    void corner_keys(const Element& e, std::span<NodeKey> out) const {
+        for (std::size_t k = 0; k < max_corners; ++k) out[k] = node(corner_place(e, k));
+    }
+    void new_keys(const Element& e, std::span<NodeKey> out) const {
+        for (std::size_t k = 0; k < max_new_nodes; ++k) out[k] = node(new_place(e, k));
+    }
+    void corner_positions(const Element& e, std::span<Point> out) const {
+        for (std::size_t k = 0; k < max_corners; ++k) out[k] = position(corner_place(e, k));
+    }
+    bool masked(const Element& e) const {
+        for (std::size_t d = 0; padded_ && d < size_; ++d) {
+            if (at(e.low, d) >= cells_[d]) return true;
+        }
+        return false;
+    }
+    /// New nodes between corners of which one lies beyond the domain.
+    NodeMask outside(const Element& e) const {
+        NodeMask mask = 0;
+        if (!padded_ || !this->beyond(corner_place(e, max_corners - 1))) return mask;
+        for (std::size_t k = 0; k < max_new_nodes; ++k) {
+            const Stencil& s = rule_->new_nodes[k];
+            for (std::size_t i = 0; i < s.count; ++i) {
+                if (this->beyond(corner_place(e, s.parent[i]))) mask |= NodeMask{1} << k;
+            }
+        }
+        return mask;
+    }
+    /// Faces 2d and 2d + 1 are the lower and the upper one in direction d. All of them for an
+    /// element across the boundary.
+    unsigned boundary_faces(const Element& e) const {
+        const Place high = corner_place(e, max_corners - 1);
+        if (padded_ && this->beyond(high)) return (1U << 2 * size_) - 1U;
+        unsigned faces = 0;
+        for (std::size_t d = 0; d < size_; ++d) {
+            faces |= unsigned{at(e.low, d) == 0} << 2 * d;
+            faces |= unsigned{at(high, d) == cells_[d]} << (2 * d + 1);
+        }
+        return faces;
+    }
+
+    // What fields need.
+    Place corner_place(const Element& e, std::size_t k) const {
+        Place p = e.low;
+        for (std::size_t d = 0; d < size_; ++d) p += Place{k >> d & 1U} << (bits_ * d + e.level);
+        return p;
+    }
+    Place new_place(const Element& e, std::size_t k) const {
+        return e.low + (half_steps_[k] << (e.level - 1U));
+    }
+
+private:
+    const Rule* rule_;
+    std::array<Place, static_cast<std::size_t>(max_new_nodes)> half_steps_{};
+};
+
+}  // namespace nestgrid

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Linear quadtrees and octrees: a solver's own array of leaves, sorted along the Morton curve, as
+// the hierarchy it implies. Nothing is copied; an element is a range of the array.
+//
+// Invariants, checked once: the leaves of every tree are aligned to their level, sorted, and fill
+// the tree without gap or overlap. They may differ by any number of levels.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <nestgrid/adapters/coarse_checks.hpp>
+#include <nestgrid/operations.hpp>
+#include <nestgrid/standard_rules.hpp>
+
+namespace nestgrid {
+
+/// \tparam LeafType any struct with integers x, y, z (in two dimensions x, y) and level; a tree is
+///         2^max_level wide, its root has level 0
+template <int dim, class LeafType>
+class LinearOctree {
+public:
+    static constexpr int dimension = dim;
+    static constexpr int max_corners = 1 << dim;
+    static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
+    static constexpr int max_children = 1 << dim;
+
+    struct Element {
+        std::size_t first;  ///< leaf of the whole array
+        std::size_t last;   ///< one behind
+        std::uint8_t level;
+    };
+
+    /// \param coarse quadrilaterals or hexahedra, one per tree
+    /// \param trees leaves of each tree; the arrays must outlive the grid and stay as they are
+    /// \throw InvalidInput where these are no trees, naming the first wrong leaf
+    LinearOctree(CoarseGrid coarse, std::vector<std::span<const LeafType>> trees, int max_level)
+        : coarse_{std::move(coarse)},
+          trees_{std::move(trees)},
+          max_level_{max_level},
+          rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
+        CoarseGrid oriented = coarse_;
+        check_and_orient(oriented);
+        for (std::size_t t = 0; t < coarse_.element_count(); ++t) {
+            const bool same = std::equal(oriented.element(t).begin(), oriented.element(t).end(),
+                                         coarse_.element(t).begin());
+            orientation_.push_back(same ? 1 : -1);
+        }
+        if (trees_.size() != coarse_.element_count()) {
+            throw InvalidInput("there are " + std::to_string(trees_.size()) + " trees, but " +
+                               std::to_string(coarse_.element_count()) + " coarse elements");
+        }
+        if (max_level < 0 || max_level * dim > 62) {
+            throw InvalidInput("trees of " + std::to_string(max_level) + " levels");
+        }
+        first_.push_back(0);
+        for (std::size_t t = 0; t < trees_.size(); ++t) {
+            if (coarse_.shapes[t] != rule_->parent) {
+                throw InvalidInput("coarse element " + std::to_string(t) + " is a " +
+                                   std::string(topology(coarse_.shapes[t]).name));
+            }
+            check(t);
+            first_.push_back(first_.back() + trees_[t].size());
+        }
+    }
+
+    std::size_t coarse_count() const { return coarse_.element_count(); }
+    CoarseElement<Element> coarse(std::size_t i) const {
+        CoarseElement<Element> c;
+        c.shape = rule_->parent;
+        c.orientation = orientation_[i];
+        c.element = {first_[i], first_[i + 1], 0};
+        const auto nodes = coarse_.element(i);
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            c.corners[k] = coarse_.nodes[nodes[k]];
+            c.ids[k] = nodes[k];
+        }
+        return c;
+    }
+    const Rule* split(const Element& e) const { return e.last - e.first == 1 ? nullptr : rule_; }
+    void children(const Element& e, std::span<Element> out) const {
+        for (std::size_t c = 0; c < max_children; ++c) out[c] = child(e, c);
+    }
+
+    // What fields need.
+    std::size_t leaf_count() const { return first_.back(); }
+    /// The leaf in a corner of an element.
+    std::size_t corner_leaf(Element e, std::size_t corner) const {
+        while (e.last - e.first > 1) e = child(e, corner);
+        return e.first;
+    }
+    Element child(const Element& e, std::size_t number) const {
+        const std::size_t tree = static_cast<std::size_t>(
+            std::upper_bound(first_.begin(), first_.end(), e.first) - first_.begin() - 1);
+        const auto leaf = [&](std::size_t i) -> const LeafType& {
+            return trees_[tree][i - first_[tree]];
+        };
+        const auto bit = static_cast<unsigned>(max_level_ - e.level - 1);
+        const auto bound = [&](std::size_t least) {  // first leaf in a child >= least
+            std::size_t low = e.first;
+            std::size_t high = e.last;
+            while (low < high) {
+                const std::size_t middle = (low + high) / 2;
+                if (child_of(leaf(middle), bit) < least) {
+                    low = middle + 1;
+                } else {
+                    high = middle;
+                }
+            }
+            return low;
+        };
+        return {bound(number), bound(number + 1), static_cast<std::uint8_t>(e.level + 1)};
+    }
+    /// A child, and which of its corners a new node is.
+    std::pair<std::size_t, std::size_t> place_of_new_node(std::size_t k) const {
+        for (std::size_t c = 0; c < max_children; ++c) {
+            for (std::size_t i = 0; i < max_corners; ++i) {
+                if (rule_->children[c].corner[i] == max_corners + k) return {c, i};
+            }
+        }
+        return {0, 0};
+    }
+
+private:
+    static std::uint64_t coordinate(const LeafType& leaf, std::size_t d) {
+        if (d == 0) return static_cast<std::uint64_t>(leaf.x);
+        if (d == 1) return static_cast<std::uint64_t>(leaf.y);
+        if constexpr (dim == 3) return static_cast<std::uint64_t>(leaf.z);
+        return 0;
+    }
+    static std::size_t child_of(const LeafType& leaf, unsigned bit) {
+        std::size_t number = 0;
+        for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+            number |= static_cast<std::size_t>(coordinate(leaf, d) >> bit & 1U) << d;
+        }
+        return number;
+    }
+
+    void check(std::size_t t) const {
+        std::uint64_t expected = 0;  // place on the curve
+        for (std::size_t i = 0; i < trees_[t].size(); ++i) {
+            const LeafType& leaf = trees_[t][i];
+            const auto fail = [&](const std::string& what) {
+                throw InvalidInput("leaf " + std::to_string(i) + " of tree " + std::to_string(t) +
+                                   " " + what);
+            };
+            const auto level = static_cast<long long>(leaf.level);
+            if (level < 0 || level > max_level_) {
+                fail("has the level " + std::to_string(level) + ", not 0 to " +
+                     std::to_string(max_level_));
+            }
+            const auto below = static_cast<unsigned>(max_level_ - level);
+            std::uint64_t place = 0;
+            for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+                const std::uint64_t x = coordinate(leaf, d);
+                if (x >> static_cast<unsigned>(max_level_) != 0) fail("lies outside its tree");
+                if ((x & ((std::uint64_t{1} << below) - 1)) != 0) {
+                    fail("is not aligned to its level");
+                }
+                for (unsigned b = 0; b < static_cast<unsigned>(max_level_); ++b) {
+                    place |= (x >> b & 1U) << (b * static_cast<unsigned>(dim) + d);
+                }
+            }
+            if (place < expected) fail("overlaps the one before it, or they are not sorted");
+            if (place > expected) fail("leaves a gap before it");
+            expected += std::uint64_t{1} << (static_cast<unsigned>(dim) * below);
+        }
+        if (expected != std::uint64_t{1} << static_cast<unsigned>(dim * max_level_)) {
+            throw InvalidInput("the leaves of tree " + std::to_string(t) + " do not fill it");
+        }
+    }
+
+    CoarseGrid coarse_;
+    std::vector<std::int8_t> orientation_;
+    std::vector<std::span<const LeafType>> trees_;
+    std::vector<std::size_t> first_;  // leaf of each tree in the whole array, and the end
+    int max_level_;
+    const Rule* rule_;
+};
+
+/// Nodal values of a linear octree, read in place: corner c (in tensor order) of leaf i of the
+/// whole array is node element_nodes[2^dim * i + c].
+template <class Grid, class Real, class Index>
+class LinearOctreeField {
+public:
+    using value_type = Real;
+    using Element = typename Grid::Element;
+
+    /// \throw InvalidInput where there are not 2^dim nodes per leaf, or one has no value
+    LinearOctreeField(const Grid& grid, std::span<const Index> element_nodes,
+                      std::span<const Real> values)
+        : grid_{&grid}, element_nodes_{element_nodes}, values_{values} {
+        if (element_nodes.size() != corners_ * grid.leaf_count()) {
+            throw InvalidInput("there are " + std::to_string(element_nodes.size()) +
+                               " nodes of elements, not " + std::to_string(corners_) +
+                               " for each of " + std::to_string(grid.leaf_count()) + " leaves");
+        }
+        for (std::size_t i = 0; i < element_nodes.size(); ++i) {
+            if (static_cast<std::size_t>(element_nodes[i]) >= values.size()) {
+                throw InvalidInput("corner " + std::to_string(i % corners_) + " of leaf " +
+                                   std::to_string(i / corners_) + " is the node " +
+                                   std::to_string(element_nodes[i]) + ", but there are " +
+                                   std::to_string(values.size()) + " values");
+            }
+        }
+        for (std::size_t k = 0; k < new_node_.size(); ++k) {
+            new_node_[k] = grid.place_of_new_node(k);
+        }
+    }
+
+    NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
+        const Element e = grid_->coarse(i).element;
+        for (std::size_t c = 0; c < corners_; ++c) out[c] = corner_value(e, c);
+        return 0;
+    }
+    NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
+        for (std::size_t k = 0; k < new_node_.size(); ++k) {
+            if ((which >> k & 1U) == 0) continue;
+            const auto [child, corner] = new_node_[k];
+            out[k] = corner_value(grid_->child(e, child), corner);
+        }
+        return 0;
+    }
+
+private:
+    static constexpr auto corners_ = static_cast<std::size_t>(Grid::max_corners);
+
+    Real corner_value(const Element& e, std::size_t corner) const {
+        const std::size_t leaf = grid_->corner_leaf(e, corner);
+        return values_[static_cast<std::size_t>(element_nodes_[corners_ * leaf + corner])];
+    }
+
+    const Grid* grid_;
+    std::span<const Index> element_nodes_;
+    std::span<const Real> values_;
+    std::array<std::pair<std::size_t, std::size_t>, Grid::max_new_nodes> new_node_{};
+};
+
+}  // namespace nestgrid
