@@ -86,6 +86,7 @@ inline CoarseGrid read_surface(const std::string& path) {
         if (kind == detail::StlKind::incomplete) throw importer.truncated();
         if (kind == detail::StlKind::binary) options += Options::Binary;
     }
+    if (ending == ".obj" && !detail::has_only_vertices(content)) throw importer.truncated();
     if (ending == ".off") content = detail::without_extras(content);
     std::istringstream stream(std::move(content));
     // These two read as much as the header declares, whether it is there or not.

@@ -44,7 +44,11 @@ inline bool is_ply_header(const std::string& content) {
     const auto is_type = [](const std::string& word) {
         return types.find(" " + word + " ") != std::string_view::npos;
     };
+    const auto is_count = [](const std::string& word) {
+        return word.size() < 10 && word.find_first_not_of("0123456789") == std::string::npos;
+    };
     std::istringstream lines(content);
+    bool has_format = false;
     bool in_element = false;
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
@@ -53,17 +57,33 @@ inline bool is_ply_header(const std::string& content) {
         const bool list = word.size() == 5 && word[1] == "list";
         if (word[0] == "end_header") return true;
         if (word[0] == "element") {
-            if (word.size() != 3) return false;
+            if (!has_format || word.size() != 3 || !is_count(word[2])) return false;
             in_element = true;
+        } else if (word[0] == "format") {
+            if (has_format || word.size() != 3 || word[2] != "1.0") return false;
+            has_format = true;
         } else if (word[0] == "property") {
             if (!in_element || (word.size() != 3 && !list)) return false;
             if (!is_type(word[list ? 2 : 1]) || (list && !is_type(word[3]))) return false;
-        } else if (word[0] != "ply" && word[0] != "format" && word[0] != "comment" &&
-                   word[0] != "obj_info") {
+        } else if (word[0] != "ply" && word[0] != "comment" && word[0] != "obj_info") {
             return false;
         }
     }
     return false;
+}
+
+/// OpenMesh's reader of .obj stops the program at a corner without a vertex, as in "f /1 2 3".
+inline bool has_only_vertices(const std::string& content) {
+    std::istringstream lines(content);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string word;
+        if (!(words >> word) || word != "f") continue;
+        while (words >> word) {
+            if (word[0] == '/') return false;
+        }
+    }
+    return true;
 }
 
 /// OpenMesh's reader of .off knows neither comments nor the colours behind the faces of a file
