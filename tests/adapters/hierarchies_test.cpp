@@ -200,6 +200,18 @@ TEST(RedGreen, ClosureOfHexahedraMixesAllShapes) {
     }
 }
 
+TEST(RedGreen, RulesGoWithTheLastElementThatHasThem) {
+    RedGreenGrid<3> grid(hexahedra(2));
+    std::mt19937 random(1);
+    for (int step = 0; step < 3; ++step) {
+        grid.adapt([&](const Leaf&) { return random() % 5 == 0 ? Mark::refine : Mark::keep; });
+    }
+    EXPECT_GT(grid.rule_count(), 20U);
+    for (int step = 0; step < 10; ++step) grid.adapt([](const Leaf&) { return Mark::coarsen; });
+    EXPECT_EQ(grid.leaf_count(), 8U);
+    EXPECT_EQ(grid.rule_count(), 0U);
+}
+
 TEST(RedGreen, GreenIsReplacedWhenRefined) {
     RedGreenSimplices<2> grid(triangles(1));
     grid.adapt([](const Leaf& leaf) { return leaf.coarse == 0 ? Mark::refine : Mark::keep; });

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
+
 #include <fcntl.h>
 
 #include <dune/common/parallel/mpihelper.hh>
@@ -36,6 +38,7 @@ public:
     Silence(const Silence&) = delete;
     Silence& operator=(const Silence&) = delete;
     ~Silence() {
+        std::cout.flush();
         std::fflush(stdout);
         dup2(kept_, STDOUT_FILENO);
         close(kept_);

@@ -17,6 +17,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/adapters/lattice_octree.hpp>
 
 #ifdef NESTGRID_WITH_P4EST
 #include "p4est_octree.hpp"
@@ -32,25 +33,17 @@ namespace {
 
 bool quick = false;
 
-template <class... Args>
 void print(const std::string& name, double value) {
     std::printf("%s %.4g\n", name.c_str(), value);
     std::fflush(stdout);
 }
 
-/// What the heap gets back when the hierarchy goes and only its coarse grid stays.
+/// What the heap gets back when the hierarchy goes; rules made by its closure are counted, too.
 template <class Grid>
-double stored_bytes(const Grid& grid) {
-    std::optional<Grid> whole(grid);
+double bytes_of(std::optional<Grid>& grid) {
     const std::size_t with = allocated_bytes();
-    whole.reset();
-    const std::size_t without = allocated_bytes();
-    // Its coarse grid alone.
-    std::optional<Grid> coarse(std::in_place, grid.coarse_grid(), grid.family());
-    const std::size_t with_coarse = allocated_bytes();
-    coarse.reset();
-    return static_cast<double>(with - without) -
-           static_cast<double>(with_coarse - allocated_bytes());
+    grid.reset();
+    return static_cast<double>(with - allocated_bytes());
 }
 
 /// Cells and points of the same leaves as VTK keeps them: connectivity, offsets, types.
@@ -72,8 +65,12 @@ double vtk_bytes(const Grid& grid) {
     return 1024 * static_cast<double>(cells->GetActualMemorySize() + types->GetActualMemorySize());
 }
 
-template <class Grid>
-void measure_family(const std::string& name, Grid grid, int depth, int uniform, Grid fresh) {
+template <class Grid, class Make>
+void measure_family(const std::string& name, Make&& make, int depth, int uniform) {
+    std::optional<Grid> coarse(make());
+    const double coarse_bytes = bytes_of(coarse);
+    std::optional<Grid> kept(make());
+    Grid& grid = *kept;
     const int levels = quick ? depth - 2 * (depth / 7) : depth;
     refine_at_sphere(grid, levels);
     // A million leaves are refined and as many families coarsened, at random, then the sphere is
@@ -101,12 +98,13 @@ void measure_family(const std::string& name, Grid grid, int depth, int uniform, 
     refine_at_sphere(grid, levels);
     const auto leaves = static_cast<double>(grid.leaf_count());
     print(name + "_leaves", leaves);
-    print(name + "_bytes_per_leaf", stored_bytes(grid) / leaves);
     print(name + "_vtk_bytes_per_leaf", vtk_bytes(grid) / leaves);
-    for (int i = 0; i < (quick ? uniform - uniform / 4 : uniform); ++i) fresh.refine_uniformly();
-    const auto uniform_leaves = static_cast<double>(fresh.leaf_count());
+    print(name + "_bytes_per_leaf", (bytes_of(kept) - coarse_bytes) / leaves);
+    std::optional<Grid> fresh(make());
+    for (int i = 0; i < (quick ? uniform - uniform / 4 : uniform); ++i) fresh->refine_uniformly();
+    const auto uniform_leaves = static_cast<double>(fresh->leaf_count());
     print(name + "_uniform_leaves", uniform_leaves);
-    print(name + "_uniform_bytes_per_leaf", stored_bytes(fresh) / uniform_leaves);
+    print(name + "_uniform_bytes_per_leaf", (bytes_of(fresh) - coarse_bytes) / uniform_leaves);
 }
 
 }  // namespace
@@ -114,17 +112,18 @@ void measure_family(const std::string& name, Grid grid, int depth, int uniform, 
 int main(int argc, char** argv) {
     quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
     const std::vector<double> layer{1.0};
-    using Tetrahedra = RedGreenSimplices<3>;
-    measure_family("red_green_tetrahedra", Tetrahedra(tetrahedra(1)), 7, 6,
-                   Tetrahedra(tetrahedra(1)));
-    measure_family("bisection_tetrahedra", BisectionGrid<3>(tetrahedra(1)), 21, 18,
-                   BisectionGrid<3>(tetrahedra(1)));
-    measure_family("red_green_hexahedra", RedGreenGrid<3>(hexahedra(1)), 7, 6,
-                   RedGreenGrid<3>(hexahedra(1)));
-    measure_family("octree_hexahedra", OctreeGrid<3>(hexahedra(1)), 7, 6,
-                   OctreeGrid<3>(hexahedra(1)));
-    measure_family("prism", PrismGrid(extrude(triangles(1), layer)), 7, 6,
-                   PrismGrid(extrude(triangles(1), layer)));
+    const auto cube = [] { return tetrahedra(1); };
+    const auto slab = [&] { return extrude(triangles(1), layer); };
+    const auto hexahedron = [] { return hexahedra(1); };
+    measure_family<RedGreenSimplices<3>>("red_green_tetrahedra",
+                                         [&] { return RedGreenSimplices<3>(cube()); }, 7, 6);
+    measure_family<BisectionGrid<3>>("bisection_tetrahedra",
+                                     [&] { return BisectionGrid<3>(cube()); }, 21, 18);
+    measure_family<RedGreenGrid<3>>("red_green_hexahedra",
+                                    [&] { return RedGreenGrid<3>(hexahedron()); }, 7, 6);
+    measure_family<OctreeGrid<3>>("octree_hexahedra",
+                                  [&] { return OctreeGrid<3>(hexahedron()); }, 7, 6);
+    measure_family<PrismGrid>("prism", [&] { return PrismGrid(slab()); }, 7, 6);
 #ifdef NESTGRID_WITH_P4EST
     const P4estFigures p4est = refine_p4est_at_sphere(quick ? 5 : 7);
     print("p4est_leaves", static_cast<double>(p4est.leaves));
@@ -133,8 +132,11 @@ int main(int argc, char** argv) {
           (p4est.forest_bytes + p4est.node_bytes) / static_cast<double>(p4est.leaves));
 #endif
     // Implicit grids keep nothing that grows with the lattice.
-    std::size_t before = allocated_bytes();
-    const LatticeBisection<3> lattice({.samples = {129, 129, 129}});
-    print("lattice_bisection_bytes", static_cast<double>(allocated_bytes() - before));
+    const std::size_t before = allocated_bytes();
+    const LatticeBisection<3> bisection({.samples = {129, 129, 129}});
+    const LatticeOctree<3> octree({.samples = {129, 129, 129}});
+    print("lattice_grids_bytes", static_cast<double>(allocated_bytes() - before));
+    static_cast<void>(bisection);
+    static_cast<void>(octree);
     return 0;
 }

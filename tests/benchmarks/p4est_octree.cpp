@@ -37,6 +37,7 @@ P4estFigures refine_p4est_at_sphere(int levels) {
     if (initialized == 0) {
         MPI_Init(nullptr, nullptr);
         sc_init(MPI_COMM_WORLD, 0, 0, nullptr, SC_LP_SILENT);
+        p4est_init(nullptr, SC_LP_SILENT);
     }
     P4estFigures result;
     p8est_connectivity_t* cube = p8est_connectivity_new_unitcube();

@@ -96,7 +96,7 @@ void LatticeBisection<dim>::stars_of_step(std::uint32_t step, unsigned odd,
     std::array<std::uint32_t, 3> x{};
     std::array<NodeKey, 16> corners;
     const auto visit = [&] {
-        std::size_t node = 0;
+        std::size_t index = 0;
         std::size_t half = 0;  // from the node to the end of the refinement edge
         unsigned at_first = 0;
         unsigned at_last = 0;
@@ -105,7 +105,7 @@ void LatticeBisection<dim>::stars_of_step(std::uint32_t step, unsigned odd,
             const bool is_odd = (odd >> d & 1U) != 0;
             // Elements reach one step to each side; where all lie beyond, all are masked.
             if (x[d] >= cells_[d] + step) return;
-            node += x[d] * node_stride_[d];
+            index += x[d] * node_stride_[d];
             across = across || x[d] + (is_odd ? step : 0U) > cells_[d];
             at_first |= unsigned{x[d] == 0} << d;
             at_last |= unsigned{x[d] == last[d]} << d;
@@ -116,11 +116,11 @@ void LatticeBisection<dim>::stars_of_step(std::uint32_t step, unsigned odd,
         std::size_t count = 0;
         for (const Move& move : moves) {
             if (((move.up & at_last) | (move.down & at_first)) != 0) continue;
-            corners[count++] = static_cast<NodeKey>(node + move.offset);
+            corners[count++] = static_cast<NodeKey>(index + move.offset);
         }
-        const std::array<NodeKey, 2> parents{static_cast<NodeKey>(node - half),
-                                             static_cast<NodeKey>(node + half)};
-        function(Star{static_cast<NodeKey>(node), parents,
+        const std::array<NodeKey, 2> parents{static_cast<NodeKey>(index - half),
+                                             static_cast<NodeKey>(index + half)};
+        function(Star{static_cast<NodeKey>(index), parents,
                       std::span<const NodeKey>(corners.data(), count), padded_ && across});
     };
     for (x[2] = first[2]; x[2] <= last[2]; x[2] += 2 * step) {

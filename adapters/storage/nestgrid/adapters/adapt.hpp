@@ -103,7 +103,8 @@ private:
         std::array<Block, static_cast<std::size_t>(max_exits_)> block;
         std::array<std::uint16_t, static_cast<std::size_t>(max_exits_)> code;
     };
-    void collect(std::uint32_t e, int height, Block& block) const;
+    void collect(std::uint32_t e, int height, Block& block);
+    std::uint16_t written(std::uint16_t rule);
     bool is_refined(std::uint32_t e) const { return tree_.elements[e].rule != 0; }
     void pack();
     std::uint32_t pack(std::uint16_t pattern, std::span<const std::uint32_t> exits,
@@ -113,7 +114,9 @@ private:
     void commit();
 
     Grid& grid_;
-    PatternTable table_;
+    PatternTable table_;    // of the grid as it is, and rules that come up
+    PatternTable written_;  // only what the new grid needs, in the order of its records
+    std::vector<std::uint16_t> written_rule_;  // number there of each rule of `table_`, or 0
     Tree tree_;
     Adaptation result_;
     std::size_t coarse_ = 0;
@@ -324,14 +327,24 @@ void Adapter<Family>::find_hanging() {
 }
 
 template <class Family>
-void Adapter<Family>::collect(std::uint32_t e, int height, Block& block) const {
+std::uint16_t Adapter<Family>::written(std::uint16_t rule) {
+    if (written_rule_.size() <= rule) written_rule_.resize(rule + 1U, 0);
+    if (written_rule_[rule] == 0) {
+        const StoredRule& r = table_.rule(rule);
+        written_rule_[rule] = written_.rule(r.descriptor, r.temporary, [&] { return r.rule; });
+    }
+    return written_rule_[rule];
+}
+
+template <class Family>
+void Adapter<Family>::collect(std::uint32_t e, int height, Block& block) {
     const auto& element = tree_.elements[e];
     if (height == 0 || element.rule == 0) {
         block.tree.push_back(0);
         block.exits.push_back(e);
         return;
     }
-    block.tree.push_back(element.rule);
+    block.tree.push_back(written(element.rule));
     block.inner.push_back(e);
     const auto n = static_cast<std::uint32_t>(tree_.rule(element).children.size());
     for (std::uint32_t k = 0; k < n; ++k) collect(element.child + k, height - 1, block);
@@ -371,9 +384,9 @@ std::uint32_t Adapter<Family>::pack(std::uint16_t pattern,
         }
         blocks[j].clear();
         collect(exits[j], Family::block_height, blocks[j]);
-        codes[j] = table_.pattern(blocks[j].tree);
-        const Pattern& refined = table_[codes[j]];
-        const auto& entity_of_exit = table_[pattern].exits[j].entity;
+        codes[j] = written_.pattern(blocks[j].tree);
+        const Pattern& refined = written_[codes[j]];
+        const auto& entity_of_exit = written_[pattern].exits[j].entity;
         for (std::size_t i = 0; i < refined.inner.size(); ++i) {
             const auto nodes = tree_.nodes(tree_.elements[blocks[j].inner[i]]);
             for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -396,7 +409,7 @@ std::uint32_t Adapter<Family>::pack(std::uint16_t pattern,
         words_.push_back(codes[j] | high << 16U);
     }
     words_.insert(words_.end(), mask.begin(),
-                  mask.begin() + static_cast<std::ptrdiff_t>(table_[pattern].mask_words()));
+                  mask.begin() + static_cast<std::ptrdiff_t>(written_[pattern].mask_words()));
     std::size_t link = words_.size();
     for (const std::uint16_t code : codes) {
         if ((code & Grid::has_record_) != 0) words_.push_back(Grid::none_);
@@ -436,7 +449,7 @@ void Adapter<Family>::commit() {
         hanging_.resize((count + 31) / 32);
         hanging_.shrink_to_fit();
     }
-    grid_.table_ = std::move(table_);
+    grid_.table_ = std::move(written_);
     grid_.root_ = std::move(root_);
     grid_.words_ = std::move(words_);
     grid_.hanging_ = std::move(hanging_);

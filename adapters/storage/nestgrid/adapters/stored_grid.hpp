@@ -150,6 +150,8 @@ public:
     std::size_t leaf_count() const { return leaf_count_; }
     /// Nodes that are in use; node_count() bounds their numbers.
     std::size_t used_node_count() const { return used_node_count_; }
+    /// Different rules in use.
+    std::size_t rule_count() const { return table_.rule_count() - 1; }
     bool hangs(std::uint32_t node) const {
         return !hanging_.empty() && (hanging_[node / 32] >> (node % 32) & 1U) != 0;
     }
