@@ -129,8 +129,11 @@ void make_hierarchy(const MeshRequest& request) {
                 throw InvalidInput("prisms are made of a surface: give the thickness of its "
                                    "--layers");
             }
-            coarse = extrude(coarse, request.layers,
-                             {request.direction[0], request.direction[1], request.direction[2]});
+            std::optional<Point> direction;
+            if (!request.direction.empty()) {
+                direction = {request.direction[0], request.direction[1], request.direction[2]};
+            }
+            coarse = extrude(coarse, request.layers, direction);
         }
         build(std::move(coarse), request);
     } catch (const InvalidInput& error) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -12,7 +11,7 @@ struct MeshRequest {
     std::filesystem::path input;  ///< .off .obj .ply .stl, .node .ele .poly .smesh
     std::string family;           ///< red-green, bisection, octree, prism
     std::vector<double> layers;   ///< thicknesses of layers to extrude a surface in, for prisms
-    std::array<double, 3> direction{0, 0, 1};  ///< to extrude along
+    std::vector<double> direction;  ///< to extrude along, x, y, z; empty: along the normals
     bool unbalanced = false;
     double maximum_volume = 0;  ///< of the tetrahedra that fill a .poly or .smesh; 0 for any
     int refine = 0;      ///< uniform refinements

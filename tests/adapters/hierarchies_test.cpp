@@ -357,6 +357,20 @@ TEST(Prism, AcceptsOnlySoundMixtures) {
     EXPECT_GT(refused, 30);
 }
 
+TEST(Prism, LayersFollowTheNormals) {
+    // Shells of an octahedron: every layer is convex, so volumes grow with the thickness.
+    CoarseGrid surface = octahedron();
+    check_and_orient(surface);
+    const std::vector<double> layers{0.1, 0.4};
+    PrismGrid grid(extrude(surface, layers));
+    const auto octahedron_volume = [](double r) { return 4.0 / 3.0 * r * r * r; };
+    EXPECT_NEAR(coarse_volume(grid), octahedron_volume(1.5) - octahedron_volume(1), 1e-12);
+    grid.refine_uniformly();
+    expect_sound(grid);
+    EXPECT_THROW(extrude(surface, layers, Point{0, 0, 0}), InvalidInput);
+    EXPECT_THROW(PrismGrid(extrude(surface, layers, Point{0, 0, 1})), InvalidInput);  // inverted
+}
+
 TEST(Hierarchy, RefusesWhatItCannotRefine) {
     EXPECT_THROW(BisectionGrid<3>{hexahedra(1)}, InvalidInput);
     EXPECT_THROW(OctreeGrid<3>{tetrahedra(1)}, InvalidInput);

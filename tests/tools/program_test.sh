@@ -116,6 +116,91 @@ refused 2 '--frobnicate' isosurface v.vti --value 130 --frobnicate
 refused 2 'value is required' isosurface v.vti
 refused 2 '' isosurface
 refused 2 '' paint v.vti
+# Hierarchies.
+cat >tetra.off <<'END'
+OFF
+4 4 0
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 0 2 1
+3 0 1 3
+3 1 2 3
+3 0 3 2
+END
+cat >cube.smesh <<'END'
+8 3 0 0
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+6 0
+4 1 2 3 4
+4 5 6 7 8
+4 1 2 6 5
+4 2 3 7 6
+4 3 4 8 7
+4 4 1 5 8
+0
+0
+END
+cat >quad.obj <<'END'
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+f 1 2 3 4
+END
+for family in bisection red-green; do
+    "$program" mesh cube.smesh --family $family --field 'sqrt(x^2+y^2+z^2)' --tolerance 0.004 \
+        -o $family.nestgrid >out 2>err || fail "mesh $family: $(cat err)"
+    [ ! -s err ] || fail "mesh $family wrote to standard error"
+    [ "$(value measure)" = 1 ] || fail "mesh $family: volume $(value measure)"
+    [ "$(value hanging_nodes)" = 0 ] || fail "mesh $family: hanging nodes"
+    cp out first && "$program" info $family.nestgrid >out && cmp -s out first || fail "info $family"
+    "$program" isosurface $family.nestgrid --value 0.7 -o $family.vtp >out || fail "iso $family"
+    [ "$(value open_edges)" = 0 ] || fail "iso $family: open edges"
+    # An eighth of a sphere: its area to a percent.
+    awk -v area="$(value area)" 'BEGIN { exit !(area > 0.76 && area < 0.775) }' ||
+        fail "iso $family: area $(value area)"
+done
+"$program" mesh tetra.off --family red-green --field front --tolerance 0.05 -o t.nestgrid >out ||
+    fail "mesh of a surface"
+"$program" isosurface t.nestgrid --value 0 --array front >out || fail "isolines"
+[ "$(value segments)" -gt 10 ] || fail "isolines: $(value segments) segments"
+"$program" mesh tetra.off --family prism --layers 0.1,0.2 --refine 1 -o p.nestgrid >out ||
+    fail "prisms"
+[ "$(value leaf_prism)" = 64 ] || fail "prisms: $(value leaf_prism)"
+"$program" mesh quad.obj --family octree --unbalanced --field 'x*y' --refine 3 -o q.nestgrid >out ||
+    fail "quadtree"
+[ "$(value leaf_quadrilateral)" = 64 ] || fail "quadtree: $(value leaf_quadrilateral)"
+refused 1 'hierarchy of other elements' isosurface q.nestgrid --value 0.1 -o x.vtp
+
+mesh=(--family bisection -o x.nestgrid)
+refused 1 'nothing.off' mesh nothing.off "${mesh[@]}"
+: >empty.off && refused 1 'empty' mesh empty.off "${mesh[@]}"
+head -c 40 tetra.off >cut.off && refused 1 'cut.off' mesh cut.off "${mesh[@]}"
+sed 's/^3 0 3 2/3 0 1 2/' tetra.off >bad.off && refused 1 'bad.off' mesh bad.off "${mesh[@]}"
+sed 's/^0 1 0/1 0 0/' tetra.off >bad.off && refused 1 'duplicate' mesh bad.off "${mesh[@]}"
+sed 's/^8 0 1 1/8 0.5 0.2 -1/' cube.smesh >bad.smesh && refused 1 'bad.smesh' mesh bad.smesh "${mesh[@]}"
+refused 1 "field 'sin\('" mesh tetra.off "${mesh[@]}" --field 'sin('
+refused 1 'no finite number at' mesh tetra.off "${mesh[@]}" --field 'log(x)'
+refused 1 'needs a --field' mesh tetra.off "${mesh[@]}" --tolerance 1
+refused 1 'no rule for a tetrahedron' mesh cube.smesh --family octree -o x.nestgrid
+refused 1 'are for --family prism' mesh tetra.off "${mesh[@]}" --layers 1
+refused 1 'no name of a .nestgrid' mesh tetra.off --family bisection -o x.vtp
+refused 2 'family' mesh tetra.off --family oak -o x.nestgrid
+refused 1 "no field 'rain'" isosurface t.nestgrid --array rain --value 1
+refused 1 'no field; give' isosurface p.nestgrid --value 1
+head -c 1000 t.nestgrid >cut.nestgrid
+refused 1 'bytes long' isosurface cut.nestgrid --value 1 -o x.vtp
+refused 1 'bytes long' info cut.nestgrid
+
 "$program" --help | grep -q 'Examples:' || fail "--help"
 "$program" --version | grep -qE '^nestgrid [0-9]' || fail "--version"
 

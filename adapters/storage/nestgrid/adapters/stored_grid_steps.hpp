@@ -12,7 +12,7 @@ StoredGrid<Family>::StoredGrid(CoarseGrid coarse, const Family& family, const Co
     check_and_orient(coarse_, checks);
     for (std::size_t i = 0; i < coarse_.element_count(); ++i) {
         if (!Family::refines(coarse_.shapes[i])) {
-            throw InvalidInput(std::string("a ") + Family::name + " hierarchy has no rule for a " +
+            throw InvalidInput(std::string("the family ") + Family::name + " has no rule for a " +
                                std::string(topology(coarse_.shapes[i]).name) + " (element " +
                                std::to_string(i) + ")");
         }
