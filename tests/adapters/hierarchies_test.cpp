@@ -180,6 +180,34 @@ TYPED_TEST(Hierarchies, ValuesFollowTheGrid) {
     }
 }
 
+/// Renumbering leaves no gaps, moves every node to where the map says, and changes nothing else.
+TYPED_TEST(Hierarchies, RenumberingKeepsTheGrid) {
+    for (auto grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        std::mt19937 random(6);
+        grid.adapt([&](const Leaf& leaf) {
+            return leaf.centre()[0] < 0.5 ? Mark::coarsen
+                   : random() % 5 == 0    ? Mark::refine
+                                          : Mark::keep;
+        });
+        const std::vector<Point> before = grid.node_positions();
+        const std::size_t leaves = grid.leaf_count();
+        const std::size_t used = grid.used_node_count();
+        const std::vector<std::uint32_t> to = grid.renumber();
+        EXPECT_EQ(grid.node_count(), used);
+        EXPECT_EQ(grid.leaf_count(), leaves);
+        const std::vector<Point> after = grid.node_positions();
+        std::size_t moved = 0;
+        for (std::size_t node = 0; node < to.size(); ++node) {
+            if (to[node] == no_node) continue;
+            EXPECT_EQ(after.at(to[node]), before[node]);
+            ++moved;
+        }
+        EXPECT_EQ(moved, used);
+        expect_sound(grid);
+    }
+}
+
 template <class Grid>
 std::map<Shape, std::size_t> shapes(const Grid& grid) {
     std::map<Shape, std::size_t> count;

@@ -62,6 +62,10 @@ TYPED_TEST(StoredFiles, ComeBackAsTheyWere) {
     const auto path = temporary(std::to_string(::getpid()) + ".nestgrid");
     for (auto grid : TypeParam::grids()) {
         refine_at_sphere(grid, 3 * TypeParam::steps);
+        grid.adapt([](const Leaf& leaf) {
+            return leaf.centre()[0] < 0.4 ? Mark::coarsen : Mark::keep;
+        });
+        grid.renumber();
         const std::vector<NamedField> fields{
             {"x", sample_nodes(grid, [](const Point& x) { return x[0]; })}};
         write_hierarchy(grid, path, fields);

@@ -196,7 +196,9 @@ refused 1 'are for --family prism' mesh tetra.off "${mesh[@]}" --layers 1
 refused 1 'no name of a .nestgrid' mesh tetra.off --family bisection -o x.vtp
 refused 2 'family' mesh tetra.off --family oak -o x.nestgrid
 refused 1 "no field 'rain'" isosurface t.nestgrid --array rain --value 1
-refused 1 'no field; give' isosurface p.nestgrid --value 1
+"$program" mesh tetra.off --family bisection -o bare.nestgrid >out || fail 'mesh without a field'
+refused 1 'no field; give' isosurface bare.nestgrid --value 1
+refused 1 'other elements' isosurface p.nestgrid --value 1
 head -c 1000 t.nestgrid >cut.nestgrid
 refused 1 'bytes long' isosurface cut.nestgrid --value 1 -o x.vtp
 refused 1 'bytes long' info cut.nestgrid

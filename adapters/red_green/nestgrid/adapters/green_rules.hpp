@@ -4,7 +4,7 @@
 // Green rules: how an element is closed whose edges and faces are partly refined by neighbours.
 //
 // Invariant: the subdivision of a face is a function of the state of its edges and of its centre,
-// and of the order of its corners' numbers where it has a choice.
+// and of the places of its nodes where it has a choice: the shorter diagonal.
 // Consequence: both sides of a face agree, and the grid conforms.
 // Hexahedra are closed by cones over their subdivided faces to a new node in the centre (pyramids
 // and tetrahedra), or, where the state is constant along a direction, by prisms and hexahedra.

@@ -12,6 +12,8 @@
 // tetrahedra, pyramids and prisms (green_rules.hpp).
 #pragma once
 
+#include <tuple>
+
 #include <nestgrid/adapters/green_rules.hpp>
 #include <nestgrid/adapters/stored_grid.hpp>
 #include <nestgrid/standard_rules.hpp>
@@ -158,10 +160,13 @@ private:
             const auto second = static_cast<std::size_t>(31 - std::countl_zero(state.edges));
             const auto [a, b] = t.edge[first];
             const auto [c, d] = t.edge[second];
-            const std::uint8_t p = a == c || a == d ? b : a;
-            const std::uint8_t q = c == a || c == b ? d : c;
-            state.other_diagonal = (a == c || a == d || b == c || b == d) &&
-                                   e.corner[q] < e.corner[p];
+            if (a == c || a == d || b == c || b == d) {
+                const Point& p = tree.position[e.corner[a == c || a == d ? b : a]];
+                const Point& q = tree.position[e.corner[c == a || c == b ? d : c]];
+                const double from_p = norm(tree.position[middle[second]] - p);
+                const double from_q = norm(tree.position[middle[first]] - q);
+                state.other_diagonal = std::tie(from_q, q) < std::tie(from_p, p);
+            }
         }
         for (std::size_t f = 0; e.shape == Shape::hexahedron && f < t.faces; ++f) {
             state.faces |= std::uint32_t{has_centre(tree, e, t.face[f])} << f;

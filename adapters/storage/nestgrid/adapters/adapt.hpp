@@ -42,6 +42,29 @@ public:
         return std::move(result_);
     }
 
+    /// New number of every node, no_node where a number is not in use.
+    std::vector<std::uint32_t> renumber() {
+        const auto keep = [](const Leaf&) { return Mark::keep; };
+        unpack(keep);
+        tree_.activate();
+        grid_.family_.close(tree_);
+        if constexpr (!Family::conforming) find_hanging();
+        new_number_.assign(tree_.position.size(), no_node);
+        next_number_ = static_cast<std::uint32_t>(grid_.coarse_.nodes.size());
+        for (std::uint32_t node = 0; node < next_number_; ++node) new_number_[node] = node;
+        pack();
+        std::vector<std::uint32_t> hanging((tree_.position.size() + 31) / 32, 0);
+        for (std::uint32_t node = 0; node < new_number_.size() && !hanging_.empty(); ++node) {
+            const std::uint32_t to = new_number_[node];
+            if (to != no_node && (hanging_[node / 32] >> node % 32 & 1U) != 0) {
+                hanging[to / 32] |= 1U << to % 32;
+            }
+        }
+        if (!hanging_.empty()) hanging_ = std::move(hanging);
+        commit();
+        return std::move(new_number_);
+    }
+
     /// Whether the grid is just what an adaptation would have written: nodes fit together, nothing
     /// is left to close, the hanging nodes are those in the mask.
     /// \throw GridError, InvalidInput as adaptations do
@@ -105,6 +128,11 @@ private:
     };
     void collect(std::uint32_t e, int height, Block& block);
     std::uint16_t written(std::uint16_t rule);
+    std::uint32_t numbered(std::uint32_t node) {
+        if (new_number_.empty()) return node;
+        if (new_number_[node] == no_node) new_number_[node] = next_number_++;
+        return new_number_[node];
+    }
     bool is_refined(std::uint32_t e) const { return tree_.elements[e].rule != 0; }
     void pack();
     std::uint32_t pack(std::uint16_t pattern, std::span<const std::uint32_t> exits,
@@ -122,6 +150,8 @@ private:
     std::size_t coarse_ = 0;
     std::vector<std::uint32_t> root_, words_, hanging_;
     std::vector<bool> used_;
+    std::vector<std::uint32_t> new_number_;  // only for renumber()
+    std::uint32_t next_number_ = 0;
     std::deque<Level> levels_;
     std::size_t leaves_ = 0;
 };
@@ -392,8 +422,8 @@ std::uint32_t Adapter<Family>::pack(std::uint16_t pattern,
             for (std::size_t k = 0; k < nodes.size(); ++k) {
                 const unsigned entity = entity_of_exit[refined.inner[i].entity[k]];
                 mask[entity / 32] |= 1U << entity % 32;
-                reference[entity] = nodes[k];
-                used_[nodes[k]] = true;
+                reference[entity] = numbered(nodes[k]);
+                used_[reference[entity]] = true;
             }
         }
         for (const std::uint32_t e : blocks[j].exits) {

@@ -138,6 +138,11 @@ public:
         return adapt([](const Leaf&) { return Mark::refine; });
     }
 
+    /// Numbers the nodes anew, without gaps, in the order in which a traversal meets them: for
+    /// shorter vectors after much coarsening, and for locality. Coarse nodes keep their numbers.
+    /// \return the new number of every old one, no_node for those that were not in use
+    std::vector<std::uint32_t> renumber() { return detail::Adapter<Family>(*this).renumber(); }
+
     /// Calls function(Leaf) for every leaf, in the order of a depth-first traversal.
     template <class Function>
     void for_each_leaf(Function&& function) const;
