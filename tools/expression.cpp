@@ -43,8 +43,8 @@ Expression::Expression(const std::string& text)
         parser_->SetExpr(formula);
         parser_->Eval();
     } catch (const mu::Parser::exception_type& error) {
-        throw nestgrid::InvalidInput("the field '" + text + "' is no expression in x, y and z: " +
-                                     message(error));
+        throw nestgrid::InvalidInput("the field '" + text +
+                                     "' is no expression in x, y and z: " + message(error));
     }
 }
 

@@ -112,9 +112,8 @@ ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string&
             run.leaf_elements = stored.grid.leaf_count();
             extract_all(stored.grid, field, request, run);
         } else {
-            throw nestgrid::GridError(
-                "isosurfaces are available for triangles and tetrahedra; '" + hierarchy.string() +
-                "' is a hierarchy of other elements");
+            throw nestgrid::GridError("isosurfaces are available for triangles and tetrahedra; '" +
+                                      hierarchy.string() + "' is a hierarchy of other elements");
         }
     });
     return run;

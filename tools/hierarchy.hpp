@@ -48,8 +48,8 @@ void with_hierarchy(const std::filesystem::path& path, Function&& function) {
         tried.template operator()<Octree<3>>() || tried.template operator()<Prism>()) {
         return;
     }
-    throw IoError("'" + path.string() + "' holds a family this program does not know: " +
-                  header.family);
+    throw IoError("'" + path.string() +
+                  "' holds a family this program does not know: " + header.family);
 }
 
 /// The field with a name; an empty name stands for the only one.

@@ -168,8 +168,9 @@ void add_mesh_options(CLI::App& command, Options& o) {
         ->required();
     command.add_option("--layers", o.mesh.layers, "thicknesses of layers of prisms on a surface")
         ->delimiter(',');
-    command.add_option("--direction", o.mesh.direction,
-                       "of the layers, x,y,z; default: along the normals of the surface")
+    command
+        .add_option("--direction", o.mesh.direction,
+                    "of the layers, x,y,z; default: along the normals of the surface")
         ->delimiter(',')
         ->expected(3);
     command.add_flag("--unbalanced", o.mesh.unbalanced,

@@ -55,8 +55,8 @@ template <class Grid>
 void refine_and_write(Grid grid, const MeshRequest& request) {
     const auto tell = [&](int step) {
         if (!request.progress) return;
-        request.progress("step " + std::to_string(step) + ": " +
-                         std::to_string(grid.leaf_count()) + " elements");
+        request.progress("step " + std::to_string(step) + ": " + std::to_string(grid.leaf_count()) +
+                         " elements");
     };
     for (int i = 0; i < request.refine; ++i) {
         grid.refine_uniformly();
@@ -126,8 +126,9 @@ void make_hierarchy(const MeshRequest& request) {
         coarse = reordered(coarse, reverse_cuthill_mckee(coarse));
         if (request.family == "prism" && coarse.dimension == 2) {
             if (request.layers.empty()) {
-                throw InvalidInput("prisms are made of a surface: give the thickness of its "
-                                   "--layers");
+                throw InvalidInput(
+                    "prisms are made of a surface: give the thickness of its "
+                    "--layers");
             }
             std::optional<Point> direction;
             if (!request.direction.empty()) {

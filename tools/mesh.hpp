@@ -8,16 +8,16 @@
 #include <vector>
 
 struct MeshRequest {
-    std::filesystem::path input;  ///< .off .obj .ply .stl, .node .ele .poly .smesh
-    std::string family;           ///< red-green, bisection, octree, prism
-    std::vector<double> layers;   ///< thicknesses of layers to extrude a surface in, for prisms
+    std::filesystem::path input;    ///< .off .obj .ply .stl, .node .ele .poly .smesh
+    std::string family;             ///< red-green, bisection, octree, prism
+    std::vector<double> layers;     ///< thicknesses of layers to extrude a surface in, for prisms
     std::vector<double> direction;  ///< to extrude along, x, y, z; empty: along the normals
     bool unbalanced = false;
     double maximum_volume = 0;  ///< of the tetrahedra that fill a .poly or .smesh; 0 for any
-    int refine = 0;      ///< uniform refinements
-    std::string field;   ///< name or expression; may be empty
-    double tolerance = 0;  ///< refine until the field is interpolated to this; 0: do not
-    int levels = 30;       ///< refinements at most
+    int refine = 0;             ///< uniform refinements
+    std::string field;          ///< name or expression; may be empty
+    double tolerance = 0;       ///< refine until the field is interpolated to this; 0: do not
+    int levels = 30;            ///< refinements at most
     std::filesystem::path output;
     std::function<void(const std::string&)> progress{};
 };

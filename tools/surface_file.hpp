@@ -19,8 +19,7 @@
 /// Points, triangles or segments, normals where there are some, and per triangle the number of its
 /// element in the order of extraction and its level.
 template <int dimension, class Element>
-vtkSmartPointer<vtkPolyData> make_poly_data(
-    const nestgrid::Surface<dimension, Element>& surface) {
+vtkSmartPointer<vtkPolyData> make_poly_data(const nestgrid::Surface<dimension, Element>& surface) {
     auto data = vtkSmartPointer<vtkPolyData>::New();
     const vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();

@@ -37,14 +37,8 @@ double right_hand_side(const Point& x) {
 /// The unit cube, cut into Kuhn's six tetrahedra.
 CoarseGrid cube() {
     CoarseGrid grid;
-    grid.nodes = Coordinates({{0, 0, 0},
-                              {1, 0, 0},
-                              {0, 1, 0},
-                              {1, 1, 0},
-                              {0, 0, 1},
-                              {1, 0, 1},
-                              {0, 1, 1},
-                              {1, 1, 1}});
+    grid.nodes = Coordinates(
+        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}});
     grid.add(Shape::tetrahedron, {0, 1, 3, 7});
     grid.add(Shape::tetrahedron, {0, 3, 2, 7});
     grid.add(Shape::tetrahedron, {0, 2, 6, 7});
@@ -95,15 +89,15 @@ Level assemble(const BisectionGrid<3>& grid, Vector& load) {
         std::array<Point, 4> gradient;
         for (std::size_t i = 0; i < 4; ++i) {
             const Point& a = leaf.corners[(i + 1) % 4];
-            const Point normal = cross(leaf.corners[(i + 2) % 4] - a, leaf.corners[(i + 3) % 4] - a);
+            const Point normal =
+                cross(leaf.corners[(i + 2) % 4] - a, leaf.corners[(i + 3) % 4] - a);
             gradient[i] = dot(normal, leaf.corners[i] - a) > 0 ? normal : -1.0 * normal;
         }
         const double volume = std::abs(measure(leaf.shape, leaf.corners));
         for (std::size_t i = 0; i < 4; ++i) {
             load[leaf.nodes[i]] += volume / 4 * right_hand_side(leaf.corners[i]);
             for (std::size_t k = 0; k < 4; ++k) {
-                rows[leaf.nodes[i]][leaf.nodes[k]] +=
-                    dot(gradient[i], gradient[k]) / (36 * volume);
+                rows[leaf.nodes[i]][leaf.nodes[k]] += dot(gradient[i], gradient[k]) / (36 * volume);
             }
         }
     });
@@ -195,7 +189,8 @@ int main() {
             const SurfaceReport report = surface_report(surface);
             const auto nodes = static_cast<double>(grid.used_node_count());
             const double order =
-                last_nodes > 0 ? 3 * std::log(last_error / error) / std::log(nodes / last_nodes) : 0;
+                last_nodes > 0 ? 3 * std::log(last_error / error) / std::log(nodes / last_nodes)
+                               : 0;
             std::printf("%9zu %9zu %7d %10.2e %8.2f %10zu %6zu\n", grid.leaf_count(),
                         grid.used_node_count(), cycles, error, order, report.triangles,
                         report.open_edges);

@@ -37,19 +37,19 @@ inline const Rule& bisection_rule(Shape shape, int tag) {
 
 /// Red refinement of a triangle into four.
 inline const Rule& red_triangle_rule() {
-    static const Rule rule = make_rule(
-        "red refinement of a triangle", Shape::triangle,
-        {mean_of({0, 1}), mean_of({0, 2}), mean_of({1, 2})},
-        {{Shape::triangle, {0, 3, 4}, 1, {}},
-         {Shape::triangle, {3, 1, 5}, 1, {}},
-         {Shape::triangle, {4, 5, 2}, 1, {}},
-         {Shape::triangle, {5, 4, 3}, 1, {}}});
+    static const Rule rule = make_rule("red refinement of a triangle", Shape::triangle,
+                                       {mean_of({0, 1}), mean_of({0, 2}), mean_of({1, 2})},
+                                       {{Shape::triangle, {0, 3, 4}, 1, {}},
+                                        {Shape::triangle, {3, 1, 5}, 1, {}},
+                                        {Shape::triangle, {4, 5, 2}, 1, {}},
+                                        {Shape::triangle, {5, 4, 3}, 1, {}}});
     return rule;
 }
 
 /// Red refinement of a tetrahedron into eight. The inner octahedron is cut along the diagonal from
-/// the midpoint of the edge 02 to that of the edge 13 (diagonal 0: with Bey's numbering, 1995, three
-/// classes of similar tetrahedra at most), of 01 to 23 (diagonal 1), or of 03 to 12 (diagonal 2).
+/// the midpoint of the edge 02 to that of the edge 13 (diagonal 0: with Bey's numbering, 1995,
+/// three classes of similar tetrahedra at most), of 01 to 23 (diagonal 1), or of 03 to 12 (diagonal
+/// 2).
 inline const Rule& red_tetrahedron_rule(int diagonal = 0) {
     // 4: 01, 5: 02, 6: 03, 7: 12, 8: 13, 9: 23
     static const auto build = [](std::string name, std::vector<Child> inner) {
@@ -165,8 +165,7 @@ inline const Rule& prism_rule(PrismSplit split) {
                 Child child{Shape::prism, {}, 1, {}};
                 for (std::size_t i = 0; i < 3; ++i) {
                     child.corner[i] = static_cast<std::uint8_t>(layer[h][t[i]]);
-                    child.corner[i + 3] =
-                        static_cast<std::uint8_t>(layer[along ? h + 1 : 2][t[i]]);
+                    child.corner[i + 3] = static_cast<std::uint8_t>(layer[along ? h + 1 : 2][t[i]]);
                 }
                 children.push_back(child);
             }
@@ -174,9 +173,8 @@ inline const Rule& prism_rule(PrismSplit split) {
         const std::string name = !across ? "vertical" : !along ? "horizontal" : "isotropic";
         return make_rule(name + " refinement of a prism", Shape::prism, nodes, children);
     };
-    static const std::array<Rule, 3> rules{build(PrismSplit::isotropic),
-                                           build(PrismSplit::horizontal),
-                                           build(PrismSplit::vertical)};
+    static const std::array<Rule, 3> rules{
+        build(PrismSplit::isotropic), build(PrismSplit::horizontal), build(PrismSplit::vertical)};
     return rules.at(static_cast<std::size_t>(split));
 }
 

@@ -30,9 +30,8 @@ struct Sum {
 template <class Grid>
 double leaf_volume(const Grid& grid) {
     Sum sum;
-    grid.for_each_leaf([&](const Leaf& leaf) {
-        sum.add(std::abs(measure(leaf.shape, leaf.corners)));
-    });
+    grid.for_each_leaf(
+        [&](const Leaf& leaf) { sum.add(std::abs(measure(leaf.shape, leaf.corners))); });
     return sum.get();
 }
 
@@ -116,9 +115,8 @@ TYPED_TEST(Hierarchies, RandomSequencesKeepEveryInvariant) {
             const auto drawn = random_marks<decltype(grid)>(random, 4, 0, 6 * TypeParam::steps);
             grid.adapt([&](const Leaf& leaf) {
                 if (!shrink) return drawn(leaf);
-                return std::abs(leaf.centre()[0] - where) < 0.4 || random() % 10 > 0
-                           ? Mark::coarsen
-                           : Mark::keep;
+                return std::abs(leaf.centre()[0] - where) < 0.4 || random() % 10 > 0 ? Mark::coarsen
+                                                                                     : Mark::keep;
             });
             ASSERT_NEAR(leaf_volume(grid) / coarse_volume(grid), 1, 1e-12) << "step " << step;
             if (step % 20 == 0) {
@@ -168,9 +166,8 @@ TYPED_TEST(Hierarchies, ValuesFollowTheGrid) {
     std::vector<double> values = sample_nodes(grid, linear);
     for (int step = 0; step < 40; ++step) {
         const auto drawn = random_marks<decltype(grid)>(random, 20, 0, 4 * TypeParam::steps);
-        const Adaptation done = grid.adapt([&](const Leaf& leaf) {
-            return step % 3 == 2 ? Mark::coarsen : drawn(leaf);
-        });
+        const Adaptation done = grid.adapt(
+            [&](const Leaf& leaf) { return step % 3 == 2 ? Mark::coarsen : drawn(leaf); });
         done.interpolate(values, grid.node_count());
         grid.for_each_leaf([&](const Leaf& leaf) {
             for (std::size_t i = 0; i < leaf.nodes.size(); ++i) {
@@ -330,9 +327,8 @@ TEST(Prism, MixesRulesWhereNodesKeepOneStencil) {
     EXPECT_EQ(grid.leaf_count(), 16U * 8);
     std::mt19937 random(3);
     for (int step = 0; step < 4; ++step) {
-        grid.adapt([&](const Leaf&) {
-            return random() % 3 == 0 ? Mark::refine_vertically : Mark::keep;
-        });
+        grid.adapt(
+            [&](const Leaf&) { return random() % 3 == 0 ? Mark::refine_vertically : Mark::keep; });
         expect_sound(grid);
     }
 }
@@ -346,9 +342,8 @@ TEST(Prism, RefusesNodesWithTwoStencils) {
     expect_sound(grid);
     const std::size_t leaves = grid.leaf_count();
     try {
-        grid.adapt([&](const Leaf& leaf) {
-            return left(leaf) ? Mark::refine_horizontally : Mark::keep;
-        });
+        grid.adapt(
+            [&](const Leaf& leaf) { return left(leaf) ? Mark::refine_horizontally : Mark::keep; });
         FAIL() << "the other order was accepted";
     } catch (const InvalidInput& error) {
         EXPECT_NE(std::string(error.what()).find("two stencils"), std::string::npos);

@@ -97,10 +97,10 @@ void refine_octant(std::vector<Octant>& leaves, const Octant& o, int max_level, 
     }
     const int half = 1 << (max_level - o.level - 1);
     for (int c = 0; c < 1 << dim; ++c) {
-        refine_octant<dim>(leaves,
-                           {o.x + half * (c & 1), o.y + half * (c >> 1 & 1), o.z + half * (c >> 2),
-                            o.level + 1},
-                           max_level, wanted);
+        refine_octant<dim>(
+            leaves,
+            {o.x + half * (c & 1), o.y + half * (c >> 1 & 1), o.z + half * (c >> 2), o.level + 1},
+            max_level, wanted);
     }
 }
 

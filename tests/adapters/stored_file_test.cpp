@@ -62,9 +62,8 @@ TYPED_TEST(StoredFiles, ComeBackAsTheyWere) {
     const auto path = temporary(std::to_string(::getpid()) + ".nestgrid");
     for (auto grid : TypeParam::grids()) {
         refine_at_sphere(grid, 3 * TypeParam::steps);
-        grid.adapt([](const Leaf& leaf) {
-            return leaf.centre()[0] < 0.4 ? Mark::coarsen : Mark::keep;
-        });
+        grid.adapt(
+            [](const Leaf& leaf) { return leaf.centre()[0] < 0.4 ? Mark::coarsen : Mark::keep; });
         grid.renumber();
         const std::vector<NamedField> fields{
             {"x", sample_nodes(grid, [](const Point& x) { return x[0]; })}};
@@ -76,8 +75,7 @@ TYPED_TEST(StoredFiles, ComeBackAsTheyWere) {
         ASSERT_EQ(back.fields.size(), 1U);
         EXPECT_EQ(back.fields[0].name, "x");
         EXPECT_EQ(back.fields[0].values, fields[0].values);
-        const auto violation =
-            check_grid(back.grid, NodeField(back.grid, back.fields[0].values));
+        const auto violation = check_grid(back.grid, NodeField(back.grid, back.fields[0].values));
         EXPECT_FALSE(violation) << violation->sentence;
         // It can be adapted further, in the same way.
         refine_at_sphere(grid, 4 * TypeParam::steps);
@@ -112,8 +110,7 @@ TEST(StoredFile, RefusesEveryDamage) {
     const auto path = temporary(std::to_string(::getpid()) + "_damaged.nestgrid");
     OctreeGrid<2> grid(quadrilaterals(2));
     refine_at_sphere(grid, 3);
-    write_hierarchy(grid, path,
-                    {{"f", sample_nodes(grid, [](const Point& x) { return x[1]; })}});
+    write_hierarchy(grid, path, {{"f", sample_nodes(grid, [](const Point& x) { return x[1]; })}});
     const std::vector<char> sound = bytes_of(path);
     const auto read = [&] { read_hierarchy<Octree<2>>(path); };
 

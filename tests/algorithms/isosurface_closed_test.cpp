@@ -110,7 +110,8 @@ TEST(Bound, StoppingNumberInItsPlaceOpensHolesInNoise) {
 class Unsaturated {
 public:
     static constexpr bool saturated = false;
-    Unsaturated(const LatticeBisection<3>& grid, const LatticeField<LatticeBisection<3>, float>& field,
+    Unsaturated(const LatticeBisection<3>& grid,
+                const LatticeField<LatticeBisection<3>, float>& field,
                 const HierarchicalIndicator& good)
         : good_{&good}, offset_(grid.node_count(), 0.0) {
         grid.for_each_star([&](const Star& star) {

@@ -52,8 +52,7 @@ void measure_family(const std::string& name, Grid start, int levels) {
         grid.adapt([&](const Leaf& leaf) {
             double size = 0;
             for (const Point& x : leaf.corners) size = std::max(size, norm(x - leaf.centre()));
-            return std::abs(to_sphere(leaf.centre(), Grid::dimension)) < size &&
-                           leaf.level < levels
+            return std::abs(to_sphere(leaf.centre(), Grid::dimension)) < size && leaf.level < levels
                        ? Mark::refine
                        : Mark::keep;
         });

@@ -115,15 +115,16 @@ int main(int argc, char** argv) {
     const auto cube = [] { return tetrahedra(1); };
     const auto slab = [&] { return extrude(triangles(1), layer); };
     const auto hexahedron = [] { return hexahedra(1); };
-    measure_family<RedGreenSimplices<3>>("red_green_tetrahedra",
-                                         [&] { return RedGreenSimplices<3>(cube()); }, 7, 6);
-    measure_family<BisectionGrid<3>>("bisection_tetrahedra",
-                                     [&] { return BisectionGrid<3>(cube()); }, 21, 18);
-    measure_family<RedGreenGrid<3>>("red_green_hexahedra",
-                                    [&] { return RedGreenGrid<3>(hexahedron()); }, 7, 6);
-    measure_family<OctreeGrid<3>>("octree_hexahedra",
-                                  [&] { return OctreeGrid<3>(hexahedron()); }, 7, 6);
-    measure_family<PrismGrid>("prism", [&] { return PrismGrid(slab()); }, 7, 6);
+    measure_family<RedGreenSimplices<3>>(
+        "red_green_tetrahedra", [&] { return RedGreenSimplices<3>(cube()); }, 7, 6);
+    measure_family<BisectionGrid<3>>(
+        "bisection_tetrahedra", [&] { return BisectionGrid<3>(cube()); }, 21, 18);
+    measure_family<RedGreenGrid<3>>(
+        "red_green_hexahedra", [&] { return RedGreenGrid<3>(hexahedron()); }, 7, 6);
+    measure_family<OctreeGrid<3>>(
+        "octree_hexahedra", [&] { return OctreeGrid<3>(hexahedron()); }, 7, 6);
+    measure_family<PrismGrid>(
+        "prism", [&] { return PrismGrid(slab()); }, 7, 6);
 #ifdef NESTGRID_WITH_P4EST
     const P4estFigures p4est = refine_p4est_at_sphere(quick ? 5 : 7);
     print("p4est_leaves", static_cast<double>(p4est.leaves));

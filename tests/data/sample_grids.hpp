@@ -51,8 +51,8 @@ inline CoarseGrid tetrahedra(int n) {
         const auto of = cubes.element(e);
         std::array<unsigned, 3> order{0, 1, 2};
         do {
-            std::array<std::uint32_t, 4> t{of[0], of[1U << order[0]],
-                                           of[7U - (1U << order[2])], of[7]};
+            std::array<std::uint32_t, 4> t{of[0], of[1U << order[0]], of[7U - (1U << order[2])],
+                                           of[7]};
             grid.add(Shape::tetrahedron, t);
             std::array<Point, 4> x;
             for (std::size_t i = 0; i < 4; ++i) x[i] = grid.nodes[t[i]];

@@ -45,7 +45,8 @@ struct Bisection {
         if (descriptor < 1 || descriptor > dim) {
             throw InvalidInput("there is no bisection with the tag " + std::to_string(descriptor));
         }
-        return {std::shared_ptr<const Rule>(), &bisection_rule(shape, static_cast<int>(descriptor))};
+        return {std::shared_ptr<const Rule>(),
+                &bisection_rule(shape, static_cast<int>(descriptor))};
     }
     static bool is_temporary(std::uint64_t) { return false; }
 

@@ -28,10 +28,10 @@ struct CoarseFace {
     bool odd = false;  ///< the loop of the face runs against the order of `nodes`
 };
 
-using DualGraph = boost::adjacency_list<
-    boost::vecS, boost::vecS, boost::undirectedS,
-    boost::property<boost::vertex_color_t, boost::default_color_type,
-                    boost::property<boost::vertex_degree_t, std::size_t>>>;
+using DualGraph =
+    boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
+                          boost::property<boost::vertex_color_t, boost::default_color_type,
+                                          boost::property<boost::vertex_degree_t, std::size_t>>>;
 
 namespace detail {
 
@@ -61,8 +61,8 @@ inline std::vector<CoarseFace> sorted_faces(const CoarseGrid& grid) {
             const auto least = static_cast<std::size_t>(
                 std::min_element(face.nodes.begin(), face.nodes.begin() + static_cast<int>(n)) -
                 face.nodes.begin());
-            face.odd = n == 2 ? least == 1
-                              : face.nodes[(least + 1) % n] > face.nodes[(least + n - 1) % n];
+            face.odd =
+                n == 2 ? least == 1 : face.nodes[(least + 1) % n] > face.nodes[(least + n - 1) % n];
             std::sort(face.nodes.begin(), face.nodes.end());
             faces.push_back(face);
         }
@@ -147,10 +147,11 @@ inline std::size_t orient(CoarseGrid& grid) {
                     sign[n.element] = wanted;
                     queue.push_back(n.element);
                 } else if (sign[n.element] != wanted) {
-                    throw InvalidInput("the surface cannot be oriented (it contains a Moebius "
-                                       "strip): the elements " +
-                                       std::to_string(e) + " and " + std::to_string(n.element) +
-                                       " disagree at the edge " + detail::name(n.face));
+                    throw InvalidInput(
+                        "the surface cannot be oriented (it contains a Moebius "
+                        "strip): the elements " +
+                        std::to_string(e) + " and " + std::to_string(n.element) +
+                        " disagree at the edge " + detail::name(n.face));
                 }
             }
         }

@@ -164,8 +164,7 @@ private:
 };
 
 template <int dim>
-Lattice<dim>::Lattice(const LatticeGeometry<dim>& geometry)
-    : geometry_{geometry} {
+Lattice<dim>::Lattice(const LatticeGeometry<dim>& geometry) : geometry_{geometry} {
     std::size_t stride = 1;
     for (std::size_t d = 0; d < size_; ++d) {
         if (geometry.samples[d] < 2 || geometry.samples[d] > 1 << 20) {

@@ -243,8 +243,7 @@ private:
             for (std::size_t i = 0; i < 4 && alike; ++i) {
                 const std::uint8_t a = loop[i];
                 const std::uint8_t b = loop[(i + 1) % 4];
-                alike = middle(a, up(a)) == 0 &&
-                        (middle(a, b) != 0) == (middle(up(a), up(b)) != 0);
+                alike = middle(a, up(a)) == 0 && (middle(a, b) != 0) == (middle(up(a), up(b)) != 0);
             }
             if (!alike) continue;
             for (const Loop& l : subdivided(loop, centre_[lower])) {

@@ -179,9 +179,9 @@ private:
     static bool has_centre(const Tree& tree, const typename Tree::Element& e,
                            const FaceTopology& face) {
         const auto at = [&](int i) { return e.corner[face.tensor_corner(i)]; };
-        const std::array<std::uint32_t, 4> m{tree.midpoint(at(0), at(1)), tree.midpoint(at(2), at(3)),
-                                             tree.midpoint(at(0), at(2)),
-                                             tree.midpoint(at(1), at(3))};
+        const std::array<std::uint32_t, 4> m{
+            tree.midpoint(at(0), at(1)), tree.midpoint(at(2), at(3)), tree.midpoint(at(0), at(2)),
+            tree.midpoint(at(1), at(3))};
         return std::find(m.begin(), m.end(), no_node) == m.end() && tree.centre(m) != no_node;
     }
 };

@@ -399,8 +399,8 @@ void Adapter<Family>::pack() {
 
 /// Writes the record of an element that is refined by `pattern` and has `exits`.
 template <class Family>
-std::uint32_t Adapter<Family>::pack(std::uint16_t pattern,
-                                    std::span<const std::uint32_t> exits, std::size_t depth) {
+std::uint32_t Adapter<Family>::pack(std::uint16_t pattern, std::span<const std::uint32_t> exits,
+                                    std::size_t depth) {
     if (levels_.size() <= depth) levels_.emplace_back();
     auto& blocks = levels_[depth].block;
     const std::span<std::uint16_t> codes(levels_[depth].code.data(), exits.size());
@@ -484,8 +484,7 @@ void Adapter<Family>::commit() {
     grid_.words_ = std::move(words_);
     grid_.hanging_ = std::move(hanging_);
     grid_.node_count_ = count;
-    grid_.used_node_count_ =
-        static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true));
+    grid_.used_node_count_ = static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true));
     grid_.leaf_count_ = leaves_;
     ++grid_.epoch_;
 }

@@ -104,9 +104,6 @@ private:
     KeyTable<std::uint64_t, std::uint16_t> short_number_;  // of small trees
 };
 
-/// Number of entities of a shape.
-inline int entity_count(Shape shape);
-
 }  // namespace nestgrid
 
 #include <nestgrid/adapters/pattern_steps.hpp>

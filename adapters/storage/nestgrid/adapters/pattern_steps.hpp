@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 
 #include <nestgrid/adapters/pattern.hpp>
 #include <nestgrid/error.hpp>
@@ -124,7 +123,7 @@ private:
     const std::vector<std::uint16_t>& tree_;
     std::size_t at_ = 0;
     std::size_t corners_ = 0;
-    std::vector<std::uint8_t> carrier_;  // of every node of the pattern
+    std::vector<std::uint8_t> carrier_;              // of every node of the pattern
     std::map<std::uint64_t, std::uint8_t> numbers_;  // of entities, by their nodes
     Pattern pattern_;
 };
@@ -158,8 +157,6 @@ inline NodeRecipe recipe_of(const Rule& rule, const Stencil& stencil) {
 }
 
 }  // namespace detail
-
-inline int entity_count(Shape shape) { return static_cast<int>(detail::entities(shape).size()); }
 
 inline PatternTable::PatternTable() : rules_(1) {
     const std::vector<std::uint16_t> exit{0};

@@ -27,10 +27,10 @@ namespace nestgrid {
 /// A leaf, as a marker sees it.
 struct Leaf {
     Shape shape = Shape::point;
-    int level = 0;                           ///< refinements above it
-    std::size_t coarse = 0;                  ///< coarse element it descends from
-    std::span<const Point> corners;          ///< positions
-    std::span<const std::uint32_t> nodes;    ///< numbers of the corners
+    int level = 0;                         ///< refinements above it
+    std::size_t coarse = 0;                ///< coarse element it descends from
+    std::span<const Point> corners;        ///< positions
+    std::span<const std::uint32_t> nodes;  ///< numbers of the corners
 
     Point centre() const {
         Point sum{0, 0, 0};

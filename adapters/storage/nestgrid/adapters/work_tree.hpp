@@ -51,7 +51,7 @@ public:
     std::vector<std::uint32_t> new_nodes;  // of refined elements
     std::vector<Point> position;           // of nodes, as all below
     std::vector<std::array<std::uint32_t, 4>> parents;
-    std::vector<std::uint32_t> created;  // in order
+    std::vector<std::uint32_t> created;           // in order
     std::vector<std::uint32_t> created_first{0};  // place of each one's parents in
     std::vector<std::uint32_t> created_parent;
 
