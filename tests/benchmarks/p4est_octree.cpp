@@ -51,9 +51,11 @@ P4estFigures refine_p4est_at_sphere(int levels) {
     }
     result.leaves = static_cast<std::size_t>(forest->local_num_quadrants);
     result.forest_bytes = static_cast<double>(p8est_memory_used(forest));
+    const double start = now();
     p8est_balance(forest, P8EST_CONNECT_FULL, nullptr);  // which lnodes demand
     p8est_ghost_t* ghost = p8est_ghost_new(forest, P8EST_CONNECT_FULL);
     p8est_lnodes_t* nodes = p8est_lnodes_new(forest, ghost, 1);
+    result.node_seconds = now() - start;
     // Node numbers and a code of hanging corners per element.
     result.node_bytes = static_cast<double>(nodes->num_local_elements) *
                         (nodes->vnodes * static_cast<double>(sizeof(p4est_locidx_t)) +

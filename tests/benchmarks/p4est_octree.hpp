@@ -9,6 +9,7 @@ struct P4estFigures {
     double forest_bytes = 0;  ///< quadrants of the sorted leaf arrays
     double node_bytes = 0;    ///< lnodes
     double seconds = 0;       ///< of the last refinement with its balance
+    double node_seconds = 0;  ///< of its nodes and which of them hang
 };
 
 /// A forest of one tree over the unit cube, refined at the same sphere as refine_at_sphere(),

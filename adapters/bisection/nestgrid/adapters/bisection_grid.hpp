@@ -31,7 +31,6 @@ struct Bisection {
     static constexpr int max_children = 2;
     static constexpr int block_height = dim;  // after as many bisections the tag is the same again
     static constexpr bool conforming = true;
-    static constexpr bool coarsens_by_node = true;
     static constexpr const char* name = "bisection";
     static constexpr Shape shape = dim == 2 ? Shape::triangle : Shape::tetrahedron;
 

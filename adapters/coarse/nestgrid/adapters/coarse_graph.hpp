@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/breadth_first_search.hpp>
 #include <boost/graph/connected_components.hpp>
 #include <boost/graph/cuthill_mckee_ordering.hpp>
 #include <boost/graph/sequential_vertex_coloring.hpp>
@@ -28,10 +29,16 @@ struct CoarseFace {
     bool odd = false;  ///< the loop of the face runs against the order of `nodes`
 };
 
-using DualGraph =
-    boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
-                          boost::property<boost::vertex_color_t, boost::default_color_type,
-                                          boost::property<boost::vertex_degree_t, std::size_t>>>;
+/// Elements are vertices; an edge is an inner face.
+struct SharedFace {
+    CoarseFace face;
+    bool turned = false;  ///< both elements run through it in the same sense
+};
+using DualGraph = boost::adjacency_list<
+    boost::vecS, boost::vecS, boost::undirectedS,
+    boost::property<boost::vertex_color_t, boost::default_color_type,
+                    boost::property<boost::vertex_degree_t, std::size_t>>,
+    SharedFace>;
 
 namespace detail {
 
@@ -96,7 +103,7 @@ void for_each_inner_face(const CoarseGrid& grid, Function&& function) {
 inline DualGraph dual_graph(const CoarseGrid& grid) {
     DualGraph graph(grid.element_count());
     detail::for_each_inner_face(grid, [&](const CoarseFace& a, const CoarseFace& b) {
-        boost::add_edge(a.element, b.element, graph);
+        boost::add_edge(a.element, b.element, SharedFace{a, a.odd == b.odd}, graph);
     });
     return graph;
 }
@@ -116,46 +123,55 @@ inline void mirror(Shape shape, std::span<std::uint32_t> corners) {
     if (shape == Shape::hexahedron) std::swap(corners[5], corners[6]);
 }
 
+namespace detail {
+
+/// Carries an orientation from element to element.
+class Orienter : public boost::default_bfs_visitor {
+public:
+    explicit Orienter(std::vector<signed char>& sign) : sign_{&sign} {}
+
+    template <class Edge>
+    void tree_edge(const Edge& edge, const DualGraph& graph) const {
+        (*sign_)[boost::target(edge, graph)] = wanted(edge, graph);
+    }
+    template <class Edge>
+    void non_tree_edge(const Edge& edge, const DualGraph& graph) const {
+        const auto to = boost::target(edge, graph);
+        if ((*sign_)[to] == wanted(edge, graph)) return;
+        throw InvalidInput(
+            "the surface cannot be oriented (it contains a Moebius strip): the elements " +
+            std::to_string(boost::source(edge, graph)) + " and " + std::to_string(to) +
+            " disagree at the edge " + name(graph[edge].face));
+    }
+
+private:
+    template <class Edge>
+    signed char wanted(const Edge& edge, const DualGraph& graph) const {
+        const signed char from = (*sign_)[boost::source(edge, graph)];
+        return static_cast<signed char>(graph[edge].turned ? -from : from);
+    }
+
+    std::vector<signed char>* sign_;
+};
+
+}  // namespace detail
+
 /// Makes the orientation consistent: afterwards neighbours run through their common face in
 /// opposite senses. The first element of each component keeps its own.
 /// \return number of elements turned
 /// \throw InvalidInput for a surface that cannot be oriented, such as a Moebius strip
 inline std::size_t orient(CoarseGrid& grid) {
-    struct Neighbour {
-        std::uint32_t element;
-        bool turned;
-        CoarseFace face;
-    };
-    std::vector<std::vector<Neighbour>> neighbours(grid.element_count());
-    detail::for_each_inner_face(grid, [&](const CoarseFace& a, const CoarseFace& b) {
-        neighbours[a.element].push_back({b.element, a.odd == b.odd, a});
-        neighbours[b.element].push_back({a.element, a.odd == b.odd, a});
-    });
+    DualGraph graph = dual_graph(grid);
     std::vector<signed char> sign(grid.element_count(), 0);
-    std::vector<std::uint32_t> queue;
-    std::size_t turned = 0;
-    for (std::uint32_t seed = 0; seed < grid.element_count(); ++seed) {
+    const detail::Orienter visitor(sign);
+    boost::queue<std::size_t> queue;
+    const auto colour = boost::get(boost::vertex_color, graph);
+    for (std::size_t seed = 0; seed < grid.element_count(); ++seed) {
         if (sign[seed] != 0) continue;
         sign[seed] = 1;
-        queue.assign(1, seed);
-        while (!queue.empty()) {
-            const std::uint32_t e = queue.back();
-            queue.pop_back();
-            for (const Neighbour& n : neighbours[e]) {
-                const auto wanted = static_cast<signed char>(n.turned ? -sign[e] : sign[e]);
-                if (sign[n.element] == 0) {
-                    sign[n.element] = wanted;
-                    queue.push_back(n.element);
-                } else if (sign[n.element] != wanted) {
-                    throw InvalidInput(
-                        "the surface cannot be oriented (it contains a Moebius "
-                        "strip): the elements " +
-                        std::to_string(e) + " and " + std::to_string(n.element) +
-                        " disagree at the edge " + detail::name(n.face));
-                }
-            }
-        }
+        boost::breadth_first_visit(graph, seed, queue, visitor, colour);
     }
+    std::size_t turned = 0;
     for (std::size_t e = 0; e < grid.element_count(); ++e) {
         if (sign[e] > 0) continue;
         mirror(grid.shapes[e], grid.element(e));

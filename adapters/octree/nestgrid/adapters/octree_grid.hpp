@@ -19,7 +19,6 @@ struct Octree {
     static constexpr int max_children = 1 << dim;
     static constexpr int block_height = 1;
     static constexpr bool conforming = false;
-    static constexpr bool coarsens_by_node = false;
     static constexpr const char* name = "octree";
     static constexpr Shape shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
 

@@ -22,7 +22,6 @@ struct Prism {
     static constexpr int max_children = 8;
     static constexpr int block_height = 1;
     static constexpr bool conforming = false;
-    static constexpr bool coarsens_by_node = false;
     static constexpr const char* name = "prism";
 
     std::uint32_t options() const { return 0; }

@@ -30,7 +30,6 @@ struct RedGreen {
     static constexpr int max_children = dim == 2 ? 4 : corners == 4 ? 8 : 30;
     static constexpr int block_height = 1;
     static constexpr bool conforming = true;
-    static constexpr bool coarsens_by_node = false;
     static constexpr const char* name = "red-green";
 
     std::uint32_t options() const { return 0; }

@@ -35,6 +35,10 @@ public:
         }
         for (auto e = count; e < tree_.elements.size(); ++e) tree_.open.push_back(e);
         grid_.family_.close(tree_);
+        for (const std::uint32_t e : coarsened_) {
+            const std::uint16_t rule = tree_.elements[e].rule;
+            if (rule == 0 || table_.rule(rule).temporary) ++result_.coarsened;
+        }
         if constexpr (!Family::conforming) find_hanging();
         pack();
         report();
@@ -147,6 +151,7 @@ private:
     std::vector<std::uint16_t> written_rule_;  // number there of each rule of `table_`, or 0
     Tree tree_;
     Adaptation result_;
+    std::vector<std::uint32_t> coarsened_;  // elements whose children went; the closure may refine
     std::size_t coarse_ = 0;
     std::vector<std::uint32_t> root_, words_, hanging_;
     std::vector<bool> used_;
@@ -160,6 +165,7 @@ template <class Family>
 template <class Marker>
 void Adapter<Family>::unpack(Marker& marker) {
     const std::size_t coarse_nodes = grid_.coarse_.nodes.size();
+    tree_.reserve(grid_.used_node_count_, 2 * grid_.leaf_count_);
     tree_.add_nodes(grid_.node_count_);
     for (std::size_t i = 0; i < coarse_nodes; ++i) {
         tree_.add_coarse_node(static_cast<std::uint32_t>(i), grid_.coarse_.nodes[i]);
@@ -243,31 +249,11 @@ void Adapter<Family>::coarsen() {
     for (std::uint32_t e = 0; e < tree_.elements.size(); ++e) {
         if (all_children_want_it(tree_.elements[e])) families.push_back(e);
     }
-    if constexpr (Family::coarsens_by_node) {
-        // A node goes if all elements around it come from families that made it and go.
-        std::vector<bool> stays(tree_.position.size(), false);
-        std::vector<std::uint32_t> goes(tree_.elements.size(), no_node);
-        for (const std::uint32_t e : families) {
-            for (std::size_t k = 0; k < tree_.rule(tree_.elements[e]).children.size(); ++k) {
-                goes[tree_.elements[e].child + k] = tree_.nodes(tree_.elements[e])[0];
-            }
-        }
-        for (std::size_t e = 0; e < tree_.elements.size(); ++e) {
-            const auto& element = tree_.elements[e];
-            if (!tree_.is_leaf(element)) continue;
-            for (std::size_t i = 0; i < topology(element.shape).corners; ++i) {
-                if (element.corner[i] != goes[e]) stays[element.corner[i]] = true;
-            }
-        }
-        std::erase_if(families, [&](std::uint32_t e) {
-            return bool{stays[tree_.nodes(tree_.elements[e])[0]]};
-        });
-    }
     for (const std::uint32_t e : families) {
         tree_.coarsen(tree_.elements[e]);
         tree_.open.push_back(e);
     }
-    result_.coarsened = families.size();
+    coarsened_ = std::move(families);
 }
 
 /// \return whether the node is there, which then hangs

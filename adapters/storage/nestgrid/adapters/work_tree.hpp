@@ -68,6 +68,12 @@ public:
         touched_.resize(count, 0);
     }
 
+    /// Makes room for about as many nodes and elements.
+    void reserve(std::size_t node_count, std::size_t element_count) {
+        by_key_.reserve(node_count);
+        elements.reserve(element_count);
+        new_nodes.reserve(element_count);
+    }
     void add_coarse_node(std::uint32_t node, const Point& x) {
         position[node] = x;
         state_[node] |= known_;
