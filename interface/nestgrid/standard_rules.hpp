@@ -52,7 +52,7 @@ inline const Rule& red_triangle_rule() {
 /// 2).
 inline const Rule& red_tetrahedron_rule(int diagonal = 0) {
     // 4: 01, 5: 02, 6: 03, 7: 12, 8: 13, 9: 23
-    static const auto build = [](std::string name, std::vector<Child> inner) {
+    static const auto build = [](const std::string& name, const std::vector<Child>& inner) {
         std::vector<Child> children{{Shape::tetrahedron, {0, 4, 5, 6}, 1, {}},
                                     {Shape::tetrahedron, {4, 1, 7, 8}, 1, {}},
                                     {Shape::tetrahedron, {5, 7, 2, 9}, 1, {}},

@@ -47,7 +47,52 @@ double coarse_volume(const Grid& grid) {
 
 double smooth(const Point& x) { return x[0] + x[1] * x[1] - 0.3 * x[2] * x[0]; }
 
-/// check_grid, volume, counts.
+/// Area (length) of faces of elements that belong to one element only.
+class Skin {
+public:
+    void add(Shape shape, std::span<const Point> x, std::span<const std::uint32_t> nodes) {
+        const Topology& t = topology(shape);
+        for (std::size_t f = 0; f < t.faces; ++f) {
+            std::set<std::uint32_t> of;
+            std::array<Point, 4> y;
+            for (std::size_t i = 0; i < t.face[f].corners; ++i) {
+                const std::uint8_t corner = t.face[f].tensor_corner(static_cast<int>(i));
+                of.insert(nodes[corner]);
+                y[i] = x[corner];
+            }
+            auto& [count, area] = faces_[of];
+            ++count;
+            area = measure(t.face[f].shape, y);
+        }
+    }
+    double area() const {
+        Sum sum;
+        for (const auto& [nodes, face] : faces_) {
+            EXPECT_LE(face.first, 2);
+            if (face.first == 1) sum.add(face.second);
+        }
+        return sum.get();
+    }
+
+private:
+    std::map<std::set<std::uint32_t>, std::pair<int, double>> faces_;
+};
+
+/// Leaves that conform share whole faces: the others make up the boundary of the domain.
+template <class Grid>
+void expect_shared_faces(const Grid& grid) {
+    Skin coarse;
+    for (std::size_t i = 0; i < grid.coarse_count(); ++i) {
+        const auto of = grid.coarse_grid().element(i);
+        const auto c = grid.coarse(i);
+        coarse.add(c.shape, std::span(c.corners).first(of.size()), of);
+    }
+    Skin leaves;
+    grid.for_each_leaf([&](const Leaf& l) { leaves.add(l.shape, l.corners, l.nodes); });
+    EXPECT_NEAR(leaves.area(), coarse.area(), 1e-9);
+}
+
+/// check_grid, volume, counts, shared faces.
 template <class Grid>
 void expect_sound(const Grid& grid) {
     const std::vector<double> values = sample_nodes(grid, smooth);
@@ -64,6 +109,9 @@ void expect_sound(const Grid& grid) {
     EXPECT_EQ(leaves, grid.leaf_count());
     EXPECT_EQ(nodes.size(), grid.used_node_count());
     EXPECT_LT(*nodes.rbegin(), grid.node_count());
+    if constexpr (requires { grid.conforming(); }) {
+        if (grid.leaf_count() < 100000) expect_shared_faces(grid);
+    }
 }
 
 template <class Family>

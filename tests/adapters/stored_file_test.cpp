@@ -152,9 +152,9 @@ TYPED_TEST(StoredFiles, SurviveMalice) {
     constexpr int tries = 400;
     for (int i = 0; i < tries; ++i) {
         auto bytes = sound;
-        for (unsigned k = 0; k <= i % 3U; ++k) {
+        for (unsigned k = 0; k <= static_cast<unsigned>(i % 3); ++k) {
             const std::size_t at = 56 + random() % (bytes.size() - 56);
-            bytes[at] = static_cast<char>(random() % 3 == 0 ? random() : bytes[at] + 1);
+            bytes[at] = random() % 3 == 0 ? static_cast<char>(random()) : static_cast<char>(bytes[at] + 1);
         }
         set_checksums(bytes);
         write_bytes(path, bytes);
@@ -170,7 +170,7 @@ TYPED_TEST(StoredFiles, SurviveMalice) {
             ++refused;
         }
     }
-    EXPECT_GT(refused, tries / 4U);
+    EXPECT_GT(refused, static_cast<std::size_t>(tries / 4));
     std::filesystem::remove(path);
 }
 

@@ -36,7 +36,8 @@ struct Prism {
     static bool is_temporary(std::uint64_t) { return false; }
 
     std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
-        return std::vector<std::int8_t>(grid.element_count(), 1);
+        std::vector<std::int8_t> orientation(grid.element_count(), 1);
+        return orientation;
     }
     bool is_prepared(const CoarseGrid&) const { return true; }
 

@@ -70,7 +70,8 @@ struct RedGreen {
     }
 
     std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
-        return std::vector<std::int8_t>(grid.element_count(), 1);
+        std::vector<std::int8_t> orientation(grid.element_count(), 1);
+        return orientation;
     }
 
     bool is_prepared(const CoarseGrid&) const { return true; }

@@ -47,7 +47,7 @@ void StoredGrid<Family>::for_each_new_node(const Element& e, Function&& function
     const Pattern::Inner& inner = table_[code_of(e)].inner[e.inner];
     for (std::size_t k = 0; k < inner.entity.size(); ++k) {
         const unsigned entity = entity_of_exit[inner.entity[k]];
-        std::size_t rank = static_cast<std::size_t>(
+        auto rank = static_cast<std::size_t>(
             std::popcount(r.mask[entity / 32] & ((1U << entity % 32) - 1U)));
         for (std::size_t i = 0; i < entity / 32; ++i) {
             rank += static_cast<std::size_t>(std::popcount(r.mask[i]));
