@@ -17,6 +17,11 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
+template <class Grid>
+constexpr bool is_bisection() {
+    return Grid::max_new_nodes == 1;
+}
+
 template <class Grid, class Field>
 Extraction extract_one(const Grid& grid, const Field& field,
                        const nestgrid::HierarchicalIndicator& indicator, double threshold,
@@ -34,7 +39,12 @@ Extraction extract_one(const Grid& grid, const Field& field,
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
-    const auto result = nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
+    // Stopped elements conform on bisection grids only; at threshold 0 others are not stopped.
+    const auto result =
+        threshold == 0 && !is_bisection<Grid>()
+            ? nestgrid::isosurface(grid, field, request.isovalue, nestgrid::Exact{}, indicator,
+                                   options)
+            : nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
