@@ -23,7 +23,7 @@ constexpr std::array<NamedExpression, 4> named{
      {"front", "atan(60*(sqrt((x-0.2)^2+(y-0.3)^2+(z-0.25)^2)-0.5))"}}};
 
 std::string message(const mu::Parser::exception_type& error) {
-    const std::string text = error.GetMsg();
+    const std::string& text = error.GetMsg();
     return text.substr(0, text.find_last_not_of(".\n ") + 1);
 }
 

@@ -33,7 +33,7 @@ void expect_sentence(Function&& function, std::initializer_list<std::string> wor
 
 /// Writes a file of the test; returns its path.
 inline std::string write_file(const std::string& name, const std::string& content) {
-    const std::string path = testing::TempDir() + name;
+    std::string path = testing::TempDir() + name;
     std::ofstream(path, std::ios::binary) << content;
     return path;
 }

@@ -17,7 +17,9 @@ CoarseGrid block(std::uint32_t n, bool tetrahedra) {
     std::vector<Point> points;
     const std::uint32_t m = n + 1;
     for (std::uint32_t i = 0; i < m * m * m; ++i) {
-        points.push_back({double(i % m), double(i / m % m), double(i / m / m)});
+        const std::uint32_t layer = i / m / m;
+        const std::uint32_t row = i / m % m;
+        points.push_back({double(i % m), double(row), double(layer)});
     }
     for (std::uint32_t i = 0; i < n * n * n; ++i) {
         const std::uint32_t first = i % n + m * (i / n % n + m * (i / n / n));
@@ -67,7 +69,8 @@ TEST(Coordinates, AreOwnedOrBorrowed) {
     EXPECT_FALSE(Coordinates().borrowed());
     EXPECT_EQ(Coordinates().size(), 0U);
     const Coordinates own(std::vector<Point>{{1, 2, 3}, {4, 5, 6}});
-    const Coordinates copy = own;
+    Coordinates copy;
+    copy = own;
     EXPECT_FALSE(copy.borrowed());
     EXPECT_EQ(copy[1], (Point{4, 5, 6}));
     std::vector<double> doubles{1, 2, 3, 0, 4, 5, 6, 0};

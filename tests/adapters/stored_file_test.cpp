@@ -154,7 +154,8 @@ TYPED_TEST(StoredFiles, SurviveMalice) {
         auto bytes = sound;
         for (unsigned k = 0; k <= static_cast<unsigned>(i % 3); ++k) {
             const std::size_t at = 56 + random() % (bytes.size() - 56);
-            bytes[at] = random() % 3 == 0 ? static_cast<char>(random()) : static_cast<char>(bytes[at] + 1);
+            bytes[at] =
+                random() % 3 == 0 ? static_cast<char>(random()) : static_cast<char>(bytes[at] + 1);
         }
         set_checksums(bytes);
         write_bytes(path, bytes);

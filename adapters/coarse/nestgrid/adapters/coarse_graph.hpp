@@ -34,11 +34,11 @@ struct SharedFace {
     CoarseFace face;
     bool turned = false;  ///< both elements run through it in the same sense
 };
-using DualGraph = boost::adjacency_list<
-    boost::vecS, boost::vecS, boost::undirectedS,
-    boost::property<boost::vertex_color_t, boost::default_color_type,
-                    boost::property<boost::vertex_degree_t, std::size_t>>,
-    SharedFace>;
+using DualGraph =
+    boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
+                          boost::property<boost::vertex_color_t, boost::default_color_type,
+                                          boost::property<boost::vertex_degree_t, std::size_t>>,
+                          SharedFace>;
 
 namespace detail {
 

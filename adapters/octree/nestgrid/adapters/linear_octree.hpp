@@ -93,7 +93,7 @@ public:
         return e.first;
     }
     Element child(const Element& e, std::size_t number) const {
-        const std::size_t tree = static_cast<std::size_t>(
+        const auto tree = static_cast<std::size_t>(
             std::upper_bound(first_.begin(), first_.end(), e.first) - first_.begin() - 1);
         const auto leaf = [&](std::size_t i) -> const LeafType& {
             return trees_[tree][i - first_[tree]];

@@ -73,9 +73,10 @@ public:
         return !declared_ || *declared_ == std::pair(points.size(), grid.element_count());
     }
     IoError truncated() const {
-        return IoError("'" + path_ + "' is truncated or damaged after " +
+        IoError result("'" + path_ + "' is truncated or damaged after " +
                        std::to_string(points.size()) + " vertices and " +
                        std::to_string(grid.element_count()) + " faces");
+        return result;
     }
 
     CoarseGrid grid;

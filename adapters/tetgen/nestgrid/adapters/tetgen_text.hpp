@@ -64,7 +64,8 @@ public:
         return n;
     }
     IoError error(const std::string& what) const {
-        return IoError("'" + path_ + "', line " + std::to_string(line_) + ": " + what);
+        IoError result("'" + path_ + "', line " + std::to_string(line_) + ": " + what);
+        return result;
     }
 
 private:
