@@ -149,6 +149,7 @@ void run_mesh(Options& o) {
     if (!is_hierarchy(o.output)) {
         throw nestgrid::IoError("'" + o.output.string() + "' is no name of a .nestgrid file");
     }
+    check_writable(o.output);
     {
         ProgressLine progress;
         o.mesh.progress = [&](const std::string& text) { progress.show(text); };
@@ -183,6 +184,8 @@ void add_mesh_options(CLI::App& command, Options& o) {
     command.add_option("--tolerance", o.mesh.tolerance,
                        "refine until the field is interpolated up to this");
     command.add_option("--levels", o.mesh.levels, "refinements of an element at most")
+        ->capture_default_str();
+    command.add_option("--max-elements", o.mesh.maximum_elements, "refuse to make more than these")
         ->capture_default_str();
     command.add_option("-o,--output", o.output, ".nestgrid")->required();
     command.footer("Fields:\n" + Expression::names());

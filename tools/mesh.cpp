@@ -16,6 +16,9 @@ namespace {
 using namespace nestgrid;
 
 CoarseGrid read_coarse_grid(const MeshRequest& request) {
+    if (std::filesystem::is_directory(request.input)) {
+        throw IoError("'" + request.input.string() + "' is a folder");
+    }
     std::string ending = request.input.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -58,19 +61,33 @@ void refine_and_write(Grid grid, const MeshRequest& request) {
         request.progress("step " + std::to_string(step) + ": " + std::to_string(grid.leaf_count()) +
                          " elements");
     };
+    // Marks leaves, and stops where there would be too many.
+    const auto refine_if = [&](auto&& wanted) {
+        std::size_t expected = grid.leaf_count();
+        return grid.adapt([&](const Leaf& leaf) {
+            if (!wanted(leaf)) return Mark::keep;
+            expected += static_cast<std::size_t>(Grid::max_new_nodes == 1 ? 1
+                                                 : Grid::dimension == 2   ? 3
+                                                                          : 7);
+            if (expected > request.maximum_elements) {
+                throw InvalidInput("refinement would make more than " +
+                                   std::to_string(request.maximum_elements) +
+                                   " elements (--max-elements)");
+            }
+            return Mark::refine;
+        });
+    };
     for (int i = 0; i < request.refine; ++i) {
-        grid.refine_uniformly();
+        refine_if([](const Leaf&) { return true; });
         tell(i + 1);
     }
     std::vector<NamedField> fields;
     if (!request.field.empty()) {
         const Expression f(request.field);
         for (int step = 1; request.tolerance > 0; ++step) {
-            const Adaptation done = grid.adapt([&](const Leaf& leaf) {
+            const Adaptation done = refine_if([&](const Leaf& leaf) {
                 return leaf.level < request.levels &&
-                               interpolation_error(f, leaf) > request.tolerance
-                           ? Mark::refine
-                           : Mark::keep;
+                       interpolation_error(f, leaf) > request.tolerance;
             });
             tell(step);
             if (done.marked == 0) break;
@@ -115,6 +132,10 @@ void make_hierarchy(const MeshRequest& request) {
     }
     if (!(request.tolerance >= 0)) throw InvalidInput("--tolerance is negative or not a number");
     if (request.refine < 0) throw InvalidInput("--refine is negative");
+    if (request.levels < 0) throw InvalidInput("--levels is negative");
+    if (!(request.maximum_volume >= 0) || !std::isfinite(request.maximum_volume)) {
+        throw InvalidInput("--max-volume is negative or not a number");
+    }
     if (!request.layers.empty() && request.family != "prism") {
         throw InvalidInput("--layers are for --family prism");
     }

@@ -18,6 +18,7 @@ struct MeshRequest {
     std::string field;          ///< name or expression; may be empty
     double tolerance = 0;       ///< refine until the field is interpolated to this; 0: do not
     int levels = 30;            ///< refinements at most
+    std::size_t maximum_elements = 20000000;  ///< leaves, before the closure
     std::filesystem::path output;
     std::function<void(const std::string&)> progress{};
 };

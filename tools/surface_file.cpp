@@ -76,6 +76,10 @@ void check_output(const fs::path& path) {
         throw IoError("'" + path.string() +
                       "' names no known format (.vtp, .ply, .stl, .obj, .gltf; .png for pictures)");
     }
+    check_writable(path);
+}
+
+void check_writable(const fs::path& path) {
     if (fs::is_directory(path)) throw IoError(path.string() + " cannot be written: it is a folder");
     const fs::path trial = temporary_beside(path);
     const bool writable = static_cast<bool>(std::ofstream(trial));

@@ -60,6 +60,9 @@ vtkSmartPointer<vtkPolyData> make_poly_data(const nestgrid::Surface<dimension, E
 /// written, so that this is known before any work is done.
 void check_output(const std::filesystem::path& path);
 
+/// The same for a file of any format.
+void check_writable(const std::filesystem::path& path);
+
 /// Writes .vtp, .ply, .stl, .obj or .gltf. The file appears complete, by rename, or not at all.
 /// \throw nestgrid::IoError
 void write_surface(vtkPolyData* surface, const std::filesystem::path& path);

@@ -63,7 +63,7 @@ void expect_same_elements(const CoarseGrid& a, const CoarseGrid& b) {
 
 TEST(OpenMesh, LendsItsDoubles) {
     const CoarseGrid sample = torus(24, 12, true);
-    const PolyMesh mesh = to_openmesh<PolyMesh>(sample);
+    const auto mesh = to_openmesh<PolyMesh>(sample);
     CoarseGrid grid = coarse_from_openmesh(mesh);
     EXPECT_TRUE(grid.nodes.borrowed());
     expect_same_elements(grid, sample);
@@ -75,7 +75,7 @@ TEST(OpenMesh, LendsItsDoubles) {
 
 TEST(OpenMesh, LendsItsFloats) {
     const CoarseGrid sample = torus(24, 12, false);
-    TriMesh mesh = to_openmesh<TriMesh>(sample);
+    auto mesh = to_openmesh<TriMesh>(sample);
     CoarseGrid grid = coarse_from_openmesh(mesh);
     EXPECT_TRUE(grid.nodes.borrowed());
     expect_same_elements(grid, sample);
@@ -86,7 +86,7 @@ TEST(OpenMesh, LendsItsFloats) {
 }
 
 TEST(OpenMesh, RefusesDeletedElementsAndPentagons) {
-    PolyMesh mesh = to_openmesh<PolyMesh>(torus(8, 6, true));
+    auto mesh = to_openmesh<PolyMesh>(torus(8, 6, true));
     mesh.delete_face(OpenMesh::FaceHandle(5), true);
     expect_sentence<InvalidInput>([&] { coarse_from_openmesh(mesh); },
                                   {"deleted", "garbage_collection()"});
@@ -119,7 +119,7 @@ TEST_P(OpenMeshFiles, ComeBack) {
     const std::string ending = GetParam();
     const bool triangles = ending == ".stl";
     const CoarseGrid sample = torus(20, 10, !triangles);
-    const PolyMesh mesh = to_openmesh<PolyMesh>(sample);
+    const auto mesh = to_openmesh<PolyMesh>(sample);
     for (const bool binary : {false, true}) {
         if (binary && ending == ".obj") continue;
         SCOPED_TRACE(binary);
@@ -140,7 +140,7 @@ TEST_P(OpenMeshFiles, ComeBack) {
 
 TEST_P(OpenMeshFiles, AreNeverReadInPart) {
     const std::string ending = GetParam();
-    const PolyMesh mesh = to_openmesh<PolyMesh>(torus(4, 3, ending != ".stl"));
+    const auto mesh = to_openmesh<PolyMesh>(torus(4, 3, ending != ".stl"));
     for (const bool binary : {false, true}) {
         if (binary && ending == ".obj") continue;
         OpenMesh::IO::Options options;

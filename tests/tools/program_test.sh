@@ -192,6 +192,16 @@ refused 1 "field 'sin\('" mesh tetra.off "${mesh[@]}" --field 'sin('
 refused 1 'no finite number at' mesh tetra.off "${mesh[@]}" --field 'log(x)'
 refused 1 'needs a --field' mesh tetra.off "${mesh[@]}" --tolerance 1
 refused 1 'no rule for a tetrahedron' mesh cube.smesh --family octree -o x.nestgrid
+refused 1 'more than 20000000 elements' mesh tetra.off "${mesh[@]}" --refine 1000
+refused 1 'more than 5000 elements' mesh tetra.off "${mesh[@]}" --field x^2 --tolerance 1e-300 --max-elements 5000
+refused 1 'tolerance is negative' mesh tetra.off "${mesh[@]}" --field x --tolerance nan
+refused 1 'refine is negative' mesh tetra.off "${mesh[@]}" --refine -1
+refused 1 'levels is negative' mesh tetra.off "${mesh[@]}" --levels -1
+refused 1 'max-volume is negative' mesh cube.smesh "${mesh[@]}" --max-volume -1
+refused 1 'layer 0 is no positive' mesh tetra.off --family prism --layers nan -o x.nestgrid
+refused 1 'cannot be written' mesh tetra.off --family bisection -o missing/x.nestgrid
+refused 1 't.nestgrid' mesh t.nestgrid "${mesh[@]}"
+mkdir folder.off && refused 1 'folder.off' mesh folder.off "${mesh[@]}"
 refused 1 'are for --family prism' mesh tetra.off "${mesh[@]}" --layers 1
 refused 1 'no name of a .nestgrid' mesh tetra.off --family bisection -o x.vtp
 refused 2 'family' mesh tetra.off --family oak -o x.nestgrid
