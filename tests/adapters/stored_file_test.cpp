@@ -175,6 +175,23 @@ TYPED_TEST(StoredFiles, SurviveMalice) {
     std::filesystem::remove(path);
 }
 
+/// Numbers that coarsening has left unused do not disturb.
+TEST(StoredFile, KeepsNodeNumbersWithGaps) {
+    const auto path = temporary(std::to_string(::getpid()) + "_gaps.nestgrid");
+    BisectionGrid<2> grid(triangles(2));
+    refine_at_sphere(grid, 12);
+    for (int i = 0; i < 11; ++i) {
+        grid.adapt(
+            [](const Leaf& leaf) { return leaf.centre()[0] < 0.8 ? Mark::coarsen : Mark::keep; });
+    }
+    ASSERT_GT(grid.node_count(), 2 * grid.used_node_count());
+    write_hierarchy(grid, path);
+    const auto back = read_hierarchy<Bisection<2>>(path);
+    EXPECT_EQ(leaves(back.grid), leaves(grid));
+    EXPECT_EQ(back.grid.used_node_count(), grid.used_node_count());
+    std::filesystem::remove(path);
+}
+
 TEST(StoredFile, RefusesFieldsOfTheWrongLength) {
     const OctreeGrid<2> grid(quadrilaterals(1));
     const auto path = temporary("never.nestgrid");

@@ -11,14 +11,15 @@
 
 namespace nestgrid::detail {
 
+/// Writes the store of a grid anew: adapted, renumbered, or to see whether it is what it should be.
 template <class Family>
-class Adapter {
+class Rewrite {
 public:
     using Grid = StoredGrid<Family>;
     using Tree = WorkTree<Family::max_corners>;
     using Element = typename Grid::Element;
 
-    explicit Adapter(Grid& grid) : grid_{grid}, table_{grid.table_}, tree_{table_} {}
+    explicit Rewrite(Grid& grid) : grid_{grid}, table_{grid.table_}, tree_{table_} {}
 
     template <class Marker>
     Adaptation run(Marker& marker) {
@@ -163,7 +164,7 @@ private:
 
 template <class Family>
 template <class Marker>
-void Adapter<Family>::unpack(Marker& marker) {
+void Rewrite<Family>::unpack(Marker& marker) {
     const std::size_t coarse_nodes = grid_.coarse_.nodes.size();
     tree_.reserve(grid_.used_node_count_, 2 * grid_.leaf_count_);
     tree_.add_nodes(grid_.node_count_);
@@ -185,7 +186,7 @@ void Adapter<Family>::unpack(Marker& marker) {
 
 template <class Family>
 template <class Marker>
-void Adapter<Family>::unpack(const Element& e, std::uint32_t place, Marker& marker) {
+void Rewrite<Family>::unpack(const Element& e, std::uint32_t place, Marker& marker) {
     const unsigned code = grid_.code_of(e);
     const int level = tree_.elements[place].level;
     if (code == 0) {
@@ -211,7 +212,7 @@ void Adapter<Family>::unpack(const Element& e, std::uint32_t place, Marker& mark
 
 template <class Family>
 template <class Marker>
-Mark Adapter<Family>::ask(const Element& e, Shape shape, int level, Marker& marker) {
+Mark Rewrite<Family>::ask(const Element& e, Shape shape, int level, Marker& marker) {
     const std::size_t n = topology(shape).corners;
     std::array<Point, max_corners> x;
     for (std::size_t i = 0; i < n; ++i) x[i] = tree_.position[e.corner[i]];
@@ -221,7 +222,7 @@ Mark Adapter<Family>::ask(const Element& e, Shape shape, int level, Marker& mark
 /// Children made by the closure: refined if one wants it, coarsened if all of them do.
 template <class Family>
 template <class Marker>
-Mark Adapter<Family>::ask_children(const Element& e, const Rule& rule, int level, Marker& marker) {
+Mark Rewrite<Family>::ask_children(const Element& e, const Rule& rule, int level, Marker& marker) {
     std::array<Element, static_cast<std::size_t>(Grid::max_children)> below;
     grid_.children(e, std::span(below).first(rule.children.size()));
     Mark least = Mark::refine, most = Mark::coarsen;
@@ -234,7 +235,7 @@ Mark Adapter<Family>::ask_children(const Element& e, const Rule& rule, int level
 }
 
 template <class Family>
-bool Adapter<Family>::all_children_want_it(const typename Tree::Element& e) const {
+bool Rewrite<Family>::all_children_want_it(const typename Tree::Element& e) const {
     if (!e.alive || e.rule == 0) return false;
     for (std::size_t k = 0; k < tree_.rule(e).children.size(); ++k) {
         const auto& child = tree_.elements[e.child + k];
@@ -244,7 +245,7 @@ bool Adapter<Family>::all_children_want_it(const typename Tree::Element& e) cons
 }
 
 template <class Family>
-void Adapter<Family>::coarsen() {
+void Rewrite<Family>::coarsen() {
     std::vector<std::uint32_t> families;
     for (std::uint32_t e = 0; e < tree_.elements.size(); ++e) {
         if (all_children_want_it(tree_.elements[e])) families.push_back(e);
@@ -258,14 +259,14 @@ void Adapter<Family>::coarsen() {
 
 /// \return whether the node is there, which then hangs
 template <class Family>
-bool Adapter<Family>::hang(std::uint32_t node) {
+bool Rewrite<Family>::hang(std::uint32_t node) {
     if (node == no_node) return false;
     hanging_[node / 32] |= 1U << node % 32;
     return true;
 }
 
 template <class Family>
-bool Adapter<Family>::hang_edge(std::uint32_t a, std::uint32_t b) {
+bool Rewrite<Family>::hang_edge(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t m = tree_.midpoint(a, b);
     if (!hang(m)) return false;
     hang_edge(a, m);
@@ -274,7 +275,7 @@ bool Adapter<Family>::hang_edge(std::uint32_t a, std::uint32_t b) {
 }
 
 template <class Family>
-void Adapter<Family>::hang_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+void Rewrite<Family>::hang_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const std::uint32_t ab = tree_.midpoint(a, b);
     const std::uint32_t bc = tree_.midpoint(b, c);
     const std::uint32_t ca = tree_.midpoint(c, a);
@@ -290,7 +291,7 @@ void Adapter<Family>::hang_triangle(std::uint32_t a, std::uint32_t b, std::uint3
 
 /// \param corner in tensor order
 template <class Family>
-void Adapter<Family>::hang_quadrilateral(const std::array<std::uint32_t, 4>& corner) {
+void Rewrite<Family>::hang_quadrilateral(const std::array<std::uint32_t, 4>& corner) {
     const auto [a, b, c, d] = corner;
     const std::uint32_t ab = tree_.midpoint(a, b);
     const std::uint32_t cd = tree_.midpoint(c, d);
@@ -321,7 +322,7 @@ void Adapter<Family>::hang_quadrilateral(const std::array<std::uint32_t, 4>& cor
 }
 
 template <class Family>
-void Adapter<Family>::find_hanging() {
+void Rewrite<Family>::find_hanging() {
     hanging_.assign((tree_.position.size() + 31) / 32, 0);
     for (const auto& e : tree_.elements) {
         if (!tree_.is_leaf(e)) continue;
@@ -343,7 +344,7 @@ void Adapter<Family>::find_hanging() {
 }
 
 template <class Family>
-std::uint16_t Adapter<Family>::written(std::uint16_t rule) {
+std::uint16_t Rewrite<Family>::written(std::uint16_t rule) {
     if (written_rule_.size() <= rule) written_rule_.resize(rule + 1U, 0);
     if (written_rule_[rule] == 0) {
         const StoredRule& r = table_.rule(rule);
@@ -353,7 +354,7 @@ std::uint16_t Adapter<Family>::written(std::uint16_t rule) {
 }
 
 template <class Family>
-void Adapter<Family>::collect(std::uint32_t e, int height, Block& block) {
+void Rewrite<Family>::collect(std::uint32_t e, int height, Block& block) {
     const auto& element = tree_.elements[e];
     if (height == 0 || element.rule == 0) {
         block.tree.push_back(0);
@@ -367,7 +368,7 @@ void Adapter<Family>::collect(std::uint32_t e, int height, Block& block) {
 }
 
 template <class Family>
-void Adapter<Family>::pack() {
+void Rewrite<Family>::pack() {
     used_.assign(tree_.position.size(), false);
     root_.assign(grid_.coarse_count(), Grid::none_);
     for (std::size_t i = 0; i < grid_.coarse_.nodes.size(); ++i) {
@@ -385,7 +386,7 @@ void Adapter<Family>::pack() {
 
 /// Writes the record of an element that is refined by `pattern` and has `exits`.
 template <class Family>
-std::uint32_t Adapter<Family>::pack(std::uint16_t pattern, std::span<const std::uint32_t> exits,
+std::uint32_t Rewrite<Family>::pack(std::uint16_t pattern, std::span<const std::uint32_t> exits,
                                     std::size_t depth) {
     if (levels_.size() <= depth) levels_.emplace_back();
     auto& blocks = levels_[depth].block;
@@ -446,7 +447,7 @@ std::uint32_t Adapter<Family>::pack(std::uint16_t pattern, std::span<const std::
 }
 
 template <class Family>
-void Adapter<Family>::report() {
+void Rewrite<Family>::report() {
     for (std::size_t i = 0; i < tree_.created.size(); ++i) {
         if (!used_[tree_.created[i]]) continue;
         result_.created.push_back(tree_.created[i]);
@@ -458,7 +459,7 @@ void Adapter<Family>::report() {
 }
 
 template <class Family>
-void Adapter<Family>::commit() {
+void Rewrite<Family>::commit() {
     std::size_t count = used_.size();
     while (count > 0 && !used_[count - 1]) --count;
     if (!hanging_.empty()) {

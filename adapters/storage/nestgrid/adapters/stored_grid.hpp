@@ -66,7 +66,7 @@ struct Adaptation {
 
 namespace detail {
 template <class Family>
-class Adapter;
+class Rewrite;
 template <class Family>
 class GridFile;
 }  // namespace detail
@@ -141,7 +141,7 @@ public:
     /// Numbers the nodes anew, without gaps, in the order in which a traversal meets them: for
     /// shorter vectors after much coarsening, and for locality. Coarse nodes keep their numbers.
     /// \return the new number of every old one, no_node for those that were not in use
-    std::vector<std::uint32_t> renumber() { return detail::Adapter<Family>(*this).renumber(); }
+    std::vector<std::uint32_t> renumber() { return detail::Rewrite<Family>(*this).renumber(); }
 
     /// Calls function(Leaf) for every leaf, in the order of a depth-first traversal.
     template <class Function>
@@ -167,7 +167,7 @@ public:
     }
 
 private:
-    friend class detail::Adapter<Family>;
+    friend class detail::Rewrite<Family>;
     friend class detail::GridFile<Family>;
     StoredGrid() = default;
 

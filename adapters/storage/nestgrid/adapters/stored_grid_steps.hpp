@@ -90,7 +90,7 @@ void StoredGrid<Family>::children(const Element& e, std::span<Element> out) cons
 template <class Family>
 template <class Marker>
 Adaptation StoredGrid<Family>::adapt(Marker&& marker) {
-    return detail::Adapter<Family>(*this).run(marker);
+    return detail::Rewrite<Family>(*this).run(marker);
 }
 
 namespace detail {
