@@ -9,7 +9,7 @@
 
 #include <nestgrid/check_grid.hpp>
 
-#include "sample_grids.hpp"
+#include "families.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -117,10 +117,6 @@ void expect_sound(const Grid& grid) {
 template <class Family>
 class Hierarchies : public testing::Test {};
 
-using Families =
-    testing::Types<BisectionTriangles, BisectionTetrahedra, RedGreenTriangles, RedGreenTetrahedra,
-                   RedGreenMixed2, RedGreenMixed3, BalancedQuadtree, UnbalancedQuadtree,
-                   BalancedOctree, UnbalancedOctree, Prisms>;
 TYPED_TEST_SUITE(Hierarchies, Families);
 
 TYPED_TEST(Hierarchies, CoarseAndUniform) {

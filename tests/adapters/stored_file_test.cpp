@@ -10,7 +10,7 @@
 #include <nestgrid/adapters/stored_file.hpp>
 #include <nestgrid/check_grid.hpp>
 
-#include "sample_grids.hpp"
+#include "families.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -47,10 +47,6 @@ std::vector<double> leaves(const Grid& grid) {
 
 template <class Family>
 class StoredFiles : public testing::Test {};
-using Families =
-    testing::Types<BisectionTriangles, BisectionTetrahedra, RedGreenTriangles, RedGreenTetrahedra,
-                   RedGreenMixed2, RedGreenMixed3, BalancedQuadtree, UnbalancedQuadtree,
-                   BalancedOctree, UnbalancedOctree, Prisms>;
 TYPED_TEST_SUITE(StoredFiles, Families);
 
 template <class Family>

@@ -127,18 +127,6 @@ TEST(StoredSurfaces, AgreeBetweenFamilies) {
     }
 }
 
-struct CountLeaves {
-    std::size_t leaves = 0;
-    template <class State>
-    Decision inspect(const State&, const Split&) {
-        return {};
-    }
-    template <class State>
-    void extract(const State&) {
-        ++leaves;
-    }
-};
-
 template <class Grid>
 void expect_same_through_any(const Grid& grid) {
     const auto values = sample_nodes(grid, [](const Point& x) { return to_sphere(x, 3); });

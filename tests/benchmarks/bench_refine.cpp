@@ -18,8 +18,6 @@
 #include "alberta_bisection.hpp"
 #endif
 
-#include <nestgrid/traversal.hpp>
-
 #include "sample_grids.hpp"
 
 using namespace nestgrid;
@@ -49,13 +47,7 @@ void measure_family(const std::string& name, Grid start, int levels) {
         Grid grid = start;
         refine_at_sphere(grid, levels - 1);
         double begin = now();
-        grid.adapt([&](const Leaf& leaf) {
-            double size = 0;
-            for (const Point& x : leaf.corners) size = std::max(size, norm(x - leaf.centre()));
-            return std::abs(to_sphere(leaf.centre(), Grid::dimension)) < size && leaf.level < levels
-                       ? Mark::refine
-                       : Mark::keep;
-        });
+        refine_at_sphere_once(grid, levels);
         best = std::min(best, now() - begin);
         begin = now();
         grid.adapt([](const Leaf&) { return Mark::keep; });
@@ -81,18 +73,6 @@ double resident_peak_gib() {
     return 0;
 }
 
-struct Count {
-    std::size_t leaves = 0;
-    template <class State>
-    Decision inspect(const State&, const Split&) {
-        return {};
-    }
-    template <class State>
-    void extract(const State&) {
-        ++leaves;
-    }
-};
-
 /// The sizes of the paper, adaptively refined.
 template <class Grid>
 void measure_ten_million(const std::string& name, Grid grid, int steps) {
@@ -107,7 +87,7 @@ void measure_ten_million(const std::string& name, Grid grid, int steps) {
     const NodeField<Grid, float> field(grid, std::span<const float>(values));
     const Traversal<Grid, NodeField<Grid, float>, Needs{.keys = true, .positions = true}> walk(
         grid, field);
-    Count count;
+    CountLeaves count;
     const double start = now();
     walk.run(count);
     print(name + "_traversal_ns_per_leaf",

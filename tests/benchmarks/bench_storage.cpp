@@ -89,11 +89,8 @@ void measure_family(const std::string& name, Make&& make, int depth, int uniform
         steps += up.marked + down.coarsened;
     }
     for (int i = 0; i < 2 * levels; ++i) {
-        grid.adapt([&](const Leaf& leaf) {
-            double size = 0;
-            for (const Point& x : leaf.corners) size = std::max(size, norm(x - leaf.centre()));
-            return std::abs(to_sphere(leaf.centre(), 3)) < 2 * size ? Mark::keep : Mark::coarsen;
-        });
+        grid.adapt(
+            [&](const Leaf& leaf) { return near_sphere(leaf, 3, 2) ? Mark::keep : Mark::coarsen; });
     }
     refine_at_sphere(grid, levels);
     const auto leaves = static_cast<double>(grid.leaf_count());

@@ -13,6 +13,7 @@
 #include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/adapters/prism_grid.hpp>
 #include <nestgrid/adapters/red_green.hpp>
+#include <nestgrid/traversal.hpp>
 
 namespace nestgrid_test {
 
@@ -229,18 +230,40 @@ inline double to_sphere(const Point& x, int dimension) {
     return norm(x - Point{0.5, 0.5, dimension == 3 ? 0.5 : x[2]}) - 0.35;
 }
 
-/// Refines the leaves at that sphere until they have `levels` levels.
+/// Whether a leaf's centre is nearer to that sphere than so many times its radius.
+inline bool near_sphere(const Leaf& leaf, int dimension, double times = 1) {
+    double size = 0;
+    for (const Point& x : leaf.corners) size = std::max(size, norm(x - leaf.centre()));
+    return std::abs(to_sphere(leaf.centre(), dimension)) < times * size;
+}
+
+/// One step of refinement at the sphere, of leaves that have less than `levels` levels.
+template <class Grid>
+void refine_at_sphere_once(Grid& grid, int levels) {
+    grid.adapt([&](const Leaf& leaf) {
+        return leaf.level < levels && near_sphere(leaf, Grid::dimension) ? Mark::refine
+                                                                         : Mark::keep;
+    });
+}
+
+/// Refines the leaves at the sphere until they have `levels` levels.
 template <class Grid>
 void refine_at_sphere(Grid& grid, int levels) {
-    for (int level = 0; level < levels; ++level) {
-        grid.adapt([&](const Leaf& leaf) {
-            double size = 0;
-            for (const Point& x : leaf.corners) size = std::max(size, norm(x - leaf.centre()));
-            const bool near = std::abs(to_sphere(leaf.centre(), Grid::dimension)) < size;
-            return near && leaf.level < levels ? Mark::refine : Mark::keep;
-        });
-    }
+    for (int level = 0; level < levels; ++level) refine_at_sphere_once(grid, levels);
 }
+
+/// A visitor that counts leaves.
+struct CountLeaves {
+    std::size_t leaves = 0;
+    template <class State>
+    Decision inspect(const State&, const Split&) {
+        return {};
+    }
+    template <class State>
+    void extract(const State&) {
+        ++leaves;
+    }
+};
 
 /// Values of a function at all nodes.
 template <class Grid, class Function>

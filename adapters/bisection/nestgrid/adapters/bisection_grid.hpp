@@ -34,9 +34,6 @@ struct Bisection {
     static constexpr const char* name = "bisection";
     static constexpr Shape shape = dim == 2 ? Shape::triangle : Shape::tetrahedron;
 
-    std::uint32_t options() const { return 0; }
-    static Bisection from_options(std::uint32_t) { return {}; }
-
     static bool refines(Shape s) { return s == shape; }
 
     /// Rule number `descriptor`, the tag.
@@ -47,7 +44,6 @@ struct Bisection {
         return {std::shared_ptr<const Rule>(),
                 &bisection_rule(shape, static_cast<int>(descriptor))};
     }
-    static bool is_temporary(std::uint64_t) { return false; }
 
     /// Sorts the corners of every element by colour.
     std::vector<std::int8_t> prepare(CoarseGrid& grid) const {

@@ -74,11 +74,7 @@ inline void check_and_orient(CoarseGrid& grid, const CoarseChecks& options = {})
     if (grid.element_count() == 0) throw InvalidInput("the coarse grid has no element");
     detail::check_nodes(grid, options);
     for (std::size_t e = 0; e < grid.element_count(); ++e) detail::check_element(grid, e);
-    if (grid.dimension == 2) {
-        orient(grid);
-    } else {
-        detail::for_each_inner_face(grid, [](const CoarseFace&, const CoarseFace&) {});
-    }
+    if (grid.dimension == 2) orient(grid);
     bool plane = grid.dimension == 2;
     for (std::size_t i = 0; plane && i < grid.nodes.size(); ++i) plane = grid.nodes[i][2] == 0;
     // Tools differ in what they call positive; one element against its whole component is inverted.

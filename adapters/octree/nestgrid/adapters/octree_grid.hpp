@@ -34,13 +34,6 @@ struct Octree {
         if (descriptor != 1) throw InvalidInput("an octree has one rule only");
         return {std::shared_ptr<const Rule>(), &dyadic_rule(shape)};
     }
-    static bool is_temporary(std::uint64_t) { return false; }
-
-    std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
-        std::vector<std::int8_t> orientation(grid.element_count(), 1);
-        return orientation;
-    }
-    bool is_prepared(const CoarseGrid&) const { return true; }
 
     template <class Tree>
     static std::uint16_t halve(Tree& tree) {

@@ -24,22 +24,12 @@ struct Prism {
     static constexpr bool conforming = false;
     static constexpr const char* name = "prism";
 
-    std::uint32_t options() const { return 0; }
-    static Prism from_options(std::uint32_t) { return {}; }
-
     static bool refines(Shape s) { return s == Shape::prism; }
 
     static std::shared_ptr<const Rule> make_rule(std::uint64_t descriptor) {
         if (descriptor > 2) throw InvalidInput("there is no such refinement of a prism");
         return {std::shared_ptr<const Rule>(), &prism_rule(static_cast<PrismSplit>(descriptor))};
     }
-    static bool is_temporary(std::uint64_t) { return false; }
-
-    std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
-        std::vector<std::int8_t> orientation(grid.element_count(), 1);
-        return orientation;
-    }
-    bool is_prepared(const CoarseGrid&) const { return true; }
 
     template <class Tree>
     static std::uint16_t rule_for(Tree& tree, const typename Tree::Element&, Mark mark) {

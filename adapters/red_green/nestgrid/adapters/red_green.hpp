@@ -32,9 +32,6 @@ struct RedGreen {
     static constexpr bool conforming = true;
     static constexpr const char* name = "red-green";
 
-    std::uint32_t options() const { return 0; }
-    static RedGreen from_options(std::uint32_t) { return {}; }
-
     static bool refines(Shape s) {
         return topology(s).dimension == dim && topology(s).corners <= corners &&
                (is_simplex(s) || s == Shape::quadrilateral || s == Shape::hexahedron);
@@ -68,13 +65,6 @@ struct RedGreen {
     static bool is_temporary(std::uint64_t descriptor) {
         return (descriptor & GreenState::green) != 0;
     }
-
-    std::vector<std::int8_t> prepare(CoarseGrid& grid) const {
-        std::vector<std::int8_t> orientation(grid.element_count(), 1);
-        return orientation;
-    }
-
-    bool is_prepared(const CoarseGrid&) const { return true; }
 
     template <class Tree>
     static std::uint16_t rule_for(Tree& tree, const typename Tree::Element& e, Mark mark) {

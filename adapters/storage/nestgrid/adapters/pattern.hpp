@@ -51,8 +51,7 @@ struct Pattern {
     };
     struct Inner {
         std::uint16_t rule = 0;
-        std::vector<std::uint8_t> node;    ///< new node of the pattern, for each of the rule
-        std::vector<std::uint8_t> entity;  ///< entity of the refined element, for each as well
+        std::vector<std::uint8_t> entity;  ///< of the refined element, for each new node
         std::vector<Target> child;
     };
     struct Exit {

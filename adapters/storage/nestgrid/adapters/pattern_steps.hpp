@@ -88,7 +88,6 @@ private:
                 known.push_back(entity);
                 carrier_.push_back(static_cast<std::uint8_t>(on));
             }
-            pattern_.inner[place].node.push_back(node);
             pattern_.inner[place].entity.push_back(entity);
             nodes.push_back(static_cast<std::uint8_t>(corners_ + node));
         }

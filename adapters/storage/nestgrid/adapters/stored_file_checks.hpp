@@ -33,7 +33,7 @@ void GridFile<Family>::check(const std::vector<std::uint32_t>& in_use) {
     if (bits(used_) != in_use) in_.fail("its set of nodes in use is wrong");
     grid_.used_node_count_ = static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true));
     try {
-        if (!grid_.family_.is_prepared(grid_.coarse_) || !Rewrite<Family>(grid_).is_sound()) {
+        if (!is_prepared(grid_.family_, grid_.coarse_) || !Rewrite<Family>(grid_).is_sound()) {
             in_.fail("its elements do not fit together");
         }
     } catch (const InvalidInput& error) {

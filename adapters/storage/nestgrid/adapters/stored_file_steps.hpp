@@ -221,7 +221,7 @@ private:
                 const std::size_t expected = grid.table_.rule_count();
                 if (expected > 0xFFFF) in.fail("it has too many rules");
                 const std::uint16_t number =
-                    grid.table_.rule(descriptor, Family::is_temporary(descriptor),
+                    grid.table_.rule(descriptor, is_temporary<Family>(descriptor),
                                      [&] { return Family::make_rule(descriptor); });
                 if (number != expected) in.fail("a rule is there twice");
             }
@@ -270,7 +270,7 @@ void write_hierarchy(const StoredGrid<Family>& grid, const std::filesystem::path
     header.dimension = static_cast<std::uint32_t>(Family::dimension);
     std::strncpy(header.family.data(), Family::name, header.family.size() - 1);
     header.corners = static_cast<std::uint32_t>(Family::max_corners);
-    header.options = grid.family().options();
+    header.options = detail::options(grid.family());
     header.body = body.bytes.size();
     boost::crc_32_type crc;
     crc.process_bytes(body.bytes.data(), body.bytes.size());
@@ -333,7 +333,7 @@ StoredHierarchy<Family> read_hierarchy(const std::filesystem::path& path) {
         throw IoError(detail::quoted(path) + " is damaged: its checksum is wrong");
     }
     detail::Reader body(std::move(bytes), detail::quoted(path));
-    return detail::GridFile<Family>::read(body, Family::from_options(header.options));
+    return detail::GridFile<Family>::read(body, detail::from_options<Family>(header.options));
 }
 
 }  // namespace nestgrid

@@ -19,6 +19,7 @@
 #include <optional>
 
 #include <nestgrid/adapters/coarse_checks.hpp>
+#include <nestgrid/adapters/family.hpp>
 #include <nestgrid/adapters/work_tree.hpp>
 #include <nestgrid/operations.hpp>
 
@@ -72,7 +73,7 @@ class GridFile;
 }  // namespace detail
 
 /// A nested grid that owns its hierarchy. A family says which shapes and rules there are and what
-/// its closure demands.
+/// its closure demands: family.hpp.
 template <class Family>
 class StoredGrid {
 public:

@@ -17,7 +17,7 @@ StoredGrid<Family>::StoredGrid(CoarseGrid coarse, const Family& family, const Co
                                std::to_string(i) + ")");
         }
     }
-    orientation_ = family_.prepare(coarse_);
+    orientation_ = detail::prepare(family_, coarse_);
     root_.assign(coarse_.element_count(), none_);
     leaf_count_ = coarse_.element_count();
     node_count_ = used_node_count_ = coarse_.nodes.size();
@@ -114,9 +114,8 @@ private:
 
     void visit(const Element& e, Shape shape, int level, const Point* corners) {
         const std::size_t n = topology(shape).corners;
-        visitor_(Leaf{shape, level, coarse_, {corners, n}, {e.corner.data(), n}},
-                 grid_.split(e) == nullptr);
         const Rule* rule = grid_.split(e);
+        visitor_(Leaf{shape, level, coarse_, {corners, n}, {e.corner.data(), n}}, rule == nullptr);
         if (rule == nullptr) return;
         std::array<Point, static_cast<std::size_t>(Grid::max_corners + Grid::max_new_nodes)> x;
         std::copy_n(corners, n, x.begin());
