@@ -7,6 +7,7 @@
 #include <deque>
 #include <utility>
 
+#include <nestgrid/adapters/hanging_mask.hpp>
 #include <nestgrid/adapters/stored_grid.hpp>
 
 namespace nestgrid::detail {
@@ -40,7 +41,7 @@ public:
             const std::uint16_t rule = tree_.elements[e].rule;
             if (rule == 0 || table_.rule(rule).temporary) ++result_.coarsened;
         }
-        if constexpr (!Family::conforming) find_hanging();
+        if constexpr (!Family::conforming) hanging_ = hanging_nodes(tree_);
         pack();
         report();
         commit();
@@ -53,7 +54,7 @@ public:
         unpack(keep);
         tree_.activate();
         grid_.family_.close(tree_);
-        if constexpr (!Family::conforming) find_hanging();
+        if constexpr (!Family::conforming) hanging_ = hanging_nodes(tree_);
         new_number_.assign(tree_.position.size(), no_node);
         next_number_ = static_cast<std::uint32_t>(grid_.coarse_.nodes.size());
         for (std::uint32_t node = 0; node < next_number_; ++node) new_number_[node] = node;
@@ -80,7 +81,7 @@ public:
         tree_.activate();
         for (std::uint32_t e = 0; e < tree_.elements.size(); ++e) tree_.open.push_back(e);
         grid_.family_.close(tree_);
-        if constexpr (!Family::conforming) find_hanging();
+        if constexpr (!Family::conforming) hanging_ = hanging_nodes(tree_);
         pack();
         if (grid_.hanging_.empty()) {  // of a grid that was never adapted
             if (std::any_of(hanging_.begin(), hanging_.end(), [](auto w) { return w != 0; })) {
@@ -107,13 +108,6 @@ private:
 
     void coarsen();
     bool all_children_want_it(const typename Tree::Element& e) const;
-
-    // Nodes that hang.
-    void find_hanging();
-    bool hang_edge(std::uint32_t a, std::uint32_t b);
-    void hang_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
-    void hang_quadrilateral(const std::array<std::uint32_t, 4>& corner);
-    bool hang(std::uint32_t node);
 
     // Packing.
     struct Block {
@@ -255,92 +249,6 @@ void Rewrite<Family>::coarsen() {
         tree_.open.push_back(e);
     }
     coarsened_ = std::move(families);
-}
-
-/// \return whether the node is there, which then hangs
-template <class Family>
-bool Rewrite<Family>::hang(std::uint32_t node) {
-    if (node == no_node) return false;
-    hanging_[node / 32] |= 1U << node % 32;
-    return true;
-}
-
-template <class Family>
-bool Rewrite<Family>::hang_edge(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t m = tree_.midpoint(a, b);
-    if (!hang(m)) return false;
-    hang_edge(a, m);
-    hang_edge(m, b);
-    return true;
-}
-
-template <class Family>
-void Rewrite<Family>::hang_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    const std::uint32_t ab = tree_.midpoint(a, b);
-    const std::uint32_t bc = tree_.midpoint(b, c);
-    const std::uint32_t ca = tree_.midpoint(c, a);
-    if (ab == no_node || bc == no_node || ca == no_node) return;
-    hang_edge(ab, bc);
-    hang_edge(bc, ca);
-    hang_edge(ca, ab);
-    hang_triangle(a, ab, ca);
-    hang_triangle(ab, b, bc);
-    hang_triangle(ca, bc, c);
-    hang_triangle(ab, bc, ca);
-}
-
-/// \param corner in tensor order
-template <class Family>
-void Rewrite<Family>::hang_quadrilateral(const std::array<std::uint32_t, 4>& corner) {
-    const auto [a, b, c, d] = corner;
-    const std::uint32_t ab = tree_.midpoint(a, b);
-    const std::uint32_t cd = tree_.midpoint(c, d);
-    const std::uint32_t ac = tree_.midpoint(a, c);
-    const std::uint32_t bd = tree_.midpoint(b, d);
-    const bool across = ab != no_node && cd != no_node;
-    const bool along = ac != no_node && bd != no_node;
-    const std::uint32_t m = across && along ? tree_.centre({ab, cd, ac, bd}) : no_node;
-    if (m != no_node && tree_.is_centre(m)) {
-        hang(m);
-        for (const std::uint32_t side : {ab, cd, ac, bd}) hang_edge(side, m);
-        hang_quadrilateral({a, ab, ac, m});
-        hang_quadrilateral({ab, b, m, bd});
-        hang_quadrilateral({ac, m, c, cd});
-        hang_quadrilateral({m, bd, cd, d});
-        return;
-    }
-    if (across) {
-        hang_edge(ab, cd);
-        hang_quadrilateral({a, ab, c, cd});
-        hang_quadrilateral({ab, b, cd, d});
-    }
-    if (along) {
-        hang_edge(ac, bd);
-        hang_quadrilateral({a, b, ac, bd});
-        hang_quadrilateral({ac, bd, c, d});
-    }
-}
-
-template <class Family>
-void Rewrite<Family>::find_hanging() {
-    hanging_.assign((tree_.position.size() + 31) / 32, 0);
-    for (const auto& e : tree_.elements) {
-        if (!tree_.is_leaf(e)) continue;
-        const Topology& t = topology(e.shape);
-        bool whole = true;
-        for (std::size_t i = 0; i < t.edges; ++i) {
-            if (hang_edge(e.corner[t.edge[i][0]], e.corner[t.edge[i][1]])) whole = false;
-        }
-        if (whole) continue;  // a face is refined with its edges
-        for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
-            const auto at = [&](int i) { return e.corner[t.face[f].tensor_corner(i)]; };
-            if (t.face[f].corners == 3) {
-                hang_triangle(at(0), at(1), at(2));
-            } else {
-                hang_quadrilateral({at(0), at(1), at(2), at(3)});
-            }
-        }
-    }
 }
 
 template <class Family>
