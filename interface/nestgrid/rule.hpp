@@ -29,6 +29,9 @@ using NodeMask = std::uint64_t;
 inline constexpr int max_new_nodes = 64;
 inline constexpr int max_children = 64;
 inline constexpr std::uint8_t no_face = 0xFF;
+inline constexpr std::uint8_t no_edge = 0xFF;
+inline constexpr int max_rule_edges = 24;
+inline constexpr int max_rule_faces = 24;
 
 /// How a stencil is summed; derived by make_rule from its parents and weights.
 enum class Mean : std::uint8_t {
@@ -55,6 +58,25 @@ struct Child {
     std::array<std::uint8_t, max_corners> corner{};
     std::int8_t orientation = 1;  ///< -1 where the corners are a mirror image of the parent's
     std::array<std::uint8_t, max_faces> parent_face{};  // derived: face of the parent, or no_face
+    std::array<std::uint8_t, max_edges> rule_edge{};    // derived: the rule's edge it lies on
+    std::array<std::uint8_t, max_faces> rule_face{};    // derived: the least of the rule's faces
+                                                        // around it, or no_face
+};
+
+/// An edge of the parent; or one inside a face of it, whose middle node has its ends for parents:
+/// an element that takes the steps of the rule one by one has it as an edge.
+struct RuleEdge {
+    std::array<std::uint8_t, 2> end{};  ///< nodes of the rule
+    NodeMask inner = 0;                 ///< new nodes on it, its ends left out
+};
+
+/// A face of the parent, or one of the two parts into which an edge inside a face cuts that.
+struct RuleFace {
+    std::uint8_t corners = 0;
+    std::array<std::uint8_t, 4> corner{};  ///< nodes of the rule, a loop as in FaceTopology
+    std::uint8_t parent = no_face;         ///< of a part: the face of the parent it is cut from
+    bool divided = false;                  ///< some child's face is a proper part of it
+    NodeMask inner = 0;                    ///< new nodes in it, its corners left out
 };
 
 struct Rule {
@@ -62,6 +84,9 @@ struct Rule {
     Shape parent = Shape::point;
     std::vector<Stencil> new_nodes;
     std::vector<Child> children;
+    std::vector<RuleEdge> edges{};  // derived: first those of the parent, as in its topology
+    std::vector<RuleFace> faces{};  // derived: likewise; none in two dimensions
+    bool divides_bare_faces = false;  // derived: some face is divided without a node in it
 
     int corner_count() const { return topology(parent).corners; }
     int new_node_count() const { return static_cast<int>(new_nodes.size()); }

@@ -12,6 +12,7 @@
 
 #include <nestgrid/error.hpp>
 #include <nestgrid/rule.hpp>
+#include <nestgrid/rule_parts.hpp>
 
 namespace nestgrid {
 
@@ -252,7 +253,11 @@ inline std::optional<std::string> find_violation(const Rule& rule) {
 
 inline Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_nodes,
                       std::vector<Child> children) {
-    Rule rule{std::move(name), parent, std::move(new_nodes), std::move(children)};
+    Rule rule;
+    rule.name = std::move(name);
+    rule.parent = parent;
+    rule.new_nodes = std::move(new_nodes);
+    rule.children = std::move(children);
     if (auto violation = find_violation(rule)) throw InvalidInput(*violation);
     for (Stencil& s : rule.new_nodes) detail::complete_stencil(rule, s);
     const std::vector<unsigned> incidence = detail::face_incidence(rule);
@@ -269,6 +274,8 @@ inline Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_n
             }
         }
     }
+    detail::find_parts(rule);
+    detail::place_in_parts(rule);
     return rule;
 }
 

@@ -35,6 +35,7 @@ enum class Shape : std::uint8_t {
 };
 
 inline constexpr int max_corners = 8;
+inline constexpr int max_edges = 12;
 inline constexpr int max_faces = 6;
 inline constexpr int shape_count = 8;
 
@@ -56,7 +57,7 @@ struct Topology {
     std::uint8_t corners = 0;
     std::uint8_t edges = 0;
     std::uint8_t faces = 0;
-    std::array<std::array<std::uint8_t, 2>, 12> edge{};
+    std::array<std::array<std::uint8_t, 2>, max_edges> edge{};
     std::array<FaceTopology, max_faces> face{};
     std::array<Point, max_corners> reference{};  ///< corners of the reference element
 };

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include <nestgrid/closed.hpp>
 #include <nestgrid/error.hpp>
 #include <nestgrid/hanging.hpp>
 #include <nestgrid/mean.hpp>
@@ -47,6 +48,7 @@ struct Split {
 struct Needs {
     bool keys = false;
     bool positions = false;
+    bool closed = false;  ///< closed edges and faces, closed.hpp; needs the other two
 };
 
 namespace detail {
@@ -94,6 +96,7 @@ struct ElementState {
     static constexpr bool carries_keys = needs.keys && !detail::by_heart<Grid>(Feature::own_keys);
     static constexpr bool carries_positions =
         needs.positions && !detail::by_heart<Grid>(Feature::own_positions);
+    using Closed = ClosedParts<Real, components, capacity>;
 
     ElementOf<Grid> element;
     Context<Grid>* context;      ///< of the task that walks
@@ -110,6 +113,7 @@ struct ElementState {
     [[no_unique_address]] detail::CarriedIf<carries_keys, std::array<NodeKey, capacity>> key;
     [[no_unique_address]] detail::CarriedIf<carries_positions, std::array<Point, capacity>>
         position;
+    [[no_unique_address]] detail::CarriedIf<needs.closed, Closed> closed;
 
     int corner_count() const { return topology(shape).corners; }
 };
@@ -123,6 +127,7 @@ template <class Grid, class Field, Needs needs = Needs{}>
 class Traversal {
     static_assert(require_nested_grid<Grid>());
     static_assert(require_nodal_field<Field, Grid>());
+    static_assert(!needs.closed || (needs.keys && needs.positions));
 
 public:
     using State = ElementState<Grid, Field, needs>;
@@ -210,6 +215,26 @@ private:
     template <class Visitor>
     void descend(const State& s, const Split& split, NodeMask interpolated, NodeKey* keys,
                  Visitor& visitor) const;
+
+    /// The nodes of one split.
+    struct Nodes {
+        NodeMask interpolated;  // by S
+        NodeMask mean;          // by S, or because they hang
+        NodeKey* key;
+        std::array<Real, node_capacity_ * State::components> value;
+        std::array<Point, State::carries_positions ? node_capacity_ : 1> position;
+    };
+    /// The edges and faces of a rule that a split closes.
+    struct Parts;
+
+    /// Enters the children; `parts` is null where nothing around them is closed.
+    template <class Visitor>
+    void enter(const State& s, const Rule& rule, const Nodes& nodes, const Parts* parts,
+               Visitor& visitor) const;
+    template <class Visitor>
+    void close_and_enter(const State& s, const Rule& rule, const Nodes& nodes,
+                         Visitor& visitor) const;
+    void close(const State& s, const Rule& rule, const Nodes& nodes, Parts& parts) const;
 
     /// Values of the new nodes behind those of the corners, eq. (2).
     void project(const State& s, const Split& split, NodeMask interpolated, Real* value) const;

@@ -83,6 +83,7 @@ bool Traversal<Grid, Field, needs>::make_coarse(std::size_t i, State& s) const {
     s.interpolated = 0;
     s.made_by = nullptr;
     s.child = 0;
+    if constexpr (needs.closed) s.closed.any = false;
     if constexpr (may_offer<Grid>(Feature::masked)) {
         if (offers(*grid_, Feature::masked) && detail::call_masked(*grid_, *s.context, s.element)) {
             return false;
@@ -170,18 +171,33 @@ template <class Visitor>
 void Traversal<Grid, Field, needs>::descend(const State& s, const Split& split,
                                             NodeMask interpolated, NodeKey* keys,
                                             Visitor& visitor) const {
-    constexpr std::size_t c_count = State::components;
     const Rule& rule = *split.rule;
+    Nodes nodes;
+    nodes.interpolated = interpolated;
+    nodes.mean = interpolated | split.constrained;
+    nodes.key = keys;
+    project(s, split, interpolated, nodes.value.data());
+    if constexpr (State::carries_positions) {
+        if (!own_positions_) project_positions(s, split, interpolated, nodes.position.data());
+    }
+    if constexpr (needs.closed) {
+        if (s.closed.any || (nodes.mean & rule.all()) != 0 || rule.divides_bare_faces) {
+            return close_and_enter(s, rule, nodes, visitor);
+        }
+    }
+    enter(s, rule, nodes, nullptr, visitor);
+}
+
+template <class Grid, class Field, Needs needs>
+template <class Visitor>
+void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, const Nodes& nodes,
+                                          [[maybe_unused]] const Parts* parts,
+                                          Visitor& visitor) const {
+    constexpr std::size_t c_count = State::components;
     const auto corners = static_cast<std::size_t>(s.corner_count());
     std::array<Element, detail::child_capacity<Grid>()> elements;
     detail::call_children(*grid_, *s.context, s.element,
                           std::span<Element>(elements.data(), rule.children.size()));
-    std::array<Real, node_capacity_ * c_count> value;
-    project(s, split, interpolated, value.data());
-    std::array<Point, State::carries_positions ? node_capacity_ : 1> position;
-    if constexpr (State::carries_positions) {
-        if (!own_positions_) project_positions(s, split, interpolated, position.data());
-    }
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         const Child& child = rule.children[c];
         if constexpr (may_offer<Grid>(Feature::masked)) {
@@ -212,13 +228,18 @@ void Traversal<Grid, Field, needs>::descend(const State& s, const Split& split,
         for (std::size_t i = 0; i < t.corners; ++i) {
             const std::size_t n = child.corner[i];
             for (std::size_t q = 0; q < c_count; ++q) {
-                k.value[i * c_count + q] = value[n * c_count + q];
+                k.value[i * c_count + q] = nodes.value[n * c_count + q];
             }
-            if constexpr (State::carries_keys) k.key[i] = keys[n];
-            if constexpr (State::carries_positions) k.position[i] = position[n];
-            const NodeMask flag =
-                (n < corners ? NodeMask{s.interpolated} >> n : interpolated >> (n - corners)) & 1U;
+            if constexpr (State::carries_keys) k.key[i] = nodes.key[n];
+            if constexpr (State::carries_positions) k.position[i] = nodes.position[n];
+            const NodeMask flag = (n < corners ? NodeMask{s.interpolated} >> n
+                                               : nodes.interpolated >> (n - corners)) &
+                                  1U;
             k.interpolated |= static_cast<std::uint8_t>(flag << i);
+        }
+        if constexpr (needs.closed) {
+            k.closed.any = false;
+            if (parts != nullptr) parts->give(child, t, k.closed);
         }
         inspect(k, visitor);
     }
@@ -277,3 +298,5 @@ void Traversal<Grid, Field, needs>::project_positions(const State& s, const Spli
 }
 
 }  // namespace nestgrid
+
+#include <nestgrid/closed_steps.hpp>

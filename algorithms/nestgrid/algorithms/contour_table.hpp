@@ -1,101 +1,124 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of the sign patterns of a simplex, generated from its topology (paper, section 8).
+// Contours of the sign patterns of every shape, generated from its topology the first time a shape
+// is met (paper, section 8).
 //
-// Going around a face counterclockwise seen from outside, the contour on it runs from the edge
-// where the sign falls to the edge where it rises. Every cut edge of an element falls on one of its
-// two faces and rises on the other, so these segments link up to loops. A triangular face has at
-// most one segment, so it is the same from both sides, reversed.
+// Invariants:
+//   - the contour on a face is a function of the face alone: its signs and, where the signs of a
+//     quadrilateral alternate, which of its diagonals is joined across it;
+//   - every cut edge falls on one of its two faces and rises on the other, so the segments on the
+//     faces link up to loops, and every cut edge lies on one of them;
+//   - no edge inside a filled loop joins two vertices on one face of the element.
+// Consequences: elements on both sides of a face draw the same, in opposite directions; no edge
+// inside one element is an edge of another.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include <nestgrid/shape.hpp>
 
 namespace nestgrid {
 
-/// The contour of one sign pattern: cut edges in a loop; the segment from edge i to edge i + 1 lies
-/// in face[i]. Seen along the loop, the corners with U >= C lie behind the polygon it spans.
-struct Contour {
+/// One loop of a contour: cut edges in order; the segment from edge i to edge i + 1 lies in
+/// face[i]. Seen along the loop, the corners with U >= C lie behind the disc it bounds.
+/// In two dimensions a "loop" is a segment of two cut edges, and face[i] the side cut at edge i.
+struct ContourLoop {
     std::uint8_t count = 0;
-    std::array<std::uint8_t, 4> edge{};
-    std::array<std::uint8_t, 4> face{};
+    std::array<std::uint8_t, max_edges> edge{};
+    std::array<std::uint8_t, max_edges> face{};
+    std::uint8_t positive = 0;        ///< region of the corners with U >= C along it
+    std::uint8_t negative = 0;        ///< region of those with U < C
+    std::uint8_t triangle_count = 0;  ///< 0 where the loop is filled around a vertex in its middle
+    std::array<std::array<std::uint8_t, 3>, max_edges - 2> triangle{};  ///< of places in the loop
+    bool any_diagonal = false;  ///< a loop of four that may be cut along either diagonal
 };
 
-namespace detail {
+/// The contour of one sign pattern and one choice on every alternating face.
+struct Contour {
+    std::uint8_t loop_count = 0;
+    std::array<ContourLoop, 4> loop{};
+    /// Corners joined on the surface of the element, one number per connected region.
+    std::array<std::uint8_t, max_corners> region{};
+};
 
-inline std::uint8_t edge_between(const Topology& t, std::uint8_t a, std::uint8_t b) {
-    for (std::uint8_t e = 0; e < t.edges; ++e) {
-        if ((t.edge[e][0] == a && t.edge[e][1] == b) || (t.edge[e][0] == b && t.edge[e][1] == a)) {
-            return e;
-        }
-    }
-    return 0;
-}
+/// A segment of the contour on a face, as places in its loop of corners: it leaves through side
+/// `falls`, from corner `falls` with U >= C to the next one, and comes back through side `rises`.
+struct FaceSegment {
+    std::uint8_t falls = 0;
+    std::uint8_t rises = 0;
+};
 
-/// Bit i of `pattern` says that corner i has U >= C.
-inline Contour make_contour(Shape shape, unsigned pattern) {
-    const Topology& t = topology(shape);
-    Contour contour;
-    const auto positive = [&](std::uint8_t corner) { return (pattern >> corner & 1U) != 0; };
-    if (t.dimension == 2) {
-        // The "loop" is one segment, from the falling edge to the rising one.
-        for (std::uint8_t f = 0; f < t.faces; ++f) {
-            const bool falls = positive(t.face[f].corner[0]) && !positive(t.face[f].corner[1]);
-            const bool rises = !positive(t.face[f].corner[0]) && positive(t.face[f].corner[1]);
-            if (!falls && !rises) continue;
-            const std::uint8_t at = falls ? 0 : 1;
-            contour.edge[at] = edge_between(t, t.face[f].corner[0], t.face[f].corner[1]);
-            contour.face[at] = f;
-            contour.count = 2;
+/// The segments on a face. Bit i of `signs` says that corner i of the loop has U >= C; `joined`
+/// says for an alternating quadrilateral that those corners are joined across it.
+struct FaceContour {
+    std::uint8_t count = 0;
+    std::array<FaceSegment, 2> segment{};
+};
+
+constexpr FaceContour face_contour(std::size_t corners, unsigned signs, bool joined) {
+    FaceContour contour;
+    const auto positive = [&](std::size_t i) { return (signs >> (i % corners) & 1U) != 0; };
+    const bool alternating = corners == 4 && (signs == 5 || signs == 10);
+    for (std::size_t i = 0; i < corners; ++i) {
+        if (!positive(i) || positive(i + 1)) continue;
+        std::size_t rises = 0;
+        if (alternating) {
+            rises = (joined ? i + 1 : i + corners - 1) % corners;
+        } else {
+            while (positive(rises) || !positive(rises + 1)) ++rises;
         }
-        return contour;
-    }
-    std::array<int, 12> next{};
-    std::array<std::uint8_t, 12> face_of{};
-    next.fill(-1);
-    for (std::uint8_t f = 0; f < t.faces; ++f) {
-        const FaceTopology& face = t.face[f];
-        int falls = -1;
-        int rises = -1;
-        for (std::size_t i = 0; i < face.corners; ++i) {
-            const std::uint8_t a = face.corner[i];
-            const std::uint8_t b = face.corner[(i + 1U) % face.corners];
-            if (positive(a) && !positive(b)) falls = edge_between(t, a, b);
-            if (!positive(a) && positive(b)) rises = edge_between(t, a, b);
-        }
-        if (falls < 0) continue;
-        next[static_cast<std::size_t>(rises)] = falls;
-        face_of[static_cast<std::size_t>(rises)] = f;
-    }
-    for (std::size_t start = 0; start < next.size(); ++start) {
-        if (next[start] < 0) continue;
-        std::size_t e = start;
-        do {
-            contour.edge[contour.count] = static_cast<std::uint8_t>(e);
-            contour.face[contour.count++] = face_of[e];
-            e = static_cast<std::size_t>(next[e]);
-        } while (e != start);
-        break;  // a simplex has one loop
+        contour.segment[contour.count++] = {static_cast<std::uint8_t>(i),
+                                            static_cast<std::uint8_t>(rises)};
     }
     return contour;
 }
 
-}  // namespace detail
+/// The contours of one shape.
+class ContourTable {
+public:
+    /// The table of a shape of dimension 2 or 3.
+    static const ContourTable& of(Shape shape);
 
-/// The contours of all sign patterns of a triangle or tetrahedron.
-inline const std::array<Contour, 16>& contour_table(Shape simplex) {
-    static const auto build = [](Shape shape) {
-        std::array<Contour, 16> table;
-        for (unsigned pattern = 0; pattern < 1U << topology(shape).corners; ++pattern) {
-            table[pattern] = detail::make_contour(shape, pattern);
+    /// Faces whose signs alternate, one bit each; bit i of `pattern` says that corner i has U >= C.
+    /// In two dimensions bit 0 stands for the element itself.
+    unsigned alternating(unsigned pattern) const { return alternating_[pattern]; }
+
+    /// \param joined which alternating faces join their corners with U >= C, one bit each
+    const Contour& at(unsigned pattern, unsigned joined = 0) const {
+        unsigned choice = 0;
+        unsigned place = 0;
+        for (unsigned left = alternating_[pattern]; left != 0; left &= left - 1) {
+            choice |= (joined >> std::countr_zero(left) & 1U) << place++;
         }
-        return table;
-    };
-    static const std::array<Contour, 16> triangle = build(Shape::triangle);
-    static const std::array<Contour, 16> tetrahedron = build(Shape::tetrahedron);
-    return simplex == Shape::triangle ? triangle : tetrahedron;
-}
+        return contours_[first_[pattern] + choice];
+    }
+
+private:
+    explicit ContourTable(Shape shape);
+    Contour make_contour(unsigned pattern, unsigned joined) const;
+    void find_regions(Contour& contour, unsigned pattern, unsigned joined) const;
+    void fill(ContourLoop& loop) const;
+    bool on_one_face(std::uint8_t edge_a, std::uint8_t edge_b) const;
+    Point middle(std::uint8_t edge) const;
+
+    /// The loop of face f; of the element itself in two dimensions.
+    FaceTopology face(std::size_t f) const;
+    std::size_t face_count() const { return topology_->dimension == 2 ? 1 : topology_->faces; }
+    std::uint8_t edge_between(std::uint8_t a, std::uint8_t b) const;
+
+    const Topology* topology_;
+    std::vector<std::uint8_t> alternating_;
+    std::vector<std::uint32_t> first_;
+    std::vector<Contour> contours_;
+};
 
 }  // namespace nestgrid
+
+#include <nestgrid/algorithms/contour_table_steps.hpp>

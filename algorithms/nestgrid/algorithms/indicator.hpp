@@ -57,6 +57,10 @@ public:
         return largest;
     }
 
+    /// Whether elements that stop conform on a grid without hanging nodes, because each split makes
+    /// one new node at most (bisection): a saturated S stops all elements at it, or none.
+    bool stops_conform() const { return largest_split_ <= 1; }
+
     /// Nodes that hang, where the grid did not say so itself: hand them to every Traversal.
     const HangingNodes* hanging() const { return hanging_.size() > 0 ? &hanging_ : nullptr; }
 
@@ -106,6 +110,7 @@ private:
     double greatest_ = -std::numeric_limits<double>::infinity();
     std::size_t node_count_ = 0;
     std::uint64_t epoch_ = 0;
+    std::size_t largest_split_ = 0;  // number of new nodes
 };
 
 namespace detail {
@@ -144,6 +149,7 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     using Real = typename Field::value_type;
     constexpr double limit = std::numeric_limits<Real>::max() / 8;
     node_count_ = grid.node_count();
+    largest_split_ = detail::new_node_capacity<Grid>();
     dense_.assign(node_count_, {});
     std::vector<float> bound(node_count_, 0.0F);  // of finer nodes at first, then the node's own
     for (std::size_t i = 0; i < node_count_; ++i)
@@ -203,6 +209,7 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
             }
             if (split.rule == nullptr) return;
             const Rule& rule = *split.rule;
+            largest_split_ = std::max(largest_split_, rule.new_nodes.size());
             std::array<Real, max_corners + max_new_nodes> value;
             std::array<Real, max_new_nodes * stride> given;
             for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];

@@ -1,23 +1,29 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Adaptive isosurfaces (isolines in two dimensions) on simplices (paper, sections 3, 4.4 and 8).
+// Adaptive isosurfaces (isolines in two dimensions) on any shapes (paper, sections 3, 4.4 and 8).
 //
 // Invariants:
 //   - a node is inside where P_S U >= C; an edge is cut where its ends differ, from its lower to
-//     its higher value, at a fraction kept in [2^-20, 1 - 2^-20] of its length;
-//   - a vertex is named by the keys of the two nodes of the edge it cuts.
-// Consequences, on a hierarchy whose elements conform and with a saturated criterion: every edge
-// of the surface belongs to two triangles, or to one on the boundary of the domain; shared
-// vertices are equal to the last bit; values equal to C are no special case, and no triangle
-// degenerates to a point.
+//     its higher value, at a fraction kept in [2^-20, 1 - 2^-20] of its maximal edge;
+//   - a vertex is named by the keys of the two nodes of the maximal edge it cuts;
+//   - the contour on a face is a function of the face alone, or what the finer side draws there.
+// Consequences, with a saturated criterion: every edge of the surface belongs to two triangles, or
+// to one on the boundary of the domain; shared vertices are equal to the last bit; values equal to
+// C are no special case, and no triangle degenerates to a point. The proof: docs/closed_surfaces.md.
+//
+// Grids whose elements stop without conforming are walked twice: first what the finer sides draw on
+// closed faces is recorded (transition_contours.hpp), then everything is drawn.
 #pragma once
 
 #include <functional>
 
-#include <nestgrid/algorithms/contour_table.hpp>
+#include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/node_gradients.hpp>
 #include <nestgrid/algorithms/surface.hpp>
+#include <nestgrid/algorithms/transition_contours.hpp>
+#include <nestgrid/shape_functions.hpp>
 
 namespace nestgrid {
 
@@ -38,6 +44,8 @@ struct IsosurfaceOptions {
     bool cap = false;
     /// Keep the extracted elements and which triangle comes from which.
     bool elements = true;
+    /// Keep where the corners of each triangle lie in its element, in reference coordinates.
+    bool reference = false;
     /// Compute every shared vertex again from every element and throw a GridError where one bit
     /// differs: finds keys and positions that do not belong together.
     bool verify = false;
@@ -60,100 +68,236 @@ namespace detail {
 
 struct Cancelled {};
 
-template <class Grid, class Field, class S, class Indicator>
+template <class Sink>
+concept IndexedSink = !requires { requires !Sink::indexed; };
+
+/// Draws the level sets of several isovalues in one traversal; each has a sink of its own.
+template <class Grid, class Field, class S, class Indicator, class Sink>
 class IsosurfaceVisitor {
 public:
-    static constexpr Needs needs{.keys = true, .positions = true};
+    static constexpr Needs needs{.keys = true, .positions = true, .closed = true};
     static constexpr int dimension = Grid::dimension;
+    static constexpr bool indexed = IndexedSink<Sink>;
     using Walk = Traversal<Grid, Field, needs>;
     using State = typename Walk::State;
-    using Result = Isosurface<dimension, ElementOf<Grid>>;
+    static constexpr std::size_t attribute_count = State::components - 1;
+    using Number = std::uint32_t;
 
-    IsosurfaceVisitor(const Walk& walk, double isovalue, const S& criterion,
-                      const Indicator& indicator, const IsosurfaceOptions& options)
-        : walk_{&walk},
-          iso_{isovalue},
-          criterion_{&criterion},
-          indicator_{&indicator},
-          options_{&options} {}
+    struct Level {
+        double isovalue;
+        Sink sink;
+        std::uint64_t extracted = 0;
+        double error_bound = 0;
+    };
+
+    IsosurfaceVisitor(const Walk& walk, std::span<const double> isovalues, std::vector<Sink> sinks,
+                      const S& criterion, const Indicator& indicator,
+                      const IsosurfaceOptions& options);
+
+    /// Whether elements may stop without conforming, so that there is something to record.
+    bool must_record() const;
+    void run();
 
     Decision inspect(const State& s, const Split& split);
     void extract(const State& s);
-    Result take();
 
-private:
-    using Index = std::uint32_t;
-
-    struct Vertex {  // where it lies: on the edge from node `low` to node `high`
-        Index low;
-        Index high;
-        double fraction;
-    };
-
-    bool inside(const State& s, std::size_t corner) const {
-        return static_cast<double>(s.value[corner * State::components]) >= iso_;
+    std::size_t level_count() const { return layers_.size(); }
+    const Level& level(std::size_t i) const { return layers_[i]; }
+    TraversalCounts counts() const { return counts_; }
+    std::size_t table_bytes() const;
+    std::size_t stack_bytes() const {
+        return static_cast<std::size_t>(deepest_ + 1) * sizeof(State);
     }
 
-    bool of_interest(const State& s, double bound) const;
-    Index node_vertex(std::size_t corner);
-    Index edge_vertex(const State& s, std::size_t a, std::size_t b);
-    Index add_vertex(KeyPair key, const Point& x, const Vertex& where);
-    void add_simplex(typename Surface<dimension, ElementOf<Grid>>::Simplex simplex, const State& s);
-    void add_contour(const State& s, const Contour& contour);
-    void add_cap(const State& s);
+private:
+    friend class ContourFilling<IsosurfaceVisitor>;
+
+    struct Cut {  // a vertex, on the edge from the lower to the higher of two nodes
+        Point x;
+        std::array<NodeKey, 2> node;
+        double fraction;
+        std::array<double, attribute_count> attributes;
+    };
+    struct Where {  // the nodes a vertex lies between, for its normal
+        Number low;
+        Number high;
+        double fraction;
+        Point around{0, 0, 0};  // area vectors of the triangles at it
+    };
+    struct Layer : Level {
+        KeyTable<KeyPair, Number> vertex_of;
+        TransitionContours<Cut> transitions;
+        std::vector<Where> where;
+        Number vertex_count = 0;
+    };
+    using Vertex = std::conditional_t<indexed, Number, Point>;
+    struct Local {  // a vertex of the element being drawn
+        Vertex vertex;
+        Point reference;
+    };
+    static constexpr Number none = std::numeric_limits<Number>::max();
+
+    // isosurface_steps.hpp
+    static bool inside(double value, const Layer& layer) { return value >= layer.isovalue; }
+    unsigned pattern(const State& s, const Layer& layer) const;
+    bool of_interest(const State& s, double bound, const Layer& layer) const;
+    bool joined(const State& s, const FaceTopology& face) const;
+    static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s);
+    void add_error(const State& s, Layer& layer) const;
     void load_gradients(const State& s);
-    Point projected_gradient(const State& s, std::size_t corner) const;
+    void record(const State& s, Layer& layer, unsigned pattern);
+    void draw(const State& s, Layer& layer, unsigned pattern);
+    unsigned choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating);
+    bool adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
+               unsigned signs, bool& is_joined);
+    void set_normals(Layer& layer);
+
+    // isosurface_cap.hpp
+    struct CapPoint {  // a corner of a polygon: corner `from` of the face, or its cut side `from`
+        std::uint8_t from;
+        bool cut;
+    };
+    struct CapPolygon {  // sides from each point to the next
+        std::size_t count = 0;
+        std::array<CapPoint, 8> point;
+        std::array<std::uint8_t, 8> edge;  // of the element, under a side; or no_edge
+    };
+    template <class Function>
+    void for_each_cap_polygon(const State& s, unsigned pattern, Function&& function) const;
+    void record_cap(const State& s, Layer& layer, unsigned pattern);
+    void draw_cap(const State& s, Layer& layer, unsigned pattern);
+    std::vector<Number> cap_chain(const State& s, Layer& layer, const FaceTopology& face,
+                                  const CapPolygon& polygon, std::size_t side);
+    NodeKey side_key(const State& s, std::uint8_t edge, const FaceTopology& face,
+                     std::uint8_t from, bool forward) const;
+
+    // isosurface_vertices.hpp: cuts, vertices, and what ContourFilling asks
+    std::uint8_t edge_between(const State& s, std::uint8_t a, std::uint8_t b) const;
+    KeyPair name(const State& s, std::uint8_t edge) const;
+    Cut make_cut(const State& s, const Layer& layer, std::uint8_t edge) const;
+    Cut make_node(const State& s, std::size_t corner) const;
+    Vertex add(const KeyPair& name, const Cut& cut);
+    Vertex add_unnamed(const Point& x, std::span<const double> attributes);
+    Number number_of(const Vertex& vertex, const Point& reference);
+    Number vertex(std::uint8_t edge);
+    Number node_vertex(std::size_t corner);
+    Number recorded(Number index, const FaceTopology& face);
+    std::span<const Number> chain(std::uint8_t edge) const;
+    Point position(Number local) const;
+    bool wants_reference() const { return options_->reference || attribute_count > 0; }
+    std::array<double, attribute_count> attributes_at(const Point& reference) const;
+    Number middle(std::span<const Number> of);
+    Number inside(const Point& reference);
+    void triangle(Number a, Number b, Number c);
+    void simplex(const std::array<Number, static_cast<std::size_t>(dimension)>& locals);
+    void add_boundary(const std::array<Number, static_cast<std::size_t>(dimension - 1)>& locals);
     std::array<Point, max_corners> own_gradients(const State& s) const;
+    Point projected_gradient(const State& s, std::size_t corner) const;
     Point node_gradient(const State& father, const Rule& rule, std::size_t node) const;
-    void compute_normals();
 
     const Walk* walk_;
-    double iso_;
     const S* criterion_;
     const Indicator* indicator_;
     const IsosurfaceOptions* options_;
-    Result result_;
+    std::vector<Layer> layers_;
+    TraversalCounts counts_;
+    bool recording_ = false;
     double element_bound_ = 0;  // of the element inspected last
     int deepest_ = 0;
-    KeyTable<KeyPair, Index> vertex_of_;
-    std::array<NodeKey, max_corners> key_{};  // of the element being extracted
+    NodeGradients gradients_;
+
+    // The element being drawn.
+    const State* state_ = nullptr;
+    Layer* layer_ = nullptr;
+    bool loaded_ = false;
+    bool begun_ = false;
+    std::array<NodeKey, max_corners> key_{};
     std::array<Point, max_corners> x_{};
-    std::array<Index, max_corners> slot_{};
-    KeyTable<NodeKey, Index> gradient_of_;  // only for normals
-    std::vector<Point> gradient_;
-    std::vector<Vertex> where_;
+    std::array<double, max_corners> u_{};  // U - C at the corners
+    std::vector<Local> local_;
+    std::array<Number, max_edges> on_edge_{};
+    std::array<Number, max_corners> on_corner_{};
+    std::uint16_t chained_ = 0;  // edges with a chain behind them
+    std::array<std::vector<Number>, max_edges> chain_;
 };
 
 }  // namespace detail
 
-/// The isosurface U = isovalue of component 0 of the field under the projection with `criterion`.
+/// The isosurfaces U = isovalues[i] of component 0 of the field under the projection with
+/// `criterion`, in one traversal, each into its own sink (surface.hpp).
 /// \param indicator of the same grid and field: its bounds guide the search. HierarchicalIndicator,
 ///        or any class with its stop(), bound(), hanging() and epoch()
-/// \throw GridError where an element that must be extracted is not a simplex, where the field has
-///        no value, or where the grid has changed since the indicator was computed
-/// \throw InvalidInput where the isovalue is not a number
+/// \return what is known beside the surfaces, one per isovalue; `surface` stays empty
+/// \throw GridError where the field has no value, or where the grid has changed since the indicator
+///        was computed
+/// \throw InvalidInput where an isovalue is not a number or there is not one sink for each; for
+///        normals or caps into a sink without indices
+template <class Grid, class Field, Criterion S, class Indicator, class Sink>
+std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
+    const Grid& grid, const Field& field, std::span<const double> isovalues,
+    std::vector<Sink> sinks, const S& criterion, const Indicator& indicator,
+    const IsosurfaceOptions& options = {}) {
+    static_assert(Grid::dimension >= 2, "isosurfaces need a grid of dimension 2 or 3");
+    for (const double isovalue : isovalues) {
+        if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
+    }
+    if (sinks.size() != isovalues.size()) {
+        throw InvalidInput(std::to_string(isovalues.size()) + " isovalues need as many sinks, not " +
+                           std::to_string(sinks.size()));
+    }
+    if (!detail::IndexedSink<Sink> && (options.normals || options.cap)) {
+        throw InvalidInput("a stream of triangles has neither normals nor caps");
+    }
+    if (indicator.epoch() != epoch(grid)) {
+        throw GridError("the grid has changed since its indicator was computed");
+    }
+    using Visitor = detail::IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>;
+    const typename Visitor::Walk walk(grid, field, indicator.hanging());
+    Visitor visitor(walk, isovalues, std::move(sinks), criterion, indicator, options);
+    bool cancelled = false;
+    try {
+        visitor.run();
+    } catch (const detail::Cancelled&) {
+        cancelled = true;
+    }
+    std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> results(isovalues.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const auto& level = visitor.level(i);
+        results[i].counts = visitor.counts();
+        results[i].counts.extracted = level.extracted;
+        results[i].error_bound = level.error_bound;
+        results[i].cancelled = cancelled;
+        results[i].table_bytes = visitor.table_bytes();
+        results[i].stack_bytes = visitor.stack_bytes();
+    }
+    return results;
+}
+
+/// The same as indexed surfaces.
+template <class Grid, class Field, Criterion S, class Indicator>
+std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> isosurfaces(
+    const Grid& grid, const Field& field, std::span<const double> isovalues, const S& criterion,
+    const Indicator& indicator, const IsosurfaceOptions& options = {}) {
+    using Sink = SurfaceSink<Grid::dimension, ElementOf<Grid>>;
+    std::vector<typename Sink::Target> surfaces(isovalues.size());
+    std::vector<Sink> sinks;
+    for (auto& surface : surfaces) sinks.emplace_back(surface, options.elements);
+    auto results = extract_isosurfaces(grid, field, isovalues, std::move(sinks), criterion,
+                                       indicator, options);
+    for (std::size_t i = 0; i < results.size(); ++i) results[i].surface = std::move(surfaces[i]);
+    return results;
+}
+
+/// One isosurface.
 template <class Grid, class Field, Criterion S, class Indicator>
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
                                                         double isovalue, const S& criterion,
                                                         const Indicator& indicator,
                                                         const IsosurfaceOptions& options = {}) {
-    static_assert(Grid::dimension >= 2, "isosurfaces need a grid of dimension 2 or 3");
-    if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
-    if (indicator.epoch() != epoch(grid)) {
-        throw GridError("the grid has changed since its indicator was computed");
-    }
-    using Visitor = detail::IsosurfaceVisitor<Grid, Field, S, Indicator>;
-    const typename Visitor::Walk walk(grid, field, indicator.hanging());
-    Visitor visitor(walk, isovalue, criterion, indicator, options);
-    try {
-        walk.run(visitor);
-    } catch (const detail::Cancelled&) {
-        auto part = visitor.take();
-        part.cancelled = true;
-        return part;
-    }
-    return visitor.take();
+    return std::move(isosurfaces(grid, field, std::span<const double>(&isovalue, 1), criterion,
+                                 indicator, options)
+                         .front());
 }
 
 /// The same with S from options.threshold.

@@ -6,10 +6,69 @@
 
 #include <nestgrid/algorithms/isosurface.hpp>
 
+#define NESTGRID_VISITOR                                                     \
+    template <class Grid, class Field, class S, class Indicator, class Sink> \
+    auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>
+
 namespace nestgrid::detail {
 
-template <class Grid, class Field, class S, class Indicator>
-bool IsosurfaceVisitor<Grid, Field, S, Indicator>::of_interest(const State& s, double bound) const {
+template <class Grid, class Field, class S, class Indicator, class Sink>
+IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
+    const Walk& walk, std::span<const double> isovalues, std::vector<Sink> sinks,
+    const S& criterion, const Indicator& indicator, const IsosurfaceOptions& options)
+    : walk_{&walk}, criterion_{&criterion}, indicator_{&indicator}, options_{&options} {
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        layers_.push_back({{isovalues[i], std::move(sinks[i])}, {}, {}, {}, 0});
+    }
+}
+
+NESTGRID_VISITOR::must_record() const -> bool {
+    if constexpr (dimension == 2) {
+        return false;
+    } else {
+        const bool hanging = offers(walk_->grid(), Feature::constrained) ||
+                             indicator_->hanging() != nullptr;
+        if (hanging) return true;
+        if (std::is_same_v<S, Exact>) return false;
+        if constexpr (requires { indicator_->stops_conform(); }) {
+            return !indicator_->stops_conform();
+        } else {
+            return true;
+        }
+    }
+}
+
+NESTGRID_VISITOR::run() -> void {
+    if (must_record()) {
+        recording_ = true;
+        walk_->run(*this);
+        recording_ = false;
+        counts_ = {};
+        for (Layer& layer : layers_) layer.transitions.finish();
+    }
+    walk_->run(*this);
+    if (!options_->normals) return;
+    for (Layer& layer : layers_) set_normals(layer);
+}
+
+NESTGRID_VISITOR::table_bytes() const -> std::size_t {
+    std::size_t bytes = gradients_.memory_bytes();
+    for (const Layer& layer : layers_) {
+        bytes += layer.vertex_of.memory_bytes() + layer.transitions.memory_bytes() +
+                 layer.where.capacity() * sizeof(Where);
+    }
+    return bytes;
+}
+
+NESTGRID_VISITOR::pattern(const State& s, const Layer& layer) const -> unsigned {
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+        bits |= unsigned{inside(s.value[i * State::components], layer)} << i;
+    }
+    return bits;
+}
+
+NESTGRID_VISITOR::of_interest(const State& s, double bound, const Layer& layer) const -> bool {
     double lo = std::numeric_limits<double>::infinity();
     double hi = -lo;
     for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
@@ -18,302 +77,248 @@ bool IsosurfaceVisitor<Grid, Field, S, Indicator>::of_interest(const State& s, d
         hi = std::max(hi, v);
     }
     // Rounding is monotone: a difference within the bound is never rounded beyond it.
-    const bool reaches_up = hi >= iso_ || (bound > 0 && iso_ - hi <= bound);
-    const bool reaches_down = lo < iso_ || (bound > 0 && lo - iso_ <= bound);
+    const bool reaches_up = hi >= layer.isovalue || (bound > 0 && layer.isovalue - hi <= bound);
+    const bool reaches_down = lo < layer.isovalue || (bound > 0 && lo - layer.isovalue <= bound);
     if (!reaches_up) return false;
     if (reaches_down) return true;
     return options_->cap && walk_->boundary(s) != 0;
 }
 
-template <class Grid, class Field, class S, class Indicator>
-Decision IsosurfaceVisitor<Grid, Field, S, Indicator>::inspect(const State& s, const Split& split) {
-    TraversalCounts& counts = result_.counts;
-    ++counts.calls;
-    if ((counts.calls & 0xFFFFU) == 0 && options_->progress && !options_->progress(counts)) {
+NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
+    ++counts_.calls;
+    if ((counts_.calls & 0xFFFFU) == 0 && options_->progress && !options_->progress(counts_)) {
         throw Cancelled{};
     }
     element_bound_ = split.rule == nullptr ? 0.0 : indicator_->bound(split.keys);
-    if (!of_interest(s, element_bound_)) return {Visit::skip, 0};
-    ++counts.visited;
+    const bool interesting = std::any_of(layers_.begin(), layers_.end(), [&](const Layer& layer) {
+        return of_interest(s, element_bound_, layer);
+    });
+    if (!interesting) return {Visit::skip, 0};
+    ++counts_.visited;
     if (split.rule == nullptr) return {Visit::stop, 0};
     const NodeMask interpolated =
         (*criterion_)(NewNodes{*split.rule, split.keys, s.level + 1, split.outside});
     return {interpolated == split.rule->all() ? Visit::stop : Visit::descend, interpolated};
 }
 
-template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::load(const State& s) {
+NESTGRID_VISITOR::extract(const State& s) -> void {
+    if (recording_ && !s.closed.any) return;
+    const unsigned all = (1U << s.corner_count()) - 1;
+    const unsigned boundary = options_->cap ? walk_->boundary(s) : 0U;
+    loaded_ = false;
+    for (Layer& layer : layers_) {
+        const unsigned bits = pattern(s, layer);
+        if (bits == 0 || (bits == all && boundary == 0)) continue;
+        load(s);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+            u_[i] = static_cast<double>(s.value[i * State::components]) - layer.isovalue;
+        }
+        state_ = &s;
+        layer_ = &layer;
+        if (recording_) {
+            if (bits != all) record(s, layer, bits);
+            if (boundary != 0) record_cap(s, layer, bits);
+            continue;
+        }
+        begun_ = false;
+        local_.clear();
+        on_edge_.fill(none);
+        on_corner_.fill(none);
+        chained_ = 0;
+        if (bits != all) draw(s, layer, bits);
+        if (boundary != 0) draw_cap(s, layer, bits);
+        if (begun_) add_error(s, layer);
+    }
+}
+
+NESTGRID_VISITOR::load(const State& s) -> void {
+    if (loaded_) return;
+    loaded_ = true;
     walk_->keys(s, key_);
     walk_->positions(s, x_);
     deepest_ = std::max(deepest_, s.level);
-    double error = element_bound_;
+    if (options_->normals && !recording_) load_gradients(s);
+}
+
+NESTGRID_VISITOR::add_error(const State& s, Layer& layer) const -> void {
+    ++layer.extracted;
     double corner = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
         if ((s.interpolated >> i & 1U) != 0) corner = std::max(corner, indicator_->stop(key_[i]));
     }
-    error += corner;
-    result_.error_bound = std::max(result_.error_bound, error);
+    layer.error_bound = std::max(layer.error_bound, element_bound_ + corner);
 }
 
-template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::extract(const State& s) {
-    if (!is_simplex(s.shape)) {
-        throw GridError(
-            "isosurfaces are extracted from triangles and tetrahedra, but an element "
-            "on level " +
-            std::to_string(s.level) + " below coarse element " + std::to_string(s.coarse) +
-            " is a " + std::string(topology(s.shape).name));
-    }
-    const auto corners = static_cast<std::size_t>(s.corner_count());
-    unsigned pattern = 0;
-    for (std::size_t i = 0; i < corners; ++i) pattern |= unsigned{inside(s, i)} << i;
-    const Contour& contour = contour_table(s.shape)[pattern];
-    const unsigned boundary = options_->cap ? walk_->boundary(s) : 0U;
-    if (contour.count == 0 && (pattern == 0 || boundary == 0)) return;
-    load(s);
-    if (options_->normals) load_gradients(s);
-    const std::size_t before = result_.surface.simplices.size();
-    if (contour.count > 0) add_contour(s, contour);
-    if (boundary != 0) add_cap(s);
-    if (result_.surface.simplices.size() == before) return;
-    ++result_.counts.extracted;
-    if (options_->elements) {
-        result_.surface.elements.push_back(s.element);
-        result_.surface.level_of.push_back(static_cast<std::uint16_t>(s.level));
+/// Whether the corners with U >= C are joined across a face whose signs alternate.
+NESTGRID_VISITOR::joined(const State&, const FaceTopology& face) const -> bool {
+    return joins_across(u_[face.corner[0]], u_[face.corner[1]], u_[face.corner[2]],
+                        u_[face.corner[3]]);
+}
+
+/// A face; in two dimensions the element itself as one.
+NESTGRID_VISITOR::loop_of(const State& s, std::size_t face) -> FaceTopology {
+    if constexpr (dimension == 2) {
+        return {Shape::quadrilateral, 4, {0, 1, 3, 2}};
+    } else {
+        return topology(s.shape).face[face];
     }
 }
 
-template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_simplex(
-    typename Surface<dimension, ElementOf<Grid>>::Simplex simplex, const State& s) {
-    if (s.orientation < 0) std::swap(simplex[0], simplex[1]);
-    result_.surface.simplices.push_back(simplex);
-    if (options_->elements) {
-        result_.surface.element_of.push_back(static_cast<Index>(result_.surface.elements.size()));
-    }
-}
-
-template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_contour(const State& s,
-                                                               const Contour& contour) {
+NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void {
     const Topology& t = topology(s.shape);
-    std::array<Index, 4> v{};
-    for (std::size_t i = 0; i < contour.count; ++i) {
-        const auto& edge = t.edge[contour.edge[i]];
-        v[i] = edge_vertex(s, edge[0], edge[1]);
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        if (s.closed.face[f] == nullptr) continue;
+        const FaceTopology& face = t.face[f];
+        unsigned signs = 0;
+        for (std::size_t i = 0; i < face.corners; ++i) signs |= (pattern >> face.corner[i] & 1U) << i;
+        const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
+        const FaceContour contour =
+            face_contour(face.corners, signs, alternating && joined(s, face));
+        const auto end = [&](std::uint8_t side) {
+            const std::uint8_t edge = edge_between(s, face.corner[side],
+                                                   face.corner[(side + 1U) % face.corners]);
+            return layer.transitions.vertex(name(s, edge),
+                                            [&] { return make_cut(s, layer, edge); });
+        };
+        for (std::size_t i = 0; i < contour.count; ++i) {
+            const Number from = end(contour.segment[i].falls);
+            const Number to = end(contour.segment[i].rises);
+            // A mirrored element sees its faces, and the segments on them, the other way round.
+            if (s.orientation > 0) {
+                layer.transitions.record(s.closed.face[f], from, to);
+            } else {
+                layer.transitions.record(s.closed.face[f], to, from);
+            }
+        }
     }
-    Surface<dimension, ElementOf<Grid>>& surface = result_.surface;
+}
+
+/// What the finer side draws on a face from the cut of one of its sides, if anything.
+/// \return whether there was something; is_joined is set by it on a face whose signs alternate
+NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
+                        unsigned signs, bool& is_joined) -> bool {
+    const std::size_t n = face.corners;
+    const auto edge_at = [&](std::size_t i) {
+        return edge_between(s, face.corner[i], face.corner[(i + 1) % n]);
+    };
+    const Number* from = layer.transitions.find(name(s, edge_at(side)));
+    if (from == nullptr) return false;
+    std::array<Number, 2> ends{none, none};
+    std::array<std::size_t, 2> sides{};
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const unsigned there = signs >> i & 1U;
+        const unsigned beyond = signs >> ((i + 1) % n) & 1U;
+        if (there == beyond || there == (signs >> side & 1U)) continue;
+        const Number* end = layer.transitions.find(name(s, edge_at(i)));
+        if (end == nullptr) return false;
+        sides[count] = i;
+        ends[count++] = *end;
+    }
+    std::array<NodeKey, 4> keys;
+    for (std::size_t i = 0; i < n; ++i) keys[i] = key_[face.corner[i]];
+    std::vector<Number> between;
+    std::size_t end = 0;
+    const bool found = layer.transitions.follow(
+        face_key(std::span<const NodeKey>(keys.data(), n)), *from,
+        [&](Number v) {
+            if (v != ends[0] && v != ends[1]) return false;
+            end = sides[v == ends[0] ? 0 : 1];
+            return true;
+        },
+        [&](Number v) { between.push_back(v); });
+    if (!found) return false;
+    // Loops run from where the sign rises to where it falls.
+    const bool mirrored = s.orientation < 0;
+    const std::size_t rises = mirrored ? end : side;
+    const std::size_t falls = mirrored ? side : end;
+    if (!between.empty()) {
+        if (mirrored) std::reverse(between.begin(), between.end());
+        for (Number& v : between) v = recorded(v, face);
+        chained_ |= static_cast<std::uint16_t>(1U << edge_at(rises));
+        chain_[edge_at(rises)] = std::move(between);
+    }
+    is_joined = (falls + 1) % n == rises;
+    return true;
+}
+
+/// Which alternating faces join their corners with U >= C, one bit each; loads the chains that the
+/// finer sides drew.
+NESTGRID_VISITOR::choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating)
+    -> unsigned {
+    unsigned joins = 0;
+    for (unsigned left = alternating; left != 0; left &= left - 1) {
+        const auto f = static_cast<std::size_t>(std::countr_zero(left));
+        if (joined(s, loop_of(s, f))) joins |= 1U << f;
+    }
+    if (dimension == 2 || layer.transitions.empty()) return joins;
+    const Topology& t = topology(s.shape);
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        const FaceTopology& face = t.face[f];
+        unsigned signs = 0;
+        for (std::size_t i = 0; i < face.corners; ++i) signs |= (pattern >> face.corner[i] & 1U) << i;
+        for (std::size_t i = 0; i < face.corners; ++i) {
+            // The finer side draws from where our segment comes back to where it leaves.
+            const unsigned there = signs >> i & 1U;
+            const unsigned beyond = signs >> ((i + 1U) % face.corners) & 1U;
+            if (there == beyond || (there != 0) != (s.orientation < 0)) continue;
+            bool is_joined = false;
+            if (adopt(s, layer, face, i, signs, is_joined) && (alternating >> f & 1U) != 0) {
+                joins = (joins & ~(1U << f)) | (unsigned{is_joined} << f);
+            }
+        }
+    }
+    return joins;
+}
+
+NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
+    const ContourTable& table = ContourTable::of(s.shape);
+    const unsigned alternating = table.alternating(pattern);
+    const Contour& contour = table.at(pattern, choose(s, layer, pattern, alternating));
     const unsigned boundary = walk_->boundary(s);
     if constexpr (dimension == 2) {
-        add_simplex({v[0], v[1]}, s);
-        for (std::size_t i = 0; i < 2; ++i) {
-            if ((boundary >> contour.face[i] & 1U) != 0) surface.boundary.push_back({v[i]});
+        for (std::size_t l = 0; l < contour.loop_count; ++l) {
+            const ContourLoop& segment = contour.loop[l];
+            const std::array<Number, 2> ends{vertex(segment.edge[0]), vertex(segment.edge[1])};
+            simplex(ends);
+            for (std::size_t i = 0; i < 2; ++i) {
+                if ((boundary >> segment.face[i] & 1U) != 0) add_boundary({ends[i]});
+            }
         }
     } else {
-        if (contour.count == 3) {
-            add_simplex({v[0], v[1], v[2]}, s);
-        } else {
-            // The shorter diagonal; both lie inside the element, so neighbours do not care.
-            const Point d02 = surface.vertices[v[2]] - surface.vertices[v[0]];
-            const Point d13 = surface.vertices[v[3]] - surface.vertices[v[1]];
-            const std::size_t a = dot(d02, d02) <= dot(d13, d13) ? 0 : 1;
-            add_simplex({v[a], v[a + 1], v[a + 2]}, s);
-            add_simplex({v[a + 2], v[(a + 3) % 4], v[a]}, s);
-        }
-        for (std::size_t i = 0; i < contour.count; ++i) {
-            if ((boundary >> contour.face[i] & 1U) != 0) {
-                surface.boundary.push_back({v[i], v[(i + 1) % contour.count]});
+        ContourFilling<IsosurfaceVisitor> filling(*this);
+        filling.fill(contour, s.shape == Shape::hexahedron ? find_tunnel(contour, u_)
+                                                           : std::optional<Tunnel>{});
+        for (std::size_t l = 0; boundary != 0 && l < contour.loop_count; ++l) {
+            const ContourLoop& loop = contour.loop[l];
+            for (std::size_t i = 0; i < loop.count; ++i) {
+                if ((boundary >> loop.face[i] & 1U) == 0) continue;
+                add_boundary({vertex(loop.edge[i]), vertex(loop.edge[(i + 1) % loop.count])});
             }
         }
     }
 }
 
-/// The part of each boundary face where U >= C: in three dimensions a polygon, in two a segment.
-template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::add_cap(const State& s) {
-    const Topology& t = topology(s.shape);
-    const unsigned boundary = walk_->boundary(s);
-    for (std::size_t f = 0; f < t.faces; ++f) {
-        if ((boundary >> f & 1U) == 0) continue;
-        const FaceTopology& face = t.face[f];
-        std::array<Index, 4> polygon{};
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < face.corners; ++i) {
-            const std::size_t a = face.corner[i];
-            const std::size_t b = face.corner[(i + 1) % face.corners];
-            if (inside(s, a)) polygon[count++] = node_vertex(a);
-            if (face.corners == 2 && i == 1) break;  // a segment has one edge, not two
-            if (inside(s, a) != inside(s, b)) polygon[count++] = edge_vertex(s, a, b);
+NESTGRID_VISITOR::set_normals(Layer& layer) -> void {
+    for (Number v = 0; v < layer.where.size(); ++v) {
+        const Where& w = layer.where[v];
+        const bool low = w.low != none && gradients_.known(w.low);
+        const bool high = w.high != none && gradients_.known(w.high);
+        Point n = w.around;
+        if (low || high) {
+            const Point a = gradients_.mean(low ? w.low : w.high);
+            const Point b = gradients_.mean(high ? w.high : w.low);
+            const Point g = (1 - w.fraction) * a + w.fraction * b;
+            if (norm(g) > 0) n = -1.0 * g;
         }
-        if constexpr (dimension == 2) {
-            // Counterclockwise around the element the region is on the left, as on the contour.
-            if (count == 2) add_simplex({polygon[0], polygon[1]}, s);
-        } else {
-            for (std::size_t i = 2; i < count; ++i) {
-                add_simplex({polygon[0], polygon[i - 1], polygon[i]}, s);
-            }
-        }
+        const double length = norm(n);
+        layer.sink.set_normal(v, length > 0 ? (1 / length) * n : n);
     }
-}
-
-template <class Grid, class Field, class S, class Indicator>
-auto IsosurfaceVisitor<Grid, Field, S, Indicator>::add_vertex(KeyPair key, const Point& x,
-                                                              const Vertex& where) -> Index {
-    std::vector<Point>& vertices = result_.surface.vertices;
-    if (vertices.size() > std::numeric_limits<Index>::max() - 1) {
-        throw GridError("the surface has more than 2^32 vertices");
-    }
-    const auto [at, is_new] = vertex_of_.insert(key, static_cast<Index>(vertices.size()));
-    if (is_new) {
-        vertices.push_back(x);
-        if (options_->normals) where_.push_back(where);
-    } else if (options_->verify && vertices[*at] != x) {
-        throw GridError("two elements put the vertex " + std::to_string(*at) +
-                        " at different places");
-    }
-    return *at;
-}
-
-template <class Grid, class Field, class S, class Indicator>
-auto IsosurfaceVisitor<Grid, Field, S, Indicator>::node_vertex(std::size_t corner) -> Index {
-    return add_vertex({key_[corner], key_[corner]}, x_[corner],
-                      {slot_[corner], slot_[corner], 0.0});
-}
-
-template <class Grid, class Field, class S, class Indicator>
-auto IsosurfaceVisitor<Grid, Field, S, Indicator>::edge_vertex(const State& s, std::size_t a,
-                                                               std::size_t b) -> Index {
-    const KeyPair key(key_[a], key_[b]);
-    if (!options_->verify) {
-        if (const Index* known = vertex_of_.find(key)) return *known;
-    }
-    if (inside(s, a)) std::swap(a, b);  // from the lower to the higher value
-    const double lo = s.value[a * State::components];
-    const double hi = s.value[b * State::components];
-    constexpr double least = 0x1p-20;
-    const double t = std::clamp((iso_ - lo) / (hi - lo), least, 1 - least);
-    return add_vertex(key, x_[a] + t * (x_[b] - x_[a]), {slot_[a], slot_[b], t});
-}
-
-/// Section 8: the gradient as a vector-valued function, projected with the same S.
-template <class Grid, class Field, class S, class Indicator>
-Point IsosurfaceVisitor<Grid, Field, S, Indicator>::projected_gradient(const State& s,
-                                                                       std::size_t corner) const {
-    if ((s.interpolated >> corner & 1U) != 0 && s.father != nullptr) {
-        const Child& child = s.made_by->children[s.child];
-        return node_gradient(*s.father, *s.made_by, child.corner[corner]);
-    }
-    return own_gradients(s)[corner];
-}
-
-template <class Grid, class Field, class S, class Indicator>
-auto IsosurfaceVisitor<Grid, Field, S, Indicator>::own_gradients(const State& s) const
-    -> std::array<Point, max_corners> {
-    std::array<Point, max_corners> g{};
-    if constexpr (offers_corner_gradients<Field, Context<Grid>, const ElementOf<Grid>&,
-                                          std::span<Point>>) {
-        call_corner_gradients(
-            walk_->field(), *s.context, s.element,
-            std::span<Point>(g.data(), static_cast<std::size_t>(s.corner_count())));
-    }
-    return g;
-}
-
-template <class Grid, class Field, class S, class Indicator>
-Point IsosurfaceVisitor<Grid, Field, S, Indicator>::node_gradient(const State& father,
-                                                                  const Rule& rule,
-                                                                  std::size_t node) const {
-    const auto corners = static_cast<std::size_t>(father.corner_count());
-    if (node < corners) return projected_gradient(father, node);
-    const Stencil& stencil = rule.new_nodes[node - corners];
-    std::array<Point, max_corners> parent;
-    Stencil local = stencil;
-    for (std::size_t i = 0; i < stencil.count; ++i) {
-        parent[i] = node_gradient(father, rule, stencil.parent[i]);
-        local.parent[i] = static_cast<std::uint8_t>(i);
-    }
-    return interpolate(local, parent.data());
-}
-
-template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::load_gradients(const State& s) {
-    const auto corners = static_cast<std::size_t>(s.corner_count());
-    const bool own = offers_gradients<Grid, Field>(walk_->field());
-    Point mean{0, 0, 0};
-    if (!own && dimension == 3) {  // the constant gradient of the element, times six volumes
-        for (std::size_t f = 0; f < corners; ++f) {
-            const FaceTopology& face = topology(s.shape).face[f];
-            const Point inward = -1.0 * cross(x_[face.corner[1]] - x_[face.corner[0]],
-                                              x_[face.corner[2]] - x_[face.corner[0]]);
-            mean = mean + (s.orientation * double(s.value[f * State::components])) * inward;
-        }
-    } else if (!own) {
-        for (std::size_t f = 0; f < corners; ++f) {
-            const FaceTopology& face = topology(s.shape).face[f];
-            const Point e = x_[face.corner[1]] - x_[face.corner[0]];
-            mean = mean +
-                   (s.orientation * double(s.value[f * State::components])) * Point{-e[1], e[0], 0};
-        }
-    }
-    std::array<Point, max_corners> exact;  // asked for once, where a node is met for the first time
-    bool asked = false;
-    for (std::size_t i = 0; i < corners; ++i) {
-        const auto [at, is_new] =
-            gradient_of_.insert(key_[i], static_cast<Index>(gradient_.size()));
-        slot_[i] = *at;
-        if (is_new) {
-            const bool interpolated = (s.interpolated >> i & 1U) != 0;
-            if (own && !interpolated && !asked) {
-                exact = own_gradients(s);
-                asked = true;
-            }
-            gradient_.push_back(!own           ? Point{0, 0, 0}
-                                : interpolated ? projected_gradient(s, i)
-                                               : exact[i]);
-        }
-        if (!own) gradient_[slot_[i]] = gradient_[slot_[i]] + mean;
-    }
-}
-
-template <class Grid, class Field, class S, class Indicator>
-void IsosurfaceVisitor<Grid, Field, S, Indicator>::compute_normals() {
-    Surface<dimension, ElementOf<Grid>>& surface = result_.surface;
-    surface.normals.assign(surface.vertices.size(), Point{0, 0, 0});
-    std::vector<bool> flat(surface.vertices.size(), false);
-    bool any_flat = false;
-    for (std::size_t v = 0; v < where_.size(); ++v) {
-        const Vertex& w = where_[v];
-        const Point g = (1 - w.fraction) * gradient_[w.low] + w.fraction * gradient_[w.high];
-        const double length = norm(g);
-        if (length > 0) {
-            surface.normals[v] = (-1 / length) * g;
-        } else {
-            flat[v] = any_flat = true;
-        }
-    }
-    if (!any_flat) return;
-    if constexpr (dimension == 3) {  // where the gradient vanishes: the triangles around
-        for (const auto& t : surface.simplices) {
-            const Point n = cross(surface.vertices[t[1]] - surface.vertices[t[0]],
-                                  surface.vertices[t[2]] - surface.vertices[t[0]]);
-            for (const Index v : t) {
-                if (flat[v]) surface.normals[v] = surface.normals[v] + n;
-            }
-        }
-    }
-    for (std::size_t v = 0; v < flat.size(); ++v) {
-        const double length = norm(surface.normals[v]);
-        if (flat[v] && length > 0) surface.normals[v] = (1 / length) * surface.normals[v];
-    }
-}
-
-template <class Grid, class Field, class S, class Indicator>
-auto IsosurfaceVisitor<Grid, Field, S, Indicator>::take() -> Result {
-    if (options_->normals) compute_normals();
-    result_.table_bytes = vertex_of_.memory_bytes() + gradient_of_.memory_bytes() +
-                          gradient_.capacity() * sizeof(Point) + where_.capacity() * sizeof(Vertex);
-    result_.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(State);
-    return std::move(result_);
 }
 
 }  // namespace nestgrid::detail
+
+#undef NESTGRID_VISITOR
+
+#include <nestgrid/algorithms/isosurface_cap.hpp>
+#include <nestgrid/algorithms/isosurface_vertices.hpp>

@@ -1,9 +1,26 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// What a surface is kept in, and what else it can be poured into.
+//
+// A sink takes a surface while it is extracted. Vertices are numbered in the order they are added:
+//     void add_vertex(const Point& x, std::span<const double> attributes)
+//         attributes: components 1 ... of the field there
+//     Point position(std::uint32_t vertex) const
+//     void add_element(const Element& element, int level)
+//         before the first simplex from it
+//     void add_simplex(const Simplex& vertices, std::span<const Point> reference)
+//         reference: where they lie in the element; empty unless asked for
+//     void add_boundary(const Ridge& vertices)        on the boundary of the domain
+//     void set_normal(std::uint32_t vertex, const Point& unit)   at the end, where asked for
+// A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
+//     void add_element(const Element& element, int level)
+//     void add_simplex(const std::array<Point, dimension>& x, std::span<const Point> reference)
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <nestgrid/geometry.hpp>
@@ -19,18 +36,83 @@ struct Surface {
     using Ridge = std::array<std::uint32_t, static_cast<std::size_t>(dimension - 1)>;
 
     std::vector<Point> vertices;
-    std::vector<Point> normals;  ///< unit length, one per vertex, where asked for
+    std::vector<Point> normals;      ///< unit length, one per vertex, where asked for
+    std::vector<double> attributes;  ///< components 1 ... of the field, vertex by vertex
     std::vector<Simplex> simplices;
     std::vector<std::uint32_t> element_of;  ///< per simplex, an index into elements
+    std::vector<Point> reference;           ///< per corner of a simplex, where asked for: where it
+                                            ///< lies in the reference element
     std::vector<Element> elements;          ///< the extracted elements, in order of the traversal
     std::vector<std::uint16_t> level_of;    ///< level of each of them
     std::vector<Ridge> boundary;            ///< edges (points) on the boundary of the domain
 
     std::size_t memory_bytes() const {
         const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-        return bytes(vertices) + bytes(normals) + bytes(simplices) + bytes(element_of) +
-               bytes(elements) + bytes(level_of) + bytes(boundary);
+        return bytes(vertices) + bytes(normals) + bytes(attributes) + bytes(simplices) +
+               bytes(element_of) + bytes(reference) + bytes(elements) + bytes(level_of) +
+               bytes(boundary);
     }
+};
+
+/// Fills a Surface.
+template <int dimension, class Element>
+class SurfaceSink {
+public:
+    using Target = Surface<dimension, Element>;
+
+    /// \param elements whether to keep the elements and which simplex comes from which
+    explicit SurfaceSink(Target& surface, bool elements = true)
+        : surface_{&surface}, elements_{elements} {}
+
+    void add_vertex(const Point& x, std::span<const double> attributes) {
+        surface_->vertices.push_back(x);
+        surface_->attributes.insert(surface_->attributes.end(), attributes.begin(),
+                                    attributes.end());
+    }
+    Point position(std::uint32_t vertex) const { return surface_->vertices[vertex]; }
+    void add_element(const Element& element, int level) {
+        if (!elements_) return;
+        surface_->elements.push_back(element);
+        surface_->level_of.push_back(static_cast<std::uint16_t>(level));
+    }
+    void add_simplex(const typename Target::Simplex& vertices, std::span<const Point> reference) {
+        surface_->simplices.push_back(vertices);
+        if (elements_) {
+            surface_->element_of.push_back(
+                static_cast<std::uint32_t>(surface_->elements.size() - 1));
+        }
+        surface_->reference.insert(surface_->reference.end(), reference.begin(), reference.end());
+    }
+    void add_boundary(const typename Target::Ridge& vertices) {
+        surface_->boundary.push_back(vertices);
+    }
+    void set_normal(std::uint32_t vertex, const Point& unit) {
+        surface_->normals.resize(surface_->vertices.size());
+        surface_->normals[vertex] = unit;
+    }
+
+private:
+    Target* surface_;
+    bool elements_;
+};
+
+/// Hands every triangle (segment) to a function and keeps nothing.
+template <int dimension, class Function>
+class SimplexStream {
+public:
+    static constexpr bool indexed = false;
+
+    explicit SimplexStream(Function function) : function_{std::move(function)} {}
+
+    template <class Element>
+    void add_element(const Element&, int) {}
+    void add_simplex(const std::array<Point, static_cast<std::size_t>(dimension)>& x,
+                     std::span<const Point>) {
+        function_(x);
+    }
+
+private:
+    Function function_;
 };
 
 }  // namespace nestgrid

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The level set inside one element: which corners a face joins, and whether a tunnel joins two
+// loops through the inside.
+//
+// The functions are multilinear (for the pyramid the rational one, bilinear on its base), so what
+// follows is exact up to rounding:
+//   - on a quadrilateral whose signs alternate, the diagonal of the saddle's sign is joined (the
+//     asymptotic decider of Nielson and Hamann 1991);
+//   - in prisms and pyramids every loop bounds a disc of the level set: a section of a prism is
+//     linear and meets it in one arc, and the sections of a pyramid along its axis meet the levels
+//     of one bilinear function in falling or in rising order;
+//   - in a hexahedron two regions of one sign, apart on its surface, may be joined inside. A section
+//     has no component without a corner of its own, so they are joined if and only if in some
+//     section across an axis opposite corners are joined whose regions differ (after Chernyaev
+//     1995).
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include <nestgrid/algorithms/contour_table.hpp>
+
+namespace nestgrid {
+
+/// Whether the corners with U >= C are joined across a quadrilateral whose signs alternate.
+/// a, b, c, d are the values U - C around it; a function of the face alone, to the last bit.
+constexpr bool joins_across(double a, double b, double c, double d) {
+    return a >= 0 ? a * c >= b * d : b * d >= a * c;
+}
+
+/// A tunnel between two loops of a contour.
+struct Tunnel {
+    std::size_t from = 0;       ///< the two loops it joins
+    std::size_t to = 0;
+    std::array<Point, 4> ring;  ///< points of the level set around its neck, reference coordinates
+};
+
+namespace detail {
+
+/// A section of a hexahedron at height t; corners a, b, c, d in a loop from (0, 0) on.
+struct Section {
+    double a, b, c, d;
+
+    Section(const std::array<double, 8>& u, double t)
+        : a{u[0] + t * (u[4] - u[0])},
+          b{u[1] + t * (u[5] - u[1])},
+          c{u[3] + t * (u[7] - u[3])},
+          d{u[2] + t * (u[6] - u[2])} {}
+
+    double at(double x, double y) const {
+        return (1 - y) * ((1 - x) * a + x * b) + y * ((1 - x) * d + x * c);
+    }
+    std::array<double, 2> saddle() const {
+        const double sum = (a - b) + (c - d);
+        return {std::clamp((a - d) / sum, 0.0, 1.0), std::clamp((a - b) / sum, 0.0, 1.0)};
+    }
+    /// The zero between the saddle and a corner of the other sign.
+    Point zero_towards(double x, double y, double t) const {
+        const auto [sx, sy] = saddle();
+        const bool sign = at(x, y) >= 0;
+        double lo = 0;
+        double hi = 1;
+        for (int i = 0; i < 50; ++i) {
+            const double m = (lo + hi) / 2;
+            ((at(sx + m * (x - sx), sy + m * (y - sy)) >= 0) == sign ? hi : lo) = m;
+        }
+        return {sx + hi * (x - sx), sy + hi * (y - sy), t};
+    }
+};
+
+/// Heights at which the edges from u[i] to u[i + 4] have the wanted signs, or nothing.
+inline std::optional<std::array<double, 2>> heights(const std::array<double, 8>& u,
+                                                    const std::array<double, 4>& wanted) {
+    std::array<double, 2> range{0, 1};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double below = wanted[i] * u[i];
+        const double above = wanted[i] * u[i + 4];
+        if (below < 0 && above < 0) return std::nullopt;
+        if (below < 0) range[0] = std::max(range[0], below / (below - above));
+        if (above < 0) range[1] = std::min(range[1], below / (below - above));
+    }
+    if (!(range[0] < range[1])) return std::nullopt;
+    return range;
+}
+
+}  // namespace detail
+
+/// The tunnel of a hexahedron, if it has one. u are the values U - C at its corners.
+inline std::optional<Tunnel> find_tunnel(const Contour& contour, const std::array<double, 8>& u) {
+    if (contour.loop_count < 2) return std::nullopt;
+    for (const unsigned diagonal : {0U, 1U}) {      // corners 0 and 3, or 1 and 2, of a section
+        for (const double sign : {1.0, -1.0}) {     // of the corners that may be joined
+            const double one = diagonal == 0 ? sign : -sign;
+            const auto range = detail::heights(u, {one, -one, -one, one});
+            if (!range) continue;
+            // a c - b d as a polynomial p + q t + r t^2: above 0 where a and c are joined.
+            const double da = u[4] - u[0], db = u[5] - u[1], dd = u[6] - u[2], dc = u[7] - u[3];
+            const double turn = diagonal == 0 ? 1 : -1;
+            const double p = turn * (u[0] * u[3] - u[1] * u[2]);
+            const double q = turn * (u[0] * dc + u[3] * da - u[1] * dd - u[2] * db);
+            const double r = turn * (da * dc - db * dd);
+            if (!(r < 0)) continue;  // its greatest value lies at an end: joined on the surface
+            const double best = -q / (2 * r);
+            if (!(best > (*range)[0] && best < (*range)[1])) continue;
+            const double discriminant = q * q - 4 * p * r;
+            if (!(discriminant > 0)) continue;
+            const auto corner = [&](std::size_t i) { return (u[i] >= 0) == (sign > 0) ? i : i + 4; };
+            const std::uint8_t from = contour.region[corner(diagonal == 0 ? 0 : 1)];
+            const std::uint8_t to = contour.region[corner(diagonal == 0 ? 3 : 2)];
+            if (from == to) continue;
+            for (std::size_t i = 0; i < contour.loop_count; ++i) {
+                for (std::size_t j = 0; j < contour.loop_count; ++j) {
+                    const ContourLoop& a = contour.loop[i];
+                    const ContourLoop& b = contour.loop[j];
+                    const bool around = sign > 0 ? a.positive == from && b.positive == to &&
+                                                       a.negative == b.negative
+                                                 : a.negative == from && b.negative == to &&
+                                                       a.positive == b.positive;
+                    if (!around) continue;
+                    const double half = std::sqrt(discriminant) / (-2 * r);
+                    const double lo = std::max(best - half, (*range)[0]);
+                    const double hi = std::min(best + half, (*range)[1]);
+                    const detail::Section neck(u, best);
+                    const auto low = detail::Section(u, lo).saddle();
+                    const auto high = detail::Section(u, hi).saddle();
+                    Tunnel tunnel{i, j, {}};
+                    tunnel.ring[0] = neck.zero_towards(diagonal == 0 ? 1 : 0, 0, best);
+                    tunnel.ring[1] = {low[0], low[1], lo};
+                    tunnel.ring[2] = neck.zero_towards(diagonal == 0 ? 0 : 1, 1, best);
+                    tunnel.ring[3] = {high[0], high[1], hi};
+                    return tunnel;
+                }
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace nestgrid

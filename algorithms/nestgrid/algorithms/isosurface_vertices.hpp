@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Vertices of the surface and their gradients; included by isosurface_steps.hpp.
+#pragma once
+
+#include <nestgrid/algorithms/isosurface.hpp>
+
+#define NESTGRID_VISITOR                                                     \
+    template <class Grid, class Field, class S, class Indicator, class Sink> \
+    auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>
+
+namespace nestgrid::detail {
+
+NESTGRID_VISITOR::edge_between(const State& s, std::uint8_t a, std::uint8_t b) const
+    -> std::uint8_t {
+    const Topology& t = topology(s.shape);
+    std::uint8_t e = 0;
+    while ((t.edge[e][0] != a || t.edge[e][1] != b) && (t.edge[e][0] != b || t.edge[e][1] != a)) {
+        ++e;
+    }
+    return e;
+}
+
+NESTGRID_VISITOR::name(const State& s, std::uint8_t edge) const -> KeyPair {
+    if (s.closed.any && s.closed.edge[edge] != nullptr) {
+        const auto& key = s.closed.edge[edge]->key;
+        return {key[0], key[1]};
+    }
+    const auto& [a, b] = topology(s.shape).edge[edge];
+    return {key_[a], key_[b]};
+}
+
+/// The cut of the maximal edge of an edge, from its lower to its higher value.
+NESTGRID_VISITOR::make_cut(const State& s, const Layer& layer, std::uint8_t edge) const -> Cut {
+    constexpr std::size_t stride = State::components;
+    std::array<Point, 2> x;
+    std::array<std::array<double, stride>, 2> value;
+    Cut cut;
+    if (s.closed.any && s.closed.edge[edge] != nullptr) {
+        const auto& maximal = *s.closed.edge[edge];
+        x = maximal.position;
+        cut.node = maximal.key;
+        for (std::size_t i = 0; i < 2 * stride; ++i) {
+            value[i / stride][i % stride] = static_cast<double>(maximal.value[i]);
+        }
+    } else {
+        for (std::size_t end = 0; end < 2; ++end) {
+            const std::size_t c = topology(s.shape).edge[edge][end];
+            x[end] = x_[c];
+            cut.node[end] = key_[c];
+            for (std::size_t i = 0; i < stride; ++i) {
+                value[end][i] = static_cast<double>(s.value[c * stride + i]);
+            }
+        }
+    }
+    if (inside(value[0][0], layer)) {
+        std::swap(x[0], x[1]);
+        std::swap(value[0], value[1]);
+        std::swap(cut.node[0], cut.node[1]);
+    }
+    constexpr double least = 0x1p-20;
+    cut.fraction = std::clamp((layer.isovalue - value[0][0]) / (value[1][0] - value[0][0]), least,
+                              1 - least);
+    cut.x = x[0] + cut.fraction * (x[1] - x[0]);
+    for (std::size_t i = 1; i < stride; ++i) {
+        cut.attributes[i - 1] = value[0][i] + cut.fraction * (value[1][i] - value[0][i]);
+    }
+    return cut;
+}
+
+NESTGRID_VISITOR::make_node(const State& s, std::size_t corner) const -> Cut {
+    Cut cut{x_[corner], {key_[corner], key_[corner]}, 0, {}};
+    for (std::size_t i = 0; i < attribute_count; ++i) {
+        cut.attributes[i] = static_cast<double>(s.value[corner * State::components + i + 1]);
+    }
+    return cut;
+}
+
+NESTGRID_VISITOR::add(const KeyPair& name, const Cut& cut) -> Vertex {
+    if constexpr (!indexed) {
+        return cut.x;
+    } else {
+        if (layer_->vertex_count == none) throw GridError("the surface has 2^32 vertices or more");
+        const auto [at, is_new] = layer_->vertex_of.insert(name, layer_->vertex_count);
+        const Number number = *at;
+        if (is_new) {
+            ++layer_->vertex_count;
+            layer_->sink.add_vertex(cut.x, cut.attributes);
+            if (options_->normals) {
+                layer_->where.push_back({gradients_.slot(cut.node[0]),
+                                         gradients_.slot(cut.node[1]), cut.fraction, {}});
+            }
+        } else if (options_->verify && layer_->sink.position(number) != cut.x) {
+            throw GridError("two elements put the vertex " + std::to_string(number) +
+                            " at different places");
+        }
+        return number;
+    }
+}
+
+/// A vertex inside one element.
+NESTGRID_VISITOR::add_unnamed(const Point& x, std::span<const double> attributes) -> Vertex {
+    if constexpr (!indexed) {
+        return x;
+    } else {
+        layer_->sink.add_vertex(x, attributes);
+        if (options_->normals) layer_->where.push_back({none, none, 0.0, {}});
+        return layer_->vertex_count++;
+    }
+}
+
+NESTGRID_VISITOR::number_of(const Vertex& vertex, const Point& reference) -> Number {
+    local_.push_back({vertex, reference});
+    return static_cast<Number>(local_.size() - 1);
+}
+
+NESTGRID_VISITOR::vertex(std::uint8_t edge) -> Number {
+    if (on_edge_[edge] != none) return on_edge_[edge];
+    const State& s = *state_;
+    const KeyPair key = name(s, edge);
+    const Number* known = nullptr;
+    if constexpr (indexed) {
+        if (!options_->verify) known = layer_->vertex_of.find(key);
+    }
+    Point reference{};
+    if (wants_reference()) {
+        const Topology& t = topology(s.shape);
+        const auto& [a, b] = t.edge[edge];
+        const double fraction = std::clamp(u_[a] / (u_[a] - u_[b]), 0.0, 1.0);
+        reference = t.reference[a] + fraction * (t.reference[b] - t.reference[a]);
+    }
+    if constexpr (indexed) {
+        if (known != nullptr) return on_edge_[edge] = number_of(*known, reference);
+    }
+    return on_edge_[edge] = number_of(add(key, make_cut(s, *layer_, edge)), reference);
+}
+
+NESTGRID_VISITOR::node_vertex(std::size_t corner) -> Number {
+    if (on_corner_[corner] == none) {
+        on_corner_[corner] = number_of(add({key_[corner], key_[corner]}, make_node(*state_, corner)),
+                                       topology(state_->shape).reference[corner]);
+    }
+    return on_corner_[corner];
+}
+
+/// A vertex that a finer side recorded on a face of the element being drawn.
+NESTGRID_VISITOR::recorded(Number index, const FaceTopology& face) -> Number {
+    const Cut& cut = layer_->transitions.cut(index);
+    Point reference{};
+    if (options_->reference) {
+        // Newton's method on the map from the unit square (triangle) to the face.
+        const Topology& t = topology(state_->shape);
+        const auto blend = [&](const auto& of, double p, double q) {
+            const auto at = [&](int i) { return of[face.tensor_corner(i)]; };
+            if (face.corners == 3) return at(0) + p * (at(1) - at(0)) + q * (at(2) - at(0));
+            return (1 - q) * ((1 - p) * at(0) + p * at(1)) + q * ((1 - p) * at(2) + p * at(3));
+        };
+        double p = 1.0 / 3;
+        double q = 1.0 / 3;
+        for (int step = 0; step < 20; ++step) {
+            const Point rest = cut.x - blend(x_, p, q);
+            const Point dp = blend(x_, p + 0.5, q) - blend(x_, p - 0.5, q);
+            const Point dq = blend(x_, p, q + 0.5) - blend(x_, p, q - 0.5);
+            const double pp = dot(dp, dp), pq = dot(dp, dq), qq = dot(dq, dq);
+            const double determinant = pp * qq - pq * pq;
+            if (determinant <= 0) break;
+            p += (qq * dot(dp, rest) - pq * dot(dq, rest)) / determinant;
+            q += (pp * dot(dq, rest) - pq * dot(dp, rest)) / determinant;
+        }
+        reference = blend(t.reference, p, q);
+    }
+    return number_of(add({cut.node[0], cut.node[1]}, cut), reference);
+}
+
+NESTGRID_VISITOR::chain(std::uint8_t edge) const -> std::span<const Number> {
+    if ((chained_ >> edge & 1U) == 0) return {};
+    return chain_[edge];
+}
+
+NESTGRID_VISITOR::position(Number local) const -> Point {
+    if constexpr (indexed) {
+        return layer_->sink.position(local_[local].vertex);
+    } else {
+        return local_[local].vertex;
+    }
+}
+
+/// Of the element at a point of its reference element.
+NESTGRID_VISITOR::attributes_at(const Point& reference) const
+    -> std::array<double, attribute_count> {
+    std::array<double, attribute_count> attributes{};
+    if constexpr (attribute_count > 0) {
+        const auto weight = shape_functions(state_->shape, reference);
+        for (std::size_t c = 0; c < static_cast<std::size_t>(state_->corner_count()); ++c) {
+            for (std::size_t i = 0; i < attribute_count; ++i) {
+                attributes[i] += weight[c] * static_cast<double>(
+                                                 state_->value[c * State::components + i + 1]);
+            }
+        }
+    }
+    return attributes;
+}
+
+NESTGRID_VISITOR::middle(std::span<const Number> of) -> Number {
+    Point x{0, 0, 0};
+    Point reference{0, 0, 0};
+    const double weight = 1.0 / static_cast<double>(of.size());
+    for (const Number v : of) {
+        x = x + weight * position(v);
+        reference = reference + weight * local_[v].reference;
+    }
+    return number_of(add_unnamed(x, attributes_at(reference)), reference);
+}
+
+NESTGRID_VISITOR::inside(const Point& reference) -> Number {
+    const auto weight = shape_functions(state_->shape, reference);
+    Point x{0, 0, 0};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(state_->corner_count()); ++i) {
+        x = x + weight[i] * x_[i];
+    }
+    return number_of(add_unnamed(x, attributes_at(reference)), reference);
+}
+
+NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dimension)>& locals)
+    -> void {
+    const State& s = *state_;
+    if (!begun_) layer_->sink.add_element(s.element, s.level);
+    begun_ = true;
+    std::array<Vertex, static_cast<std::size_t>(dimension)> v;
+    std::array<Point, static_cast<std::size_t>(dimension)> reference;
+    for (std::size_t i = 0; i < locals.size(); ++i) {
+        const std::size_t from = i < 2 && s.orientation < 0 ? 1 - i : i;
+        v[i] = local_[locals[from]].vertex;
+        reference[i] = local_[locals[from]].reference;
+    }
+    layer_->sink.add_simplex(v, options_->reference ? std::span<const Point>(reference)
+                                                    : std::span<const Point>());
+    if constexpr (indexed && dimension == 3) {
+        if (options_->normals) {
+            const Point x = layer_->sink.position(v[0]);
+            const Point n =
+                cross(layer_->sink.position(v[1]) - x, layer_->sink.position(v[2]) - x);
+            for (const Number i : v) layer_->where[i].around = layer_->where[i].around + n;
+        }
+    }
+}
+
+NESTGRID_VISITOR::triangle(Number a, Number b, Number c) -> void {
+    if constexpr (dimension == 3) simplex({a, b, c});
+}
+
+NESTGRID_VISITOR::add_boundary(
+    const std::array<Number, static_cast<std::size_t>(dimension - 1)>& locals) -> void {
+    if constexpr (indexed) {
+        std::array<Number, static_cast<std::size_t>(dimension - 1)> v;
+        for (std::size_t i = 0; i < v.size(); ++i) v[i] = local_[locals[i]].vertex;
+        layer_->sink.add_boundary(v);
+    }
+}
+
+/// Section 8: the gradient as a vector-valued function, projected with the same S.
+NESTGRID_VISITOR::projected_gradient(const State& s, std::size_t corner) const -> Point {
+    if ((s.interpolated >> corner & 1U) != 0 && s.father != nullptr) {
+        const Child& child = s.made_by->children[s.child];
+        return node_gradient(*s.father, *s.made_by, child.corner[corner]);
+    }
+    return own_gradients(s)[corner];
+}
+
+NESTGRID_VISITOR::own_gradients(const State& s) const -> std::array<Point, max_corners> {
+    std::array<Point, max_corners> g{};
+    if constexpr (offers_corner_gradients<Field, Context<Grid>, const ElementOf<Grid>&,
+                                          std::span<Point>>) {
+        call_corner_gradients(
+            walk_->field(), *s.context, s.element,
+            std::span<Point>(g.data(), static_cast<std::size_t>(s.corner_count())));
+    }
+    return g;
+}
+
+NESTGRID_VISITOR::node_gradient(const State& father, const Rule& rule, std::size_t node) const
+    -> Point {
+    const auto corners = static_cast<std::size_t>(father.corner_count());
+    if (node < corners) return projected_gradient(father, node);
+    const Stencil& stencil = rule.new_nodes[node - corners];
+    std::array<Point, max_corners> parent;
+    Stencil local = stencil;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        parent[i] = node_gradient(father, rule, stencil.parent[i]);
+        local.parent[i] = static_cast<std::uint8_t>(i);
+    }
+    return interpolate(local, parent.data());
+}
+
+NESTGRID_VISITOR::load_gradients(const State& s) -> void {
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    const bool own = offers_gradients<Grid, Field>(walk_->field());
+    std::array<Point, max_corners> exact;  // asked for once, where a node is met for the first time
+    bool asked = false;
+    std::array<double, max_corners> value{};
+    for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * State::components];
+    for (std::size_t i = 0; i < corners; ++i) {
+        const Number slot = gradients_.slot(key_[i]);
+        if (!own) {
+            gradients_.add(slot, corner_gradient(topology(s.shape), x_, value, i));
+        } else if (!gradients_.known(slot)) {
+            const bool interpolated = (s.interpolated >> i & 1U) != 0;
+            if (!interpolated && !asked) {
+                exact = own_gradients(s);
+                asked = true;
+            }
+            gradients_.add(slot, {interpolated ? projected_gradient(s, i) : exact[i], 1});
+        }
+    }
+}
+
+}  // namespace nestgrid::detail
+
+#undef NESTGRID_VISITOR

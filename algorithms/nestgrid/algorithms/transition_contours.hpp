@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is drawn on closed faces (interface/nestgrid/closed.hpp): the finer side draws, the coarser
+// side adopts.
+//
+// Elements below a closed face record the segments they draw on it under the key of every closed
+// face around theirs. An element that has such a face for its own finds them there, for only the
+// other side divides it. Memory: of the order of the surface on these faces.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include <nestgrid/closed.hpp>
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid {
+
+/// \tparam Cut where a vertex lies and what is known of it
+template <class Cut>
+class TransitionContours {
+public:
+    using Index = std::uint32_t;
+
+    /// Adds the segment from one vertex to the other, seen from outside the element that draws it:
+    /// it leaves the region U >= C on its right.
+    void record(const ClosedFace* innermost, Index from, Index to) {
+        for (const ClosedFace* face = innermost; face != nullptr; face = face->outer) {
+            record(face->key, from, to);
+        }
+    }
+    void record(NodeKey face, Index from, Index to) { segments_.push_back({face, from, to}); }
+
+    /// The number of the vertex with a name; `make` gives its Cut where it is new.
+    template <class Make>
+    Index vertex(const KeyPair& name, Make&& make) {
+        const auto [at, is_new] = vertex_of_.insert(name, static_cast<Index>(cuts_.size()));
+        const Index number = *at;
+        if (is_new) cuts_.push_back(make());
+        return number;
+    }
+
+    /// To be called once between the last record() and the first lookup.
+    void finish() {
+        std::sort(segments_.begin(), segments_.end(), before);
+        segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
+    }
+
+    bool empty() const { return segments_.empty(); }
+
+    /// The recorded vertex with a name, or null.
+    const Index* find(const KeyPair& name) const { return vertex_of_.find(name); }
+
+    const Cut& cut(Index vertex) const { return cuts_[vertex]; }
+
+    /// Follows what is drawn on a face from vertex `from` until `stop(vertex)` says so, calling
+    /// pass(vertex) for those between. \return whether it got there
+    template <class Stop, class Pass>
+    bool follow(NodeKey face, Index from, Stop&& stop, Pass&& pass) const {
+        for (std::size_t steps = 0; steps <= segments_.size(); ++steps) {
+            const Segment wanted{face, from, 0};
+            const auto next = std::lower_bound(segments_.begin(), segments_.end(), wanted, before);
+            if (next == segments_.end() || next->face != face || next->from != from) return false;
+            from = next->to;
+            if (stop(from)) return true;
+            pass(from);
+        }
+        return false;
+    }
+
+    std::size_t memory_bytes() const {
+        return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Cut) +
+               vertex_of_.memory_bytes();
+    }
+
+private:
+    struct Segment {
+        NodeKey face;
+        Index from;
+        Index to;
+        bool operator==(const Segment&) const = default;
+    };
+    static bool before(const Segment& a, const Segment& b) {
+        return a.face != b.face ? a.face < b.face : a.from != b.from ? a.from < b.from : a.to < b.to;
+    }
+
+    std::vector<Segment> segments_;
+    std::vector<Cut> cuts_;
+    KeyTable<KeyPair, Index> vertex_of_;
+};
+
+}  // namespace nestgrid

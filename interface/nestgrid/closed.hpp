@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Closed edges and faces: those that a split divides although P_S U does not change on them, for
+// every new node on them is interpolated or hangs. An element on their other side may have stopped
+// above the division.
+//
+// Invariants, for an element on the way down:
+//   - closed.edge[e] is the maximal edge around edge e: the longest one on which all nodes are
+//     interpolated; or null, where that is the edge itself;
+//   - closed.face[f] is the least closed face that face f is a proper part of, or null;
+//     `outer` leads from it to the greater ones.
+// Consequence: a cut is named by, and computed from, its maximal edge, so that elements on both
+// sides of a change of level find the same; and what is drawn below a closed face can be told to
+// the element above it, by the key of the face.
+// They live in the frames of the splits that closed them: valid while the element is on the stack.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <nestgrid/keys.hpp>
+
+namespace nestgrid {
+
+/// An edge with its two ends; component c of the value at end i is value[i * components + c].
+template <class Real, std::size_t components>
+struct MaximalEdge {
+    std::array<NodeKey, 2> key;
+    std::array<Point, 2> position;
+    std::array<Real, 2 * components> value;
+};
+
+struct ClosedFace {
+    NodeKey key;              ///< face_key() of its corners
+    const ClosedFace* outer;  ///< the least closed face it is a proper part of, or null
+    int level;                ///< of the element whose split divides it
+    const RuleFace* part;     ///< which face of that split it is
+    std::uint8_t side;        ///< from which side it is seen, 0 or 1
+};
+
+/// Key of a face from those of its corners, in any order. Own keys may be small numbers, whose sums
+/// coincide, so each is mixed first.
+constexpr NodeKey face_key(std::span<const NodeKey> corners) {
+    NodeKey sum = 0;
+    for (const NodeKey key : corners) sum += detail::mix(key);
+    return detail::mix(sum);
+}
+
+/// Whether the loop of corners runs upwards after its least key: 1 from one side, 0 from the other.
+constexpr std::uint8_t face_side(std::span<const NodeKey> loop) {
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < loop.size(); ++i) least = loop[i] < loop[least] ? i : least;
+    const NodeKey after = loop[(least + 1) % loop.size()];
+    const NodeKey before = loop[(least + loop.size() - 1) % loop.size()];
+    return after < before ? 1 : 0;
+}
+
+/// What is closed around the edges and faces of an element.
+template <class Real, std::size_t components, std::size_t corners>
+struct ClosedParts {
+    using Edge = MaximalEdge<Real, components>;
+    static constexpr std::size_t edges = corners == 3 ? 3 : corners <= 4 ? 6 : max_edges;
+    static constexpr std::size_t faces = corners == 3 ? 3 : corners == 4 ? 4 : max_faces;
+
+    bool any;                              ///< otherwise nothing else is set
+    std::array<const Edge*, edges> edge;
+    std::array<const ClosedFace*, faces> face;
+};
+
+}  // namespace nestgrid

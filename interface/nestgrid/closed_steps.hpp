@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which edges and faces a split closes; included by traversal.hpp.
+#pragma once
+
+#include <nestgrid/traversal.hpp>
+
+namespace nestgrid {
+
+template <class Grid, class Field, Needs needs>
+struct Traversal<Grid, Field, needs>::Parts {
+    using Closed = typename State::Closed;
+    static constexpr std::size_t edges =
+        State::capacity <= 4 ? std::size_t{12} : std::size_t{max_rule_edges};
+
+    std::array<typename Closed::Edge, edges> closed_edge;
+    std::array<const typename Closed::Edge*, edges> edge;  // around each edge of the rule
+    std::array<ClosedFace, max_rule_faces> closed_face;
+    std::array<const ClosedFace*, max_rule_faces> face;  // around parts of each face of the rule
+
+    void give(const Child& child, const Topology& t, Closed& closed) const {
+        bool any = false;
+        for (std::size_t e = 0; e < t.edges; ++e) {
+            const std::uint8_t r = child.rule_edge[e];
+            closed.edge[e] = r == no_edge ? nullptr : edge[r];
+            any = any || closed.edge[e] != nullptr;
+        }
+        for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
+            const std::uint8_t r = child.rule_face[f];
+            closed.face[f] = r == no_face ? nullptr : face[r];
+            any = any || closed.face[f] != nullptr;
+        }
+        closed.any = any;
+    }
+};
+
+template <class Grid, class Field, Needs needs>
+template <class Visitor>
+#if defined(__GNUC__)
+[[gnu::noinline]]  // its frame is large, and grids that conform never come here
+#endif
+void Traversal<Grid, Field, needs>::close_and_enter(const State& s, const Rule& rule,
+                                                    const Nodes& nodes, Visitor& visitor) const {
+    Parts parts;
+    close(s, rule, nodes, parts);
+    enter(s, rule, nodes, &parts, visitor);
+}
+
+template <class Grid, class Field, Needs needs>
+void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, const Nodes& nodes,
+                                          Parts& parts) const {
+    if constexpr (needs.closed) {
+        const Topology& t = topology(s.shape);
+        const auto corners = static_cast<std::size_t>(s.corner_count());
+        if (rule.edges.size() > Parts::edges) {
+            throw GridError("rule '" + rule.name + "' has too many edges for this grid");
+        }
+        std::array<NodeKey, max_corners> corner_key;
+        keys(s, corner_key);
+        const auto key = [&](std::uint8_t n) { return n < corners ? corner_key[n] : nodes.key[n]; };
+        std::array<Point, node_capacity_> own;
+        const Point* position = own.data();
+        if (own_positions_ || !State::carries_positions) {
+            positions(s, std::span<Point>(own.data(), max_corners));
+            for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+                own[corners + n] = detail::interpolate(rule.new_nodes[n], own.data());
+            }
+        } else {
+            position = nodes.position.data();
+        }
+        for (std::size_t e = 0; e < rule.edges.size(); ++e) {
+            const RuleEdge& edge = rule.edges[e];
+            parts.edge[e] = s.closed.any && e < t.edges ? s.closed.edge[e] : nullptr;
+            if (edge.inner == 0) continue;
+            if ((edge.inner & ~nodes.mean) != 0) {
+                parts.edge[e] = nullptr;
+            } else if (parts.edge[e] == nullptr) {
+                auto& closed = parts.closed_edge[e];
+                for (std::size_t i = 0; i < 2; ++i) {
+                    closed.key[i] = key(edge.end[i]);
+                    closed.position[i] = position[edge.end[i]];
+                    for (std::size_t c = 0; c < State::components; ++c) {
+                        closed.value[i * State::components + c] =
+                            nodes.value[edge.end[i] * State::components + c];
+                    }
+                }
+                parts.edge[e] = &closed;
+            }
+        }
+        for (std::size_t f = 0; f < rule.faces.size(); ++f) {
+            const RuleFace& face = rule.faces[f];
+            parts.face[f] = face.parent != no_face ? parts.face[face.parent]
+                            : s.closed.any         ? s.closed.face[f]
+                                                   : nullptr;
+            if (!face.divided || (face.inner & ~nodes.mean) != 0) continue;
+            std::array<NodeKey, 4> loop;
+            for (std::size_t i = 0; i < face.corners; ++i) loop[i] = key(face.corner[i]);
+            const std::span<const NodeKey> of(loop.data(), face.corners);
+            const auto mirrored = static_cast<std::uint8_t>(s.orientation < 0 ? 1 : 0);
+            parts.closed_face[f] = {face_key(of), parts.face[f], s.level, &face,
+                                    static_cast<std::uint8_t>(face_side(of) ^ mirrored)};
+            parts.face[f] = &parts.closed_face[f];
+        }
+    }
+}
+
+}  // namespace nestgrid
