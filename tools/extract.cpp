@@ -17,11 +17,6 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
-template <class Grid>
-constexpr bool is_bisection() {
-    return Grid::max_new_nodes == 1;
-}
-
 template <class Grid, class Field>
 Extraction extract_one(const Grid& grid, const Field& field,
                        const nestgrid::HierarchicalIndicator& indicator, double threshold,
@@ -39,12 +34,7 @@ Extraction extract_one(const Grid& grid, const Field& field,
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
-    // Stopped elements conform on bisection grids only; at threshold 0 others are not stopped.
-    const auto result =
-        threshold == 0 && !is_bisection<Grid>()
-            ? nestgrid::isosurface(grid, field, request.isovalue, nestgrid::Exact{}, indicator,
-                                   options)
-            : nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
+    const auto result = nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
@@ -115,16 +105,10 @@ ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string&
                       const ExtractionRequest& request) {
     ExtractionRun run;
     with_hierarchy(hierarchy, [&](const auto& stored) {
-        using Grid = std::decay_t<decltype(stored.grid)>;
-        if constexpr (is_simplicial<Grid>()) {
-            const nestgrid::NodeField field(stored.grid, field_named(stored.fields, array).values);
-            run.nodes = stored.grid.used_node_count();
-            run.leaf_elements = stored.grid.leaf_count();
-            extract_all(stored.grid, field, request, run);
-        } else {
-            throw nestgrid::GridError("isosurfaces are available for triangles and tetrahedra; '" +
-                                      hierarchy.string() + "' is a hierarchy of other elements");
-        }
+        const nestgrid::NodeField field(stored.grid, field_named(stored.fields, array).values);
+        run.nodes = stored.grid.used_node_count();
+        run.leaf_elements = stored.grid.leaf_count();
+        extract_all(stored.grid, field, request, run);
     });
     return run;
 }

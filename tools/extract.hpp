@@ -59,8 +59,7 @@ ExtractionRun extract(const Volume& volume, const ExtractionRequest& request);
 
 /// The same of a field in a file of a hierarchy.
 /// \param array its name; may be empty where there is only one
-/// \throw nestgrid::InvalidInput where there is no such field; nestgrid::GridError for a family
-///        that is not made of triangles or tetrahedra
+/// \throw nestgrid::InvalidInput where there is no such field
 ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string& array,
                       const ExtractionRequest& request);
 

@@ -19,12 +19,6 @@ inline bool is_hierarchy(const std::filesystem::path& path) {
     return path.extension() == ".nestgrid";
 }
 
-/// Whether all elements of a type of grid are triangles or tetrahedra.
-template <class Grid>
-constexpr bool is_simplicial() {
-    return Grid::max_corners == Grid::dimension + 1;
-}
-
 /// Calls function(StoredHierarchy<Family>&) with the hierarchy of a file.
 /// \throw nestgrid::IoError for a file that holds none
 template <class Function>

@@ -35,9 +35,7 @@ struct MaximalEdge {
 struct ClosedFace {
     NodeKey key;              ///< face_key() of its corners
     const ClosedFace* outer;  ///< the least closed face it is a proper part of, or null
-    int level;                ///< of the element whose split divides it
-    const RuleFace* part;     ///< which face of that split it is
-    std::uint8_t side;        ///< from which side it is seen, 0 or 1
+    NodeKey split;            ///< which nodes divide it, where it is divided one way; or 0
 };
 
 /// Key of a face from those of its corners, in any order. Own keys may be small numbers, whose sums
@@ -46,15 +44,6 @@ constexpr NodeKey face_key(std::span<const NodeKey> corners) {
     NodeKey sum = 0;
     for (const NodeKey key : corners) sum += detail::mix(key);
     return detail::mix(sum);
-}
-
-/// Whether the loop of corners runs upwards after its least key: 1 from one side, 0 from the other.
-constexpr std::uint8_t face_side(std::span<const NodeKey> loop) {
-    std::size_t least = 0;
-    for (std::size_t i = 1; i < loop.size(); ++i) least = loop[i] < loop[least] ? i : least;
-    const NodeKey after = loop[(least + 1) % loop.size()];
-    const NodeKey before = loop[(least + loop.size() - 1) % loop.size()];
-    return after < before ? 1 : 0;
 }
 
 /// What is closed around the edges and faces of an element.

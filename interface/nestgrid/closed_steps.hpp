@@ -4,6 +4,8 @@
 // Which edges and faces a split closes; included by traversal.hpp.
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/traversal.hpp>
 
 namespace nestgrid {
@@ -97,9 +99,12 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
             std::array<NodeKey, 4> loop;
             for (std::size_t i = 0; i < face.corners; ++i) loop[i] = key(face.corner[i]);
             const std::span<const NodeKey> of(loop.data(), face.corners);
-            const auto mirrored = static_cast<std::uint8_t>(s.orientation < 0 ? 1 : 0);
-            parts.closed_face[f] = {face_key(of), parts.face[f], s.level, &face,
-                                    static_cast<std::uint8_t>(face_side(of) ^ mirrored)};
+            NodeKey divided_by = 0;
+            for (NodeMask left = face.one_way ? face.first : 0; left != 0; left &= left - 1) {
+                divided_by += detail::mix(
+                    key(static_cast<std::uint8_t>(corners + std::countr_zero(left))));
+            }
+            parts.closed_face[f] = {face_key(of), parts.face[f], divided_by};
             parts.face[f] = &parts.closed_face[f];
         }
     }

@@ -77,6 +77,8 @@ struct RuleFace {
     std::uint8_t parent = no_face;         ///< of a part: the face of the parent it is cut from
     bool divided = false;                  ///< some child's face is a proper part of it
     NodeMask inner = 0;                    ///< new nodes in it, its corners left out
+    NodeMask first = 0;                    ///< those of the first step, where there are several
+    bool one_way = false;  ///< a quadrilateral that is first divided in one direction only
 };
 
 struct Rule {
@@ -118,3 +120,4 @@ std::vector<Point> reference_nodes(const Rule& rule);
 }  // namespace nestgrid
 
 #include <nestgrid/rule_checks.hpp>
+#include <nestgrid/rule_parts.hpp>

@@ -12,13 +12,15 @@
 
 #include <nestgrid/error.hpp>
 #include <nestgrid/rule.hpp>
-#include <nestgrid/rule_parts.hpp>
 
 namespace nestgrid {
 
 namespace detail {
 
 inline constexpr double rule_tolerance = 1e-9;
+
+void find_parts(Rule& rule);      // rule_parts.hpp
+void place_in_parts(Rule& rule);  // rule_parts.hpp
 
 /// Faces of the parent that hold a node, one bit each, for every node of a rule.
 inline std::vector<unsigned> face_incidence(const Rule& rule) {

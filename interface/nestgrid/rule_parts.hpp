@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The edges and faces of a rule: those of the parent, and those that appear between two steps of a
-// rule that takes several. Included by rule_checks.hpp.
+// rule that takes several. Included by rule.hpp.
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 #include <nestgrid/error.hpp>
@@ -120,6 +121,9 @@ inline void find_parts(Rule& rule) {
             const std::vector<RuleFace> parts = cut_face(rule, f, ends[0], ends[1]);
             if (parts.empty()) continue;
             rule.edges.push_back({ends, NodeSet(rule, ends).inner});
+            for (const std::uint8_t end : ends) {
+                if (end >= t.corners) rule.faces[f].first |= NodeMask{1} << (end - t.corners);
+            }
             rule.faces.insert(rule.faces.end(), parts.begin(), parts.end());
         }
     }
@@ -155,8 +159,10 @@ inline void place_in_parts(Rule& rule) {
             }
         }
     }
-    for (const RuleFace& face : rule.faces) {
+    for (RuleFace& face : rule.faces) {
         if (face.divided && face.inner == 0) rule.divides_bare_faces = true;
+        if (face.first == 0) face.first = face.inner;
+        face.one_way = face.divided && face.corners == 4 && std::popcount(face.first) <= 2;
     }
 }
 

@@ -15,7 +15,9 @@
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
+#include "closedness.hpp"
 #include "sample_fields.hpp"
+#include "sample_grids.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -54,6 +56,30 @@ TEST(Cgal, FindsEverySurfaceInsideTheDomainClosed) {
             EXPECT_TRUE(CGAL::is_valid_polygon_mesh(mesh));
         }
     }
+}
+
+template <class Grid>
+void expect_closed_for_cgal(Grid grid, int levels) {
+    refine_at_sphere(grid, levels);
+    for (const NodalSamples& samples : catching_fields(grid.node_positions(), 1)) {
+        const NodeField<Grid, double> field(grid, samples.values);
+        const HierarchicalIndicator indicator(grid, field);
+        for (const double threshold : {0.0, 0.1, 1.0}) {
+            SCOPED_TRACE(samples.name + " at " + std::to_string(threshold));
+            const auto result = isosurface(grid, field, 0.0, indicator,
+                                           {.threshold = threshold, .cap = true});
+            const Mesh mesh = to_cgal(result.surface);
+            EXPECT_TRUE(CGAL::is_closed(mesh));
+            EXPECT_TRUE(CGAL::is_valid_polygon_mesh(mesh));
+        }
+    }
+}
+
+TEST(Cgal, FindsSurfacesClosedAcrossHangingNodesAndShapes) {
+    expect_closed_for_cgal(OctreeGrid<3>(shaken(hexahedra(2), 1, 0.1), {.balanced = false}), 3);
+    expect_closed_for_cgal(RedGreenGrid<3>(hexahedra(2)), 2);
+    expect_closed_for_cgal(RedGreenSimplices<3>(shaken(tetrahedra(2), 2, 0.1)), 3);
+    expect_closed_for_cgal(PrismGrid(extrude(triangles(2), std::vector{0.5, 0.5})), 3);
 }
 
 TEST(Cgal, FindsNoSelfIntersectionOfTheSphere) {

@@ -44,7 +44,8 @@ struct IsosurfaceOptions {
     bool cap = false;
     /// Keep the extracted elements and which triangle comes from which.
     bool elements = true;
-    /// Keep where the corners of each triangle lie in its element, in reference coordinates.
+    /// Keep where the corners of each triangle lie in its element, in reference coordinates; not a
+    /// number for the few that fill a gap in a face between two directions of refinement.
     bool reference = false;
     /// Compute every shared vertex again from every element and throw a GridError where one bit
     /// differs: finds keys and positions that do not belong together.
@@ -118,6 +119,10 @@ private:
         double fraction;
         std::array<double, attribute_count> attributes;
     };
+    struct Owner {
+        ElementOf<Grid> element;
+        int level;
+    };
     struct Where {  // the nodes a vertex lies between, for its normal
         Number low;
         Number high;
@@ -126,7 +131,7 @@ private:
     };
     struct Layer : Level {
         KeyTable<KeyPair, Number> vertex_of;
-        TransitionContours<Cut> transitions;
+        TransitionContours<Cut, Owner> transitions;
         std::vector<Where> where;
         Number vertex_count = 0;
     };
@@ -151,6 +156,7 @@ private:
     unsigned choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating);
     bool adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
                unsigned signs, bool& is_joined);
+    void fill_gaps(Layer& layer);
     void set_normals(Layer& layer);
 
     // isosurface_cap.hpp
@@ -207,7 +213,7 @@ private:
     int deepest_ = 0;
     NodeGradients gradients_;
 
-    // The element being drawn.
+    // The element being drawn; state_ is null while gaps are filled.
     const State* state_ = nullptr;
     Layer* layer_ = nullptr;
     bool loaded_ = false;

@@ -47,8 +47,10 @@ NESTGRID_VISITOR::run() -> void {
         for (Layer& layer : layers_) layer.transitions.finish();
     }
     walk_->run(*this);
-    if (!options_->normals) return;
-    for (Layer& layer : layers_) set_normals(layer);
+    for (Layer& layer : layers_) {
+        fill_gaps(layer);
+        if (options_->normals) set_normals(layer);
+    }
 }
 
 NESTGRID_VISITOR::table_bytes() const -> std::size_t {
@@ -185,9 +187,9 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
             const Number to = end(contour.segment[i].rises);
             // A mirrored element sees its faces, and the segments on them, the other way round.
             if (s.orientation > 0) {
-                layer.transitions.record(s.closed.face[f], from, to);
+                layer.transitions.record(s.closed.face[f], from, to, {s.element, s.level});
             } else {
-                layer.transitions.record(s.closed.face[f], to, from);
+                layer.transitions.record(s.closed.face[f], to, from, {s.element, s.level});
             }
         }
     }
@@ -296,6 +298,35 @@ NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
                 add_boundary({vertex(loop.edge[i]), vertex(loop.edge[(i + 1) % loop.count])});
             }
         }
+    }
+}
+
+/// Around a vertex in the middle, so that no edge is one of an element.
+NESTGRID_VISITOR::fill_gaps(Layer& layer) -> void {
+    layer_ = &layer;
+    state_ = nullptr;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& gap : layer.transitions.gaps()) {
+        local_.clear();
+        layer.sink.add_element(gap.owner.element, gap.owner.level);
+        Point x{0, 0, 0};
+        std::array<double, attribute_count> attributes{};
+        const double weight = 1.0 / static_cast<double>(gap.loop.size());
+        for (const Number v : gap.loop) {
+            const Cut& cut = layer.transitions.cut(v);
+            number_of(add({cut.node[0], cut.node[1]}, cut), {unknown, unknown, unknown});
+            x = x + weight * cut.x;
+            for (std::size_t i = 0; i < attribute_count; ++i) {
+                attributes[i] += weight * cut.attributes[i];
+            }
+        }
+        const Number n = static_cast<Number>(local_.size());
+        if (n == 3) {
+            triangle(0, 1, 2);
+            continue;
+        }
+        number_of(add_unnamed(x, attributes), {unknown, unknown, unknown});
+        for (Number i = 0; i < n; ++i) triangle(i, (i + 1) % n, n);
     }
 }
 

@@ -224,13 +224,13 @@ NESTGRID_VISITOR::inside(const Point& reference) -> Number {
 
 NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dimension)>& locals)
     -> void {
-    const State& s = *state_;
-    if (!begun_) layer_->sink.add_element(s.element, s.level);
+    if (state_ != nullptr && !begun_) layer_->sink.add_element(state_->element, state_->level);
     begun_ = true;
+    const bool mirrored = state_ != nullptr && state_->orientation < 0;
     std::array<Vertex, static_cast<std::size_t>(dimension)> v;
     std::array<Point, static_cast<std::size_t>(dimension)> reference;
     for (std::size_t i = 0; i < locals.size(); ++i) {
-        const std::size_t from = i < 2 && s.orientation < 0 ? 1 - i : i;
+        const std::size_t from = i < 2 && mirrored ? 1 - i : i;
         v[i] = local_[locals[from]].vertex;
         reference[i] = local_[locals[from]].reference;
     }

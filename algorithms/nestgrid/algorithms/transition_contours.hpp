@@ -19,16 +19,26 @@
 namespace nestgrid {
 
 /// \tparam Cut where a vertex lies and what is known of it
-template <class Cut>
+/// \tparam Owner the element that draws
+template <class Cut, class Owner>
 class TransitionContours {
 public:
     using Index = std::uint32_t;
 
+    /// A polygon in a face that its two sides divide in different directions.
+    struct Gap {
+        std::vector<Index> loop;
+        Owner owner;  ///< an element at it
+    };
+
     /// Adds the segment from one vertex to the other, seen from outside the element that draws it:
     /// it leaves the region U >= C on its right.
-    void record(const ClosedFace* innermost, Index from, Index to) {
+    void record(const ClosedFace* innermost, Index from, Index to, const Owner& owner) {
         for (const ClosedFace* face = innermost; face != nullptr; face = face->outer) {
             record(face->key, from, to);
+            if (face->split == 0) continue;
+            const auto [split, is_new] = split_of_.insert(face->key, face->split);
+            if (*split != face->split) conflicts_.insert(face->key, owner);
         }
     }
     void record(NodeKey face, Index from, Index to) { segments_.push_back({face, from, to}); }
@@ -46,7 +56,14 @@ public:
     void finish() {
         std::sort(segments_.begin(), segments_.end(), before);
         segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
+        conflicts_.for_each([&](NodeKey face, const Owner& owner) { find_gaps(face, owner); });
+        std::sort(gaps_.begin(), gaps_.end(),
+                  [](const Gap& a, const Gap& b) { return a.loop < b.loop; });
+        conflicts_ = {};
+        split_of_ = {};
     }
+
+    const std::vector<Gap>& gaps() const { return gaps_; }
 
     bool empty() const { return segments_.empty(); }
 
@@ -86,7 +103,36 @@ private:
         return a.face != b.face ? a.face < b.face : a.from != b.from ? a.from < b.from : a.to < b.to;
     }
 
+    /// Segments that only one side draws link up to loops: each vertex is as often left as met.
+    void find_gaps(NodeKey face, const Owner& owner) {
+        std::vector<Segment> left;
+        const auto [first, last] =
+            std::equal_range(segments_.begin(), segments_.end(), Segment{face, 0, 0},
+                             [](const Segment& a, const Segment& b) { return a.face < b.face; });
+        for (auto s = first; s != last; ++s) {
+            if (!std::binary_search(first, last, Segment{face, s->to, s->from}, before)) {
+                left.push_back(*s);
+            }
+        }
+        while (!left.empty()) {
+            Gap gap{{}, owner};
+            const Index start = left.back().from;
+            for (Index at = start; gap.loop.empty() || at != start;) {
+                const auto next = std::find_if(left.begin(), left.end(),
+                                               [&](const Segment& s) { return s.from == at; });
+                if (next == left.end()) break;
+                gap.loop.push_back(at);
+                at = next->to;
+                left.erase(next);
+            }
+            if (gap.loop.size() > 2) gaps_.push_back(std::move(gap));
+        }
+    }
+
     std::vector<Segment> segments_;
+    std::vector<Gap> gaps_;
+    KeyTable<NodeKey, NodeKey> split_of_;  // of faces divided one way
+    KeyTable<NodeKey, Owner> conflicts_;
     std::vector<Cut> cuts_;
     KeyTable<KeyPair, Index> vertex_of_;
 };

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The promise: at any threshold, on any hierarchy, a level set has no open edge inside the domain.
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/lattice.hpp>
+#include <nestgrid/adapters/lattice_octree.hpp>
+
+#include "closedness.hpp"
+#include "families.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+const std::vector<double> epsilons{0, 0.01, 0.1, 0.3, 1, 10};
+
+template <class Grid>
+void expect_closed_at(const Grid& grid, const NodalSamples& samples,
+                      const std::vector<double>& thresholds) {
+    const NodeField<Grid, double> field(grid, samples.values);
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : thresholds) {
+        for (const bool cap : {false, true}) {
+            SCOPED_TRACE(samples.name + " at threshold " + std::to_string(threshold) +
+                         (cap ? ", capped" : ""));
+            const auto result = isosurface(grid, field, 0.0, indicator,
+                                           {.threshold = threshold, .cap = cap, .verify = true});
+            expect_closed(result.surface, cap);
+            if constexpr (Grid::dimension == 3) {
+                if (samples.generic && !cap) {
+                    EXPECT_EQ(surface_report(result.surface).degenerate_triangles, 0U);
+                }
+            }
+        }
+    }
+}
+
+/// Refines everything once, then leaves at random, one in `rarity`, until there are enough of them;
+/// neighbours differ by several levels where the family allows it.
+template <class Grid>
+void refine_at_random(Grid& grid, std::mt19937& random, int rounds, int finest, unsigned rarity,
+                      std::size_t enough) {
+    for (int i = 0; i < rounds && grid.leaf_count() < enough; ++i) {
+        [[maybe_unused]] const auto way = random() % 4;
+        try {
+            grid.adapt([&](const Leaf& leaf) {
+                if (leaf.level >= finest || (i > 0 && random() % rarity != 0)) return Mark::keep;
+                if constexpr (std::is_same_v<Grid, PrismGrid>) {
+                    const std::array marks{Mark::refine, Mark::refine_horizontally,
+                                           Mark::refine_vertically};
+                    return marks[(way == 3 ? random() : way) % 3];
+                } else {
+                    return Mark::refine;
+                }
+            });
+        } catch (const InvalidInput&) {  // prisms refuse some mixtures of directions
+        }
+    }
+}
+
+template <class Family>
+class ClosedLevelSets : public testing::Test {};
+TYPED_TEST_SUITE(ClosedLevelSets, Families);
+
+TYPED_TEST(ClosedLevelSets, OnUniformGrids) {
+    for (auto& grid : TypeParam::grids()) {
+        for (int i = 0; i < 2 * TypeParam::steps; ++i) {
+            grid.adapt([](const Leaf&) { return Mark::refine; });
+        }
+        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 1)) {
+            expect_closed_at(grid, samples, epsilons);
+        }
+    }
+}
+
+TYPED_TEST(ClosedLevelSets, AroundASphere) {
+    for (auto& grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 2)) {
+            expect_closed_at(grid, samples, epsilons);
+        }
+    }
+}
+
+TYPED_TEST(ClosedLevelSets, OnRandomGridsWithDeepSpots) {
+    std::mt19937 random(3);
+    for (auto& grid : TypeParam::grids()) {
+        const int steps = TypeParam::steps;
+        refine_at_random(grid, random, 12 * steps, 6 * steps, 10, 1500);
+        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 4)) {
+            expect_closed_at(grid, samples, {0, 0.1, 1});
+        }
+    }
+}
+
+/// Many small hierarchies with random values, about 10,000 over all families.
+TYPED_TEST(ClosedLevelSets, OnSmallRandomGridsWithRandomValues) {
+    std::mt19937 random(5);
+    const auto grids = TypeParam::grids();
+    for (int i = 0; i < 920 && !testing::Test::HasFailure(); ++i) {
+        auto grid = grids[0];
+        const int steps = TypeParam::steps;
+        refine_at_random(grid, random, 1 + static_cast<int>(random() % 5) * steps, 5 * steps, 12,
+                         80);
+        NodalSamples samples{"case " + std::to_string(i), {}, false};
+        const auto kind = random() % 3;
+        for (std::size_t n = 0; n < grid.node_positions().size(); ++n) {
+            const double r = static_cast<double>(random()) / 4294967296.0;
+            samples.values.push_back(kind == 0   ? r - 0.5
+                                     : kind == 1 ? std::floor(5 * r) - 2
+                                                 : (std::floor(9 * r) - 4) * 0x1p-51);
+        }
+        expect_closed_at(grid, samples, {epsilons[random() % epsilons.size()]});
+    }
+}
+
+/// Not stored at all: a saturated full octree over samples.
+TEST(ClosedLevelSetsOfSamples, OnTheImplicitOctree) {
+    for (const Samples& n : {Samples{17, 17, 17}, Samples{33, 33, 33}, Samples{14, 9, 20}}) {
+        const LatticeOctree<3> grid({.samples = n});
+        for (const SampledField& data : sampled_fields(n)) {
+            const LatticeField field(grid, std::span<const float>(data.values));
+            const HierarchicalIndicator indicator(grid, field);
+            for (const double threshold : thresholds) {
+                for (const bool cap : {false, true}) {
+                    SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
+                    const auto result = isosurface(
+                        grid, field, data.isovalue, indicator,
+                        {.threshold = threshold * data.range, .cap = cap, .verify = true});
+                    expect_closed(result.surface, cap);
+                    EXPECT_GT(result.surface.simplices.size(), 0U);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
