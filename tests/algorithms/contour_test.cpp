@@ -56,6 +56,7 @@ struct MiddleCell {
     }
     std::uint32_t vertex(std::uint8_t edge) const { return edge; }
     std::span<const std::uint32_t> chain(std::uint8_t) const { return {}; }
+    bool chained() const { return false; }
     Point position(std::uint32_t v) const { return x[v]; }
     std::uint32_t inside(const Point& at) {
         x.push_back(at);
@@ -133,7 +134,7 @@ TEST(ContourTable, FilledLoopsAreManifoldsBoundedByTheContoursOnTheFaces) {
         ++contours;
         MiddleCell cell(shape);
         ContourFilling<MiddleCell> filling(cell);
-        filling.fill(contour, std::nullopt);
+        filling.fill(contour);
         expect_manifold(cell, face_segments(shape, pattern, joined));
         // Every cut edge lies on one loop, and its ends belong to the regions beside that.
         std::set<std::uint8_t> cut;

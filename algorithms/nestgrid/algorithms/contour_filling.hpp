@@ -19,6 +19,7 @@ namespace nestgrid {
 ///     Number vertex(edge)                     on a cut edge
 ///     std::span<const Number> chain(edge)     what replaces the segment that follows this edge in
 ///                                             its loop: the vertices between, mostly none
+///     bool chained()                          whether there is any chain
 ///     Point position(number)
 ///     Number middle(std::span<const Number>)  a new vertex in the middle of others
 ///     Number inside(reference point)          a new vertex
@@ -31,11 +32,15 @@ public:
 
     explicit ContourFilling(Cell& cell) : cell_{&cell} {}
 
-    void fill(const Contour& contour, const std::optional<Tunnel>& tunnel) {
+    void fill(const Contour& contour) {
+        for (std::size_t i = 0; i < contour.loop_count; ++i) fill_disc(contour.loop[i]);
+    }
+
+    void fill(const Contour& contour, const Tunnel& tunnel) {
         for (std::size_t i = 0; i < contour.loop_count; ++i) {
-            if (!tunnel || (tunnel->from != i && tunnel->to != i)) fill_disc(contour.loop[i]);
+            if (tunnel.from != i && tunnel.to != i) fill_disc(contour.loop[i]);
         }
-        if (tunnel) fill_annulus(contour.loop[tunnel->from], contour.loop[tunnel->to], *tunnel);
+        fill_annulus(contour.loop[tunnel.from], contour.loop[tunnel.to], tunnel);
     }
 
     /// The triangle a b c with chains in the place of its sides. No edge that is made here joins
@@ -72,7 +77,9 @@ private:
         const auto chain = [&](std::size_t i, std::size_t j) {
             return (i + 1) % n == j ? cell_->chain(loop.edge[i]) : Chain{};
         };
+        const bool plain = !cell_->chained();
         const auto add_places = [&](std::size_t i, std::size_t j, std::size_t k) {
+            if (plain) return cell_->triangle(v[i], v[j], v[k]);
             add(v[i], v[j], v[k], chain(i, j), chain(j, k), chain(k, i));
         };
         if (n == 3) return add_places(0, 1, 2);

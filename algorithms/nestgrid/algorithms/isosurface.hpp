@@ -136,16 +136,12 @@ private:
         Number vertex_count = 0;
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
-    struct Local {  // a vertex of the element being drawn
-        Vertex vertex;
-        Point reference;
-    };
     static constexpr Number none = std::numeric_limits<Number>::max();
 
     // isosurface_steps.hpp
     static bool inside(double value, const Layer& layer) { return value >= layer.isovalue; }
     unsigned pattern(const State& s, const Layer& layer) const;
-    bool of_interest(const State& s, double bound, const Layer& layer) const;
+    bool of_interest(const State& s, double bound) const;
     bool joined(const State& s, const FaceTopology& face) const;
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s);
@@ -183,13 +179,15 @@ private:
     KeyPair name(const State& s, std::uint8_t edge) const;
     Cut make_cut(const State& s, const Layer& layer, std::uint8_t edge) const;
     Cut make_node(const State& s, std::size_t corner) const;
-    Vertex add(const KeyPair& name, const Cut& cut);
+    template <class Make>
+    Vertex add(const KeyPair& name, Make&& make);
     Vertex add_unnamed(const Point& x, std::span<const double> attributes);
     Number number_of(const Vertex& vertex, const Point& reference);
     Number vertex(std::uint8_t edge);
     Number node_vertex(std::size_t corner);
     Number recorded(Number index, const FaceTopology& face);
     std::span<const Number> chain(std::uint8_t edge) const;
+    bool chained() const { return chained_ != 0; }
     Point position(Number local) const;
     bool wants_reference() const { return options_->reference || attribute_count > 0; }
     std::array<double, attribute_count> attributes_at(const Point& reference) const;
@@ -206,6 +204,8 @@ private:
     const S* criterion_;
     const Indicator* indicator_;
     const IsosurfaceOptions* options_;
+    std::vector<double> isovalues_;
+    std::array<const ContourTable*, shape_count> table_{};
     std::vector<Layer> layers_;
     TraversalCounts counts_;
     bool recording_ = false;
@@ -221,11 +221,12 @@ private:
     std::array<NodeKey, max_corners> key_{};
     std::array<Point, max_corners> x_{};
     std::array<double, max_corners> u_{};  // U - C at the corners
-    std::vector<Local> local_;
-    std::array<Number, max_edges> on_edge_{};
+    std::vector<Vertex> local_;     // its vertices, by number
+    std::vector<Point> reference_;  // where they lie in it, where wanted
+    std::array<Number, State::Closed::edges> on_edge_{};
     std::array<Number, max_corners> on_corner_{};
     std::uint16_t chained_ = 0;  // edges with a chain behind them
-    std::array<std::vector<Number>, max_edges> chain_;
+    std::array<std::vector<Number>, State::Closed::edges> chain_;
 };
 
 }  // namespace detail

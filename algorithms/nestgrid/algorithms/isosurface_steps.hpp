@@ -16,7 +16,8 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
     const Walk& walk, std::span<const double> isovalues, std::vector<Sink> sinks,
     const S& criterion, const Indicator& indicator, const IsosurfaceOptions& options)
-    : walk_{&walk}, criterion_{&criterion}, indicator_{&indicator}, options_{&options} {
+    : walk_{&walk}, criterion_{&criterion}, indicator_{&indicator}, options_{&options},
+      isovalues_{isovalues.begin(), isovalues.end()} {
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         layers_.push_back({{isovalues[i], std::move(sinks[i])}, {}, {}, {}, 0});
     }
@@ -70,20 +71,21 @@ NESTGRID_VISITOR::pattern(const State& s, const Layer& layer) const -> unsigned 
     return bits;
 }
 
-NESTGRID_VISITOR::of_interest(const State& s, double bound, const Layer& layer) const -> bool {
-    double lo = std::numeric_limits<double>::infinity();
-    double hi = -lo;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+NESTGRID_VISITOR::of_interest(const State& s, double bound) const -> bool {
+    double lo = static_cast<double>(s.value[0]);
+    double hi = lo;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(s.corner_count()); ++i) {
         const double v = s.value[i * State::components];
         lo = std::min(lo, v);
         hi = std::max(hi, v);
     }
     // Rounding is monotone: a difference within the bound is never rounded beyond it.
-    const bool reaches_up = hi >= layer.isovalue || (bound > 0 && layer.isovalue - hi <= bound);
-    const bool reaches_down = lo < layer.isovalue || (bound > 0 && lo - layer.isovalue <= bound);
-    if (!reaches_up) return false;
-    if (reaches_down) return true;
-    return options_->cap && walk_->boundary(s) != 0;
+    for (const double c : isovalues_) {
+        const bool reaches_up = hi >= c || (bound > 0 && c - hi <= bound);
+        const bool reaches_down = lo < c || (bound > 0 && lo - c <= bound);
+        if (reaches_up && (reaches_down || (options_->cap && walk_->boundary(s) != 0))) return true;
+    }
+    return false;
 }
 
 NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
@@ -92,10 +94,7 @@ NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
         throw Cancelled{};
     }
     element_bound_ = split.rule == nullptr ? 0.0 : indicator_->bound(split.keys);
-    const bool interesting = std::any_of(layers_.begin(), layers_.end(), [&](const Layer& layer) {
-        return of_interest(s, element_bound_, layer);
-    });
-    if (!interesting) return {Visit::skip, 0};
+    if (!of_interest(s, element_bound_)) return {Visit::skip, 0};
     ++counts_.visited;
     if (split.rule == nullptr) return {Visit::stop, 0};
     const NodeMask interpolated =
@@ -124,8 +123,9 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
         }
         begun_ = false;
         local_.clear();
+        reference_.clear();
         on_edge_.fill(none);
-        on_corner_.fill(none);
+        if (boundary != 0) on_corner_.fill(none);
         chained_ = 0;
         if (bits != all) draw(s, layer, bits);
         if (boundary != 0) draw_cap(s, layer, bits);
@@ -274,7 +274,9 @@ NESTGRID_VISITOR::choose(const State& s, Layer& layer, unsigned pattern, unsigne
 }
 
 NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
-    const ContourTable& table = ContourTable::of(s.shape);
+    const ContourTable*& known = table_[static_cast<std::size_t>(s.shape)];
+    if (known == nullptr) known = &ContourTable::of(s.shape);
+    const ContourTable& table = *known;
     const unsigned alternating = table.alternating(pattern);
     const Contour& contour = table.at(pattern, choose(s, layer, pattern, alternating));
     const unsigned boundary = walk_->boundary(s);
@@ -289,8 +291,12 @@ NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
         }
     } else {
         ContourFilling<IsosurfaceVisitor> filling(*this);
-        filling.fill(contour, s.shape == Shape::hexahedron ? find_tunnel(contour, u_)
-                                                           : std::optional<Tunnel>{});
+        if (s.shape == Shape::hexahedron && contour.loop_count > 1) {
+            const std::optional<Tunnel> tunnel = find_tunnel(contour, u_);
+            tunnel ? filling.fill(contour, *tunnel) : filling.fill(contour);
+        } else {
+            filling.fill(contour);
+        }
         for (std::size_t l = 0; boundary != 0 && l < contour.loop_count; ++l) {
             const ContourLoop& loop = contour.loop[l];
             for (std::size_t i = 0; i < loop.count; ++i) {
@@ -308,13 +314,14 @@ NESTGRID_VISITOR::fill_gaps(Layer& layer) -> void {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     for (const auto& gap : layer.transitions.gaps()) {
         local_.clear();
+        reference_.clear();
         layer.sink.add_element(gap.owner.element, gap.owner.level);
         Point x{0, 0, 0};
         std::array<double, attribute_count> attributes{};
         const double weight = 1.0 / static_cast<double>(gap.loop.size());
         for (const Number v : gap.loop) {
             const Cut& cut = layer.transitions.cut(v);
-            number_of(add({cut.node[0], cut.node[1]}, cut), {unknown, unknown, unknown});
+            number_of(add({cut.node[0], cut.node[1]}, [&] { return cut; }), {unknown, unknown, unknown});
             x = x + weight * cut.x;
             for (std::size_t i = 0; i < attribute_count; ++i) {
                 attributes[i] += weight * cut.attributes[i];

@@ -77,21 +77,26 @@ NESTGRID_VISITOR::make_node(const State& s, std::size_t corner) const -> Cut {
     return cut;
 }
 
-NESTGRID_VISITOR::add(const KeyPair& name, const Cut& cut) -> Vertex {
+/// The vertex with a name; make() says where it lies, where that is not known yet.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Make>
+auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(const KeyPair& name, Make&& make)
+    -> Vertex {
     if constexpr (!indexed) {
-        return cut.x;
+        return make().x;
     } else {
         if (layer_->vertex_count == none) throw GridError("the surface has 2^32 vertices or more");
         const auto [at, is_new] = layer_->vertex_of.insert(name, layer_->vertex_count);
         const Number number = *at;
         if (is_new) {
+            const Cut cut = make();
             ++layer_->vertex_count;
             layer_->sink.add_vertex(cut.x, cut.attributes);
             if (options_->normals) {
                 layer_->where.push_back({gradients_.slot(cut.node[0]),
                                          gradients_.slot(cut.node[1]), cut.fraction, {}});
             }
-        } else if (options_->verify && layer_->sink.position(number) != cut.x) {
+        } else if (options_->verify && layer_->sink.position(number) != make().x) {
             throw GridError("two elements put the vertex " + std::to_string(number) +
                             " at different places");
         }
@@ -111,18 +116,14 @@ NESTGRID_VISITOR::add_unnamed(const Point& x, std::span<const double> attributes
 }
 
 NESTGRID_VISITOR::number_of(const Vertex& vertex, const Point& reference) -> Number {
-    local_.push_back({vertex, reference});
+    local_.push_back(vertex);
+    if (wants_reference()) reference_.push_back(reference);
     return static_cast<Number>(local_.size() - 1);
 }
 
 NESTGRID_VISITOR::vertex(std::uint8_t edge) -> Number {
     if (on_edge_[edge] != none) return on_edge_[edge];
     const State& s = *state_;
-    const KeyPair key = name(s, edge);
-    const Number* known = nullptr;
-    if constexpr (indexed) {
-        if (!options_->verify) known = layer_->vertex_of.find(key);
-    }
     Point reference{};
     if (wants_reference()) {
         const Topology& t = topology(s.shape);
@@ -130,15 +131,14 @@ NESTGRID_VISITOR::vertex(std::uint8_t edge) -> Number {
         const double fraction = std::clamp(u_[a] / (u_[a] - u_[b]), 0.0, 1.0);
         reference = t.reference[a] + fraction * (t.reference[b] - t.reference[a]);
     }
-    if constexpr (indexed) {
-        if (known != nullptr) return on_edge_[edge] = number_of(*known, reference);
-    }
-    return on_edge_[edge] = number_of(add(key, make_cut(s, *layer_, edge)), reference);
+    const auto make = [&] { return make_cut(s, *layer_, edge); };
+    return on_edge_[edge] = number_of(add(name(s, edge), make), reference);
 }
 
 NESTGRID_VISITOR::node_vertex(std::size_t corner) -> Number {
     if (on_corner_[corner] == none) {
-        on_corner_[corner] = number_of(add({key_[corner], key_[corner]}, make_node(*state_, corner)),
+        const auto make = [&] { return make_node(*state_, corner); };
+        on_corner_[corner] = number_of(add({key_[corner], key_[corner]}, make),
                                        topology(state_->shape).reference[corner]);
     }
     return on_corner_[corner];
@@ -170,7 +170,7 @@ NESTGRID_VISITOR::recorded(Number index, const FaceTopology& face) -> Number {
         }
         reference = blend(t.reference, p, q);
     }
-    return number_of(add({cut.node[0], cut.node[1]}, cut), reference);
+    return number_of(add({cut.node[0], cut.node[1]}, [&] { return cut; }), reference);
 }
 
 NESTGRID_VISITOR::chain(std::uint8_t edge) const -> std::span<const Number> {
@@ -180,9 +180,9 @@ NESTGRID_VISITOR::chain(std::uint8_t edge) const -> std::span<const Number> {
 
 NESTGRID_VISITOR::position(Number local) const -> Point {
     if constexpr (indexed) {
-        return layer_->sink.position(local_[local].vertex);
+        return layer_->sink.position(local_[local]);
     } else {
-        return local_[local].vertex;
+        return local_[local];
     }
 }
 
@@ -208,7 +208,7 @@ NESTGRID_VISITOR::middle(std::span<const Number> of) -> Number {
     const double weight = 1.0 / static_cast<double>(of.size());
     for (const Number v : of) {
         x = x + weight * position(v);
-        reference = reference + weight * local_[v].reference;
+        if (wants_reference()) reference = reference + weight * reference_[v];
     }
     return number_of(add_unnamed(x, attributes_at(reference)), reference);
 }
@@ -231,8 +231,8 @@ NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dime
     std::array<Point, static_cast<std::size_t>(dimension)> reference;
     for (std::size_t i = 0; i < locals.size(); ++i) {
         const std::size_t from = i < 2 && mirrored ? 1 - i : i;
-        v[i] = local_[locals[from]].vertex;
-        reference[i] = local_[locals[from]].reference;
+        v[i] = local_[locals[from]];
+        if (options_->reference) reference[i] = reference_[locals[from]];
     }
     layer_->sink.add_simplex(v, options_->reference ? std::span<const Point>(reference)
                                                     : std::span<const Point>());
@@ -254,7 +254,7 @@ NESTGRID_VISITOR::add_boundary(
     const std::array<Number, static_cast<std::size_t>(dimension - 1)>& locals) -> void {
     if constexpr (indexed) {
         std::array<Number, static_cast<std::size_t>(dimension - 1)> v;
-        for (std::size_t i = 0; i < v.size(); ++i) v[i] = local_[locals[i]].vertex;
+        for (std::size_t i = 0; i < v.size(); ++i) v[i] = local_[locals[i]];
         layer_->sink.add_boundary(v);
     }
 }
