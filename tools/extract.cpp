@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 
+#include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/error.hpp>
 
 #include "hierarchy.hpp"
@@ -47,7 +48,7 @@ Extraction extract_one(const Grid& grid, const Field& field,
         e.report.vertices = result.surface.vertices.size();
         e.report.triangles = result.surface.simplices.size();
     }
-    if (request.keep_surfaces) e.surface = make_poly_data(result.surface);
+    if (request.keep_surfaces) e.surface = nestgrid::make_poly_data(result.surface);
     return e;
 }
 

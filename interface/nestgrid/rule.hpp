@@ -88,6 +88,7 @@ struct Rule {
     std::vector<Child> children;
     std::vector<RuleEdge> edges{};  // derived: first those of the parent, as in its topology
     std::vector<RuleFace> faces{};  // derived: likewise; none in two dimensions
+    int steps = 1;  // derived: the longest chain of new nodes that are parents of each other
     bool divides_bare_faces = false;  // derived: some face is divided without a node in it
 
     int corner_count() const { return topology(parent).corners; }

@@ -276,6 +276,13 @@ inline Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_n
             }
         }
     }
+    std::vector<int> steps(static_cast<std::size_t>(rule.corner_count()), 0);
+    for (const Stencil& s : rule.new_nodes) {
+        int step = 0;
+        for (std::size_t i = 0; i < s.count; ++i) step = std::max(step, steps[s.parent[i]]);
+        steps.push_back(step + 1);
+        rule.steps = std::max(rule.steps, step + 1);
+    }
     detail::find_parts(rule);
     detail::place_in_parts(rule);
     return rule;

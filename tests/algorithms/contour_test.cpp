@@ -238,7 +238,9 @@ struct OneCell {
         return e;
     }
     const Rule* split(const Element&) const { return nullptr; }
-    void children(const Element&, std::span<Element>) const {}
+    void children(const Element&, std::span<Element> out) const {
+        std::fill(out.begin(), out.end(), 0);
+    }
 };
 
 struct OneCellField {
@@ -248,7 +250,10 @@ struct OneCellField {
         std::copy_n(u.begin(), out.size(), out.begin());
         return 0;
     }
-    NodeMask new_values(int, NodeMask, std::span<double>) const { return 0; }
+    NodeMask new_values(int, NodeMask, std::span<double> out) const {
+        std::fill(out.begin(), out.end(), 0.0);
+        return 0;
+    }
 };
 
 /// Says that the level set may be anywhere.

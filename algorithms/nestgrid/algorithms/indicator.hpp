@@ -12,7 +12,8 @@
 // Invariants, after construction:
 //   - stop(corner) >= stop(new node) for every split element;
 //   - bound(corner) >= |U_delta(corner)| + bound(new node), for every split element, corners that
-//     are themselves new nodes of something.
+//     are themselves new nodes of something;
+//   - both also for a parent of a new node that is a new node of the same split.
 // Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is monotone, so the first
 // invariant survives it exactly, and the second stays on the safe side.
 // Memory: O(nodes), 4 bytes (plus 16 to 48 for a hash table where node keys are not dense).
@@ -249,20 +250,30 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
         for (int level = levels - 1; level >= 0; --level) {
             for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
                 if (split.rule == nullptr) return;
-                std::uint16_t stop = 0;
-                float bound = 0;
-                for (const NodeKey key : split.keys) {
-                    const Node& node = nodes[slot(key)];
-                    stop = std::max(stop, node.entry.stop);
-                    bound = std::max(bound, sum_above(node.offset, node.finer));
-                }
-                walk.keys(s, corner_keys);
-                for (int i = 0; i < s.corner_count(); ++i) {
-                    Node& node = nodes[slot(corner_keys[static_cast<std::size_t>(i)])];
+                const auto raise = [&](NodeKey key, std::uint16_t stop, float bound) {
+                    Node& node = nodes[slot(key)];
                     if (node.entry.stop < stop || node.finer < bound) changed = true;
                     node.entry.stop = std::max(node.entry.stop, stop);
                     node.finer = std::max(node.finer, bound);
+                };
+                const auto corners = static_cast<std::size_t>(s.corner_count());
+                std::uint16_t stop = 0;
+                float bound = 0;
+                for (std::size_t n = split.keys.size(); n-- > 0;) {
+                    const Node node = nodes[slot(split.keys[n])];
+                    const float below = sum_above(node.offset, node.finer);
+                    stop = std::max(stop, node.entry.stop);
+                    bound = std::max(bound, below);
+                    // A parent that is a new node itself is to this one as a corner is.
+                    const Stencil& stencil = split.rule->new_nodes[n];
+                    for (std::size_t i = 0; i < stencil.count; ++i) {
+                        if (stencil.parent[i] >= corners) {
+                            raise(split.keys[stencil.parent[i] - corners], node.entry.stop, below);
+                        }
+                    }
                 }
+                walk.keys(s, corner_keys);
+                for (std::size_t i = 0; i < corners; ++i) raise(corner_keys[i], stop, bound);
             });
         }
     }

@@ -37,6 +37,9 @@ struct TraversalCounts {
 struct IsosurfaceOptions {
     /// epsilon, in the units of the data: offsets up to it are projected away.
     double threshold = 0;
+    /// The largest number of triangles (segments), beside which `threshold` is not used: the least
+    /// threshold that keeps within it is found (triangle_budget.hpp). 0 asks for none.
+    std::uint64_t max_triangles = 0;
     /// Unit normals from gradients: the field's own where it offers them, else the mean of the
     /// gradients of the extracted elements around a node, weighted by volume.
     bool normals = false;
@@ -68,6 +71,7 @@ struct Isosurface {
 namespace detail {
 
 struct Cancelled {};
+struct OverLimit {};
 
 template <class Sink>
 concept IndexedSink = !requires { requires !Sink::indexed; };
@@ -95,6 +99,9 @@ public:
                       const S& criterion, const Indicator& indicator,
                       const IsosurfaceOptions& options);
 
+    /// Ends the traversal with OverLimit when there are more simplices than that.
+    void limit(std::uint64_t simplices) { limit_ = simplices; }
+
     /// Whether elements may stop without conforming, so that there is something to record.
     bool must_record() const;
     void run();
@@ -121,6 +128,7 @@ private:
     };
     struct Owner {
         ElementOf<Grid> element;
+        Shape shape;
         int level;
     };
     struct Where {  // the nodes a vertex lies between, for its normal
@@ -209,6 +217,8 @@ private:
     std::vector<Layer> layers_;
     TraversalCounts counts_;
     bool recording_ = false;
+    std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t drawn_ = 0;  // simplices; elements while recording, which draw one at least
     double element_bound_ = 0;  // of the element inspected last
     int deepest_ = 0;
     NodeGradients gradients_;
@@ -239,7 +249,7 @@ private:
 /// \throw GridError where the field has no value, or where the grid has changed since the indicator
 ///        was computed
 /// \throw InvalidInput where an isovalue is not a number or there is not one sink for each; for
-///        normals or caps into a sink without indices
+///        normals into a sink without indices
 template <class Grid, class Field, Criterion S, class Indicator, class Sink>
 std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
     const Grid& grid, const Field& field, std::span<const double> isovalues,
@@ -253,8 +263,8 @@ std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
         throw InvalidInput(std::to_string(isovalues.size()) + " isovalues need as many sinks, not " +
                            std::to_string(sinks.size()));
     }
-    if (!detail::IndexedSink<Sink> && (options.normals || options.cap)) {
-        throw InvalidInput("a stream of triangles has neither normals nor caps");
+    if (!detail::IndexedSink<Sink> && options.normals) {
+        throw InvalidInput("a stream of triangles has no normals");
     }
     if (indicator.epoch() != epoch(grid)) {
         throw GridError("the grid has changed since its indicator was computed");
@@ -307,17 +317,14 @@ Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const 
                          .front());
 }
 
-/// The same with S from options.threshold.
-/// \throw InvalidInput also where the threshold is negative or not a number
+/// The same with S from options.threshold or options.max_triangles.
+/// \throw InvalidInput also where the threshold is negative or not a number, and where even the
+///        coarsest surface has more triangles than asked for
 template <class Grid, class Field, class Indicator>
     requires requires(const Indicator& i) { i.stop(NodeKey{}); }
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
                                                         double isovalue, const Indicator& indicator,
-                                                        const IsosurfaceOptions& options = {}) {
-    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
-    const Threshold<Indicator> criterion{&indicator, options.threshold};
-    return isosurface(grid, field, isovalue, criterion, indicator, options);
-}
+                                                        const IsosurfaceOptions& options = {});
 
 /// The same with its own preroll: one call for one surface.
 template <class Grid, class Field>
@@ -331,3 +338,4 @@ Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const 
 }  // namespace nestgrid
 
 #include <nestgrid/algorithms/isosurface_steps.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>

@@ -45,12 +45,15 @@ NESTGRID_VISITOR::run() -> void {
         walk_->run(*this);
         recording_ = false;
         counts_ = {};
+        drawn_ = 0;
         for (Layer& layer : layers_) layer.transitions.finish();
     }
     walk_->run(*this);
     for (Layer& layer : layers_) {
         fill_gaps(layer);
-        if (options_->normals) set_normals(layer);
+        if constexpr (indexed) {
+            if (options_->normals) set_normals(layer);
+        }
     }
 }
 
@@ -103,7 +106,7 @@ NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
 }
 
 NESTGRID_VISITOR::extract(const State& s) -> void {
-    if (recording_ && !s.closed.any) return;
+    if (recording_ && !s.closed.any && limit_ == std::numeric_limits<std::uint64_t>::max()) return;
     const unsigned all = (1U << s.corner_count()) - 1;
     const unsigned boundary = options_->cap ? walk_->boundary(s) : 0U;
     loaded_ = false;
@@ -117,6 +120,8 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
         state_ = &s;
         layer_ = &layer;
         if (recording_) {
+            if (bits != all && ++drawn_ > limit_) throw OverLimit{};
+            if (!s.closed.any) continue;
             if (bits != all) record(s, layer, bits);
             if (boundary != 0) record_cap(s, layer, bits);
             continue;
@@ -148,6 +153,8 @@ NESTGRID_VISITOR::add_error(const State& s, Layer& layer) const -> void {
     for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
         if ((s.interpolated >> i & 1U) != 0) corner = std::max(corner, indicator_->stop(key_[i]));
     }
+    // An interpolated parent that was made in the same split adds its own error.
+    if (s.made_by != nullptr) corner *= s.made_by->steps;
     layer.error_bound = std::max(layer.error_bound, element_bound_ + corner);
 }
 
@@ -187,9 +194,9 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
             const Number to = end(contour.segment[i].rises);
             // A mirrored element sees its faces, and the segments on them, the other way round.
             if (s.orientation > 0) {
-                layer.transitions.record(s.closed.face[f], from, to, {s.element, s.level});
+                layer.transitions.record(s.closed.face[f], from, to, {s.element, s.shape, s.level});
             } else {
-                layer.transitions.record(s.closed.face[f], to, from, {s.element, s.level});
+                layer.transitions.record(s.closed.face[f], to, from, {s.element, s.shape, s.level});
             }
         }
     }
@@ -315,7 +322,7 @@ NESTGRID_VISITOR::fill_gaps(Layer& layer) -> void {
     for (const auto& gap : layer.transitions.gaps()) {
         local_.clear();
         reference_.clear();
-        layer.sink.add_element(gap.owner.element, gap.owner.level);
+        layer.sink.add_element(gap.owner.element, gap.owner.shape, gap.owner.level);
         Point x{0, 0, 0};
         std::array<double, attribute_count> attributes{};
         const double weight = 1.0 / static_cast<double>(gap.loop.size());

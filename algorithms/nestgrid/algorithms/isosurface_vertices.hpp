@@ -224,8 +224,11 @@ NESTGRID_VISITOR::inside(const Point& reference) -> Number {
 
 NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dimension)>& locals)
     -> void {
-    if (state_ != nullptr && !begun_) layer_->sink.add_element(state_->element, state_->level);
+    if (state_ != nullptr && !begun_) {
+        layer_->sink.add_element(state_->element, state_->shape, state_->level);
+    }
     begun_ = true;
+    if (++drawn_ > limit_) throw OverLimit{};
     const bool mirrored = state_ != nullptr && state_->orientation < 0;
     std::array<Vertex, static_cast<std::size_t>(dimension)> v;
     std::array<Point, static_cast<std::size_t>(dimension)> reference;

@@ -7,14 +7,14 @@
 //     void add_vertex(const Point& x, std::span<const double> attributes)
 //         attributes: components 1 ... of the field there
 //     Point position(std::uint32_t vertex) const
-//     void add_element(const Element& element, int level)
+//     void add_element(const Element& element, Shape shape, int level)
 //         before the first simplex from it
 //     void add_simplex(const Simplex& vertices, std::span<const Point> reference)
 //         reference: where they lie in the element; empty unless asked for
 //     void add_boundary(const Ridge& vertices)        on the boundary of the domain
 //     void set_normal(std::uint32_t vertex, const Point& unit)   at the end, where asked for
 // A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
-//     void add_element(const Element& element, int level)
+//     void add_element(const Element& element, Shape shape, int level)
 //     void add_simplex(const std::array<Point, dimension>& x, std::span<const Point> reference)
 #pragma once
 
@@ -23,7 +23,7 @@
 #include <span>
 #include <vector>
 
-#include <nestgrid/geometry.hpp>
+#include <nestgrid/shape.hpp>
 
 namespace nestgrid {
 
@@ -43,14 +43,15 @@ struct Surface {
     std::vector<Point> reference;           ///< per corner of a simplex, where asked for: where it
                                             ///< lies in the reference element
     std::vector<Element> elements;          ///< the extracted elements, in order of the traversal
+    std::vector<Shape> shape_of;            ///< shape of each of them
     std::vector<std::uint16_t> level_of;    ///< level of each of them
     std::vector<Ridge> boundary;            ///< edges (points) on the boundary of the domain
 
     std::size_t memory_bytes() const {
         const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
         return bytes(vertices) + bytes(normals) + bytes(attributes) + bytes(simplices) +
-               bytes(element_of) + bytes(reference) + bytes(elements) + bytes(level_of) +
-               bytes(boundary);
+               bytes(element_of) + bytes(reference) + bytes(elements) + bytes(shape_of) +
+               bytes(level_of) + bytes(boundary);
     }
 };
 
@@ -70,9 +71,10 @@ public:
                                     attributes.end());
     }
     Point position(std::uint32_t vertex) const { return surface_->vertices[vertex]; }
-    void add_element(const Element& element, int level) {
+    void add_element(const Element& element, Shape shape, int level) {
         if (!elements_) return;
         surface_->elements.push_back(element);
+        surface_->shape_of.push_back(shape);
         surface_->level_of.push_back(static_cast<std::uint16_t>(level));
     }
     void add_simplex(const typename Target::Simplex& vertices, std::span<const Point> reference) {
@@ -105,7 +107,7 @@ public:
     explicit SimplexStream(Function function) : function_{std::move(function)} {}
 
     template <class Element>
-    void add_element(const Element&, int) {}
+    void add_element(const Element&, Shape, int) {}
     void add_simplex(const std::array<Point, static_cast<std::size_t>(dimension)>& x,
                      std::span<const Point>) {
         function_(x);

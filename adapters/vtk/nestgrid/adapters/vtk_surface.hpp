@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Level sets as vtkPolyData, filled while they are extracted.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include <nestgrid/algorithms/surface.hpp>
+
+namespace nestgrid {
+
+/// A sink (surface.hpp): triangles become polygons, segments lines. Cells have the number of their
+/// element in the order of extraction ("element") and its level ("level"); points have the
+/// attributes, and normals where they are asked for ("Normals").
+template <int dimension>
+class PolyDataSink {
+public:
+    /// \param attributes names of components 1 ... of the field
+    explicit PolyDataSink(std::vector<std::string> attributes = {})
+        : names_{std::move(attributes)} {
+        points_->SetDataTypeToDouble();
+        element_->SetName("element");
+        level_->SetName("level");
+        data_->SetPoints(points_);
+        dimension == 3 ? data_->SetPolys(cells_) : data_->SetLines(cells_);
+        data_->GetCellData()->AddArray(element_);
+        data_->GetCellData()->AddArray(level_);
+    }
+
+    vtkPolyData* data() const { return data_; }
+
+    void add_vertex(const Point& x, std::span<const double> attributes) {
+        points_->InsertNextPoint(x.data());
+        for (std::size_t i = attributes_.size(); i < attributes.size(); ++i) {
+            attributes_.push_back(vtkSmartPointer<vtkDoubleArray>::New());
+            const std::string name =
+                i < names_.size() ? names_[i] : "component " + std::to_string(i + 1);
+            attributes_[i]->SetName(name.c_str());
+            data_->GetPointData()->AddArray(attributes_[i]);
+        }
+        for (std::size_t i = 0; i < attributes.size(); ++i) {
+            attributes_[i]->InsertNextValue(attributes[i]);
+        }
+    }
+    Point position(std::uint32_t vertex) const {
+        Point x;
+        points_->GetPoint(static_cast<vtkIdType>(vertex), x.data());
+        return x;
+    }
+    template <class Element>
+    void add_element(const Element&, Shape, int level) {
+        ++elements_;
+        current_level_ = level;
+    }
+    void add_simplex(const std::array<std::uint32_t, static_cast<std::size_t>(dimension)>& vertices,
+                     std::span<const Point>) {
+        cells_->InsertNextCell(dimension);
+        for (const std::uint32_t v : vertices) cells_->InsertCellPoint(static_cast<vtkIdType>(v));
+        element_->InsertNextValue(elements_ - 1);
+        level_->InsertNextValue(current_level_);
+    }
+    void add_boundary(const std::array<std::uint32_t, static_cast<std::size_t>(dimension - 1)>&) {}
+    void set_normal(std::uint32_t vertex, const Point& unit) {
+        if (data_->GetPointData()->GetNormals() == nullptr) {
+            normals_->SetName("Normals");
+            normals_->SetNumberOfComponents(3);
+            normals_->SetNumberOfTuples(points_->GetNumberOfPoints());
+            data_->GetPointData()->SetNormals(normals_);
+        }
+        normals_->SetTuple(static_cast<vtkIdType>(vertex), unit.data());
+    }
+
+private:
+    std::vector<std::string> names_;
+    vtkSmartPointer<vtkPolyData> data_ = vtkSmartPointer<vtkPolyData>::New();
+    vtkSmartPointer<vtkPoints> points_ = vtkSmartPointer<vtkPoints>::New();
+    vtkSmartPointer<vtkCellArray> cells_ = vtkSmartPointer<vtkCellArray>::New();
+    vtkSmartPointer<vtkIntArray> element_ = vtkSmartPointer<vtkIntArray>::New();
+    vtkSmartPointer<vtkIntArray> level_ = vtkSmartPointer<vtkIntArray>::New();
+    vtkSmartPointer<vtkFloatArray> normals_ = vtkSmartPointer<vtkFloatArray>::New();
+    std::vector<vtkSmartPointer<vtkDoubleArray>> attributes_;
+    int elements_ = 0;
+    int current_level_ = 0;
+};
+
+/// The surface as vtkPolyData.
+template <int dimension, class Element>
+vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension, Element>& surface) {
+    PolyDataSink<dimension> sink;
+    const std::size_t vertices = surface.vertices.size();
+    const std::size_t attributes = vertices == 0 ? 0 : surface.attributes.size() / vertices;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        sink.add_vertex(surface.vertices[v],
+                        std::span(surface.attributes).subspan(v * attributes, attributes));
+    }
+    std::size_t elements = 0;
+    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
+        if (!surface.element_of.empty() && surface.element_of[t] == elements) {
+            sink.add_element(surface.elements[elements], surface.shape_of[elements],
+                             surface.level_of[elements]);
+            ++elements;
+        }
+        sink.add_simplex(surface.simplices[t], {});
+    }
+    for (std::uint32_t v = 0; v < surface.normals.size(); ++v) {
+        sink.set_normal(v, surface.normals[v]);
+    }
+    return sink.data();
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Fine inside a region, coarse outside (the lens of the paper, section 4.2).
+//
+// Two thresholds on one indicator would crack: which of them holds at a node would depend on the
+// node alone, and a node outside may have finer nodes inside. So a node belongs to the region if it
+// or any node created, at any depth, in elements it is a corner of, lies there: a saturated
+// indicator with the values 0 and 1. Then
+//     S = S_out and (S_in or not in the region)
+// is saturated, for where both (one) of two saturated criteria hold(s) at a corner, the same hold
+// at the new nodes.
+// Memory: a byte a node (a key a node where keys are not dense). Cost: a few walks over the grid.
+#pragma once
+
+#include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/key_table.hpp>
+#include <nestgrid/levels.hpp>
+
+namespace nestgrid {
+
+class Region {
+public:
+    static constexpr bool saturated = true;
+
+    /// \param inside whether a point lies in the region: bool(const Point&)
+    template <class Grid, class Inside>
+    Region(const Grid& grid, Inside&& inside) : dense_(dense_key_count(grid), 0) {
+        const ZeroField<Grid> zero;
+        const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}> walk(grid,
+                                                                                           zero);
+        std::array<NodeKey, max_corners> keys;
+        const int levels = count_levels(walk);
+        for (int level = 0; level < levels; ++level) {
+            for_each_on_level(walk, level, [&](const auto& s, const Split&) {
+                std::array<Point, max_corners> x;
+                walk.keys(s, keys);
+                walk.positions(s, x);
+                for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+                    if (inside(x[i])) add(keys[i]);
+                }
+            });
+        }
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (int level = levels - 1; level >= 0; --level) {
+                for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
+                    const bool below = std::any_of(split.keys.begin(), split.keys.end(),
+                                                   [&](NodeKey key) { return contains(key); });
+                    if (!below) return;
+                    walk.keys(s, keys);
+                    for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+                        changed = add(keys[i]) || changed;
+                    }
+                });
+            }
+        }
+    }
+
+    bool contains(NodeKey node) const {
+        return dense_.empty() ? sparse_.find(node) != nullptr
+                              : dense_[static_cast<std::size_t>(node)] != 0;
+    }
+
+    /// As an indicator: 1 in the region, 0 outside.
+    double stop(NodeKey node) const { return contains(node) ? 1 : 0; }
+
+private:
+    struct Present {};
+
+    bool add(NodeKey node) {
+        if (dense_.empty()) return sparse_.insert(node, {}).second;
+        return std::exchange(dense_[static_cast<std::size_t>(node)], std::uint8_t{1}) == 0;
+    }
+
+    std::vector<std::uint8_t> dense_;
+    KeyTable<NodeKey, Present> sparse_;
+};
+
+/// S for a threshold outside a region and a smaller one inside; both must outlive the criterion.
+template <class Indicator>
+auto fine_inside(const Region& region, const Indicator& indicator, double outside, double inside) {
+    return Threshold<Indicator>{&indicator, outside} &&
+           (Threshold<Indicator>{&indicator, inside} || Threshold<Region>{&region, 0.5});
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,316 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What people need from a surface: measures with their order, attributes, reference coordinates,
+// normals, budgets, regions of interest, several isovalues, streams.
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/adapters/lattice_octree.hpp>
+#include <nestgrid/algorithms/region.hpp>
+#include <nestgrid/algorithms/surface_measures.hpp>
+
+#include "closedness.hpp"
+#include "families.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+const Point centre{0.5, 0.5, 0.5};
+
+/// A scalar and what is to be carried onto its surface: 0.36 - r, then the position, then x y.
+class ScalarAndMore {
+public:
+    using value_type = double;
+    static constexpr int components = 5;
+
+    template <class Grid>
+    explicit ScalarAndMore(const Grid& grid) {
+        const auto& x = grid.node_positions();
+        for (const Point& p : x) {
+            values_.push_back({0.36 - norm(p - centre), p[0], p[1], p[2], p[0] * p[1]});
+        }
+    }
+    std::array<double, 5> at(NodeKey node) const {
+        return values_[static_cast<std::size_t>(node)];
+    }
+
+private:
+    std::vector<std::array<double, 5>> values_;
+};
+
+template <class Grid>
+class FieldOn {
+public:
+    using value_type = double;
+    static constexpr int components = 5;
+
+    FieldOn(const Grid& grid, const ScalarAndMore& values) : grid_{&grid}, values_{&values} {}
+    NodeMask coarse_values(std::size_t i, std::span<double> out) const {
+        std::array<NodeKey, max_corners> keys;
+        const auto coarse = grid_->coarse(i);
+        const auto n = static_cast<std::size_t>(topology(coarse.shape).corners);
+        grid_->corner_keys(coarse.element, std::span(keys).first(n));
+        for (std::size_t k = 0; k < n; ++k) put(keys[k], out, k);
+        return 0;
+    }
+    NodeMask new_values(const typename Grid::Element& e, NodeMask which,
+                        std::span<double> out) const {
+        std::array<NodeKey, max_new_nodes> keys;
+        const auto n = static_cast<std::size_t>(grid_->split(e)->new_node_count());
+        grid_->new_keys(e, std::span(keys).first(n));
+        for (std::size_t k = 0; k < n; ++k) {
+            if ((which >> k & 1U) != 0) put(keys[k], out, k);
+        }
+        return 0;
+    }
+
+private:
+    void put(NodeKey node, std::span<double> out, std::size_t k) const {
+        const auto v = values_->at(node);
+        std::copy(v.begin(), v.end(), out.begin() + static_cast<std::ptrdiff_t>(5 * k));
+    }
+    const Grid* grid_;
+    const ScalarAndMore* values_;
+};
+
+template <class Grid>
+void uniform(Grid& grid, int times) {
+    for (int i = 0; i < times; ++i) grid.adapt([](const Leaf&) { return Mark::refine; });
+}
+
+template <class Grid>
+std::vector<Point> corners_of(const Grid& grid, const typename Grid::Element& e, Shape shape) {
+    static const void* of = nullptr;
+    static std::vector<Point> nodes;
+    if (of != &grid) nodes = grid.node_positions();
+    of = &grid;
+    std::array<NodeKey, max_corners> keys;
+    const std::size_t n = topology(shape).corners;
+    grid.corner_keys(e, std::span(keys).first(n));
+    std::vector<Point> x;
+    for (std::size_t i = 0; i < n; ++i) x.push_back(nodes[static_cast<std::size_t>(keys[i])]);
+    return x;
+}
+
+template <class Family>
+class Uses : public testing::Test {};
+using SolidFamilies = testing::Types<BisectionTetrahedra, RedGreenTetrahedra, RedGreenMixed3,
+                                     BalancedOctree, UnbalancedOctree, Prisms>;
+TYPED_TEST_SUITE(Uses, SolidFamilies);
+
+TYPED_TEST(Uses, MeasuresConvergeWithOrderTwo) {
+    std::array<double, 4> last{};
+    for (int level = 2; level <= 4; ++level) {
+        auto grid = TypeParam::grids()[0];
+        uniform(grid, level * TypeParam::steps);
+        const ScalarAndMore values(grid);
+        const FieldOn field(grid, values);
+        const auto result = isosurface(grid, field, 0.0, {});
+        expect_closed(result.surface);
+        const SurfaceMeasurement m = measure_surface(result.surface);
+        ASSERT_EQ(m.components.size(), 1U);
+        EXPECT_TRUE(m.total.closed);
+        const double r = 0.36;
+        const double area = 4 * pi * r * r;
+        const double volume = area * r / 3;
+        // The flux of the position is three times the volume; x integrates to its mean, 1/2.
+        const std::array<double, 4> error{
+            std::abs(m.total.area - area) / area, std::abs(m.total.volume - volume) / volume,
+            std::abs(flux(result.surface, m)[0] / 3 - volume) / volume,
+            std::abs(m.total.integrals[0] - area / 2) / area};
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (level == 4) {
+                EXPECT_LT(error[i], 0.02) << i;
+                EXPECT_LT(error[i], last[i] / 2.8) << i;
+            }
+            last[i] = error[i];
+        }
+        EXPECT_NEAR(norm(m.total.area_vector), 0, 1e-12);
+    }
+}
+
+TYPED_TEST(Uses, AttributesAndReferenceCoordinatesSayWhereTheTrianglesAre) {
+    for (auto& grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        const ScalarAndMore values(grid);
+        const FieldOn field(grid, values);
+        const HierarchicalIndicator indicator(grid, field);
+        for (const double threshold : {0.0, 0.05}) {
+            const auto result =
+                isosurface(grid, field, 0.0, indicator,
+                           {.threshold = threshold, .normals = true, .reference = true});
+            const auto& s = result.surface;
+            ASSERT_GT(s.simplices.size(), 20U);
+            ASSERT_EQ(s.reference.size(), 3 * s.simplices.size());
+            ASSERT_EQ(s.attributes.size(), 4 * s.vertices.size());
+            ASSERT_EQ(s.normals.size(), s.vertices.size());
+            // The attributes are projected with the same S, so the position as an attribute is the
+            // position, wherever elements are not curved by it.
+            for (std::size_t v = 0; v < s.vertices.size(); ++v) {
+                for (std::size_t d = 0; d < 3; ++d) {
+                    EXPECT_NEAR(s.attributes[4 * v + d], s.vertices[v][d], 1e-12);
+                }
+                const Point out = s.vertices[v] - centre;
+                EXPECT_NEAR(norm(s.normals[v]), 1, 1e-12);
+                EXPECT_GT(dot(s.normals[v], out) / norm(out), threshold == 0 ? 0.8 : 0.5);
+            }
+            for (std::size_t c = 0; c < s.reference.size(); ++c) {
+                const std::size_t e = s.element_of[c / 3];
+                const Shape shape = s.shape_of[e];
+                const std::vector<Point> x = corners_of(grid, s.elements[e], shape);
+                const auto w = shape_functions(shape, s.reference[c]);
+                Point there{0, 0, 0};
+                for (std::size_t i = 0; i < topology(shape).corners; ++i) {
+                    EXPECT_GE(w[i], -1e-9);
+                    there = there + w[i] * x[i];
+                }
+                const Point& v = s.vertices[s.simplices[c / 3][c % 3]];
+                EXPECT_NEAR(norm(there - v), 0, 1e-6);
+            }
+        }
+    }
+}
+
+TYPED_TEST(Uses, SeveralIsovaluesInOneTraversalAreThoseOfSeveral) {
+    auto grid = TypeParam::grids()[0];
+    refine_at_sphere(grid, 2 * TypeParam::steps);
+    for (const NodalSamples& samples : catching_fields(grid.node_positions(), 1)) {
+        const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
+        const HierarchicalIndicator indicator(grid, field);
+        const Threshold<HierarchicalIndicator> criterion{&indicator, 0.01};
+        const std::array<double, 3> isovalues{-0.1, 0, 0.05};
+        const auto together = isosurfaces(grid, field, std::span<const double>(isovalues),
+                                          criterion, indicator, {.cap = true});
+        for (std::size_t i = 0; i < isovalues.size(); ++i) {
+            const auto alone =
+                isosurface(grid, field, isovalues[i], criterion, indicator, {.cap = true});
+            EXPECT_EQ(together[i].surface.vertices, alone.surface.vertices);
+            EXPECT_EQ(together[i].surface.simplices, alone.surface.simplices);
+            EXPECT_EQ(together[i].error_bound, alone.error_bound);
+            expect_closed(together[i].surface, true);
+        }
+    }
+}
+
+TYPED_TEST(Uses, StreamsHandOutTheSameTriangles) {
+    auto grid = TypeParam::grids()[0];
+    refine_at_sphere(grid, 2 * TypeParam::steps);
+    for (const NodalSamples& samples : catching_fields(grid.node_positions(), 1)) {
+        const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
+        const HierarchicalIndicator indicator(grid, field);
+        const Threshold<HierarchicalIndicator> criterion{&indicator, 0.01};
+        const double isovalue = 0;
+        std::vector<std::array<Point, 3>> triangles;
+        const auto keep = [&](const std::array<Point, 3>& x) { triangles.push_back(x); };
+        using Sink = SimplexStream<3, decltype(keep)>;
+        extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1),
+                            std::vector<Sink>{Sink(keep)}, criterion, indicator, {.cap = true});
+        const auto result =
+            isosurface(grid, field, isovalue, criterion, indicator, {.cap = true});
+        const auto& s = result.surface;
+        ASSERT_EQ(triangles.size(), s.simplices.size());
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                EXPECT_EQ(triangles[t][i], s.vertices[s.simplices[t][i]]);
+            }
+        }
+    }
+}
+
+/// The part of the cube below a plane, and between two.
+TYPED_TEST(Uses, VolumesBetweenIsovaluesAreExactForLinearFunctions) {
+    auto grid = TypeParam::grids()[0];
+    refine_at_sphere(grid, 2 * TypeParam::steps);
+    const auto values = sample_nodes(grid, [](const Point& x) { return x[0] + x[1] + x[2]; });
+    const NodeField<typename TypeParam::Grid, double> field(grid, values);
+    const HierarchicalIndicator indicator(grid, field);
+    // Cuts are kept 2^-20 of an edge away from its ends.
+    EXPECT_NEAR(volume_between(grid, field, 2.4, 9.0, indicator), 0.6 * 0.6 * 0.6 / 6, 1e-5);
+    EXPECT_NEAR(volume_between(grid, field, 0.6, 2.4, indicator), 1 - 0.6 * 0.6 * 0.6 / 3, 1e-5);
+    EXPECT_NEAR(volume_between(grid, field, -1, 4, indicator), 1, 1e-12);
+    EXPECT_THROW(volume_between(grid, field, 1, 0, indicator), InvalidInput);
+}
+
+template <class Grid, class Field>
+void expect_best_threshold(const Grid& grid, const Field& field, double isovalue) {
+    const HierarchicalIndicator indicator(grid, field);
+    const auto triangles = [&](double threshold) {
+        return isosurface(grid, field, isovalue, indicator, {.threshold = threshold})
+            .surface.simplices.size();
+    };
+    const std::size_t finest = triangles(0);
+    for (const std::size_t budget : {finest / 40, finest / 7, finest / 2, finest, 2 * finest}) {
+        SCOPED_TRACE(budget);
+        const TriangleBudget best = find_threshold(grid, field, isovalue, indicator, budget);
+        EXPECT_LE(best.triangles, budget);
+        EXPECT_EQ(triangles(best.threshold), best.triangles);
+        EXPECT_LE(best.extracted, 20 * budget);
+        if (best.threshold > 0) {
+            // Stopping numbers are bfloat16: nothing changes between this one and the one below.
+            const std::uint16_t code = bfloat16_above(static_cast<float>(best.threshold));
+            EXPECT_EQ(bfloat16_value(code), best.threshold);
+            EXPECT_GT(triangles(bfloat16_value(static_cast<std::uint16_t>(code - 1))), budget);
+        } else {
+            EXPECT_GE(budget, finest);
+        }
+        const auto result =
+            isosurface(grid, field, isovalue, indicator, {.max_triangles = budget});
+        EXPECT_EQ(result.surface.simplices.size(), best.triangles);
+    }
+    EXPECT_THROW(
+        find_threshold(grid, field, indicator.least() - 1, indicator, 1, {.cap = true}),
+        InvalidInput);
+}
+
+TEST(TriangleBudgets, AreKeptByTheLeastThreshold) {
+    const Samples n{33, 33, 33};
+    const SampledField data = sampled_fields(n)[1];
+    const LatticeBisection<3> tetrahedra({.samples = n});
+    const LatticeOctree<3> hexahedra({.samples = n});
+    expect_best_threshold(tetrahedra, LatticeField(tetrahedra, std::span<const float>(data.values)),
+                          data.isovalue);
+    expect_best_threshold(hexahedra, LatticeField(hexahedra, std::span<const float>(data.values)),
+                          data.isovalue);
+}
+
+/// Fine in a box, coarse elsewhere, closed everywhere.
+TYPED_TEST(Uses, RegionsHaveTheirOwnThreshold) {
+    auto grid = TypeParam::grids()[0];
+    uniform(grid, 3 * TypeParam::steps);
+    // One element more than where the surface is compared: those across the border are mixed.
+    const Region region(grid, [](const Point& x) { return x[0] > 0.3 && x[1] > 0.3; });
+    const auto inside = [](const Point& x) { return x[0] > 0.56 && x[1] > 0.56; };
+    for (const NodalSamples& samples : catching_fields(grid.node_positions(), 1)) {
+        SCOPED_TRACE(samples.name);
+        const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
+        const HierarchicalIndicator indicator(grid, field);
+        const auto criterion = fine_inside(region, indicator, 0.5, 0.0);
+        static_assert(decltype(criterion)::saturated);
+        const auto mixed = isosurface(grid, field, 0.0, criterion, indicator, {.verify = true});
+        const auto fine = isosurface(grid, field, 0.0, indicator, {});
+        const auto coarse = isosurface(grid, field, 0.0, indicator, {.threshold = 0.5});
+        expect_closed(mixed.surface);
+        // In the region every vertex of the fine surface is there.
+        std::set<Point> vertices(mixed.surface.vertices.begin(), mixed.surface.vertices.end());
+        std::size_t within = 0;
+        for (const auto& t : fine.surface.simplices) {
+            const auto& v = fine.surface.vertices;
+            if (!inside(v[t[0]]) || !inside(v[t[1]]) || !inside(v[t[2]])) continue;
+            ++within;
+            for (const std::uint32_t i : t) EXPECT_EQ(vertices.count(v[i]), 1U);
+        }
+        if (samples.name == "sphere" || samples.name == "noise") {
+            EXPECT_GT(within, 10U);
+            EXPECT_LT(mixed.surface.simplices.size(), fine.surface.simplices.size());
+            EXPECT_GT(mixed.surface.simplices.size(), coarse.surface.simplices.size());
+        }
+    }
+}
+
+}  // namespace
