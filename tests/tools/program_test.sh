@@ -176,10 +176,15 @@ done
 "$program" mesh tetra.off --family prism --layers 0.1,0.2 --refine 1 -o p.nestgrid >out ||
     fail "prisms"
 [ "$(value leaf_prism)" = 64 ] || fail "prisms: $(value leaf_prism)"
-"$program" mesh quad.obj --family octree --unbalanced --field 'x*y' --refine 3 -o q.nestgrid >out ||
+"$program" mesh quad.obj --family octree --unbalanced --field 'sin(4*x*y)' --refine 3 -o q.nestgrid >out ||
     fail "quadtree"
 [ "$(value leaf_quadrilateral)" = 64 ] || fail "quadtree: $(value leaf_quadrilateral)"
-refused 1 'hierarchy of other elements' isosurface q.nestgrid --value 0.1 -o x.vtp
+"$program" isosurface q.nestgrid --value 0.1 -o q.vtp >out || fail "isolines of a quadtree"
+[ "$(value segments)" -gt 4 ] || fail "isolines of a quadtree: $(value segments) segments"
+"$program" mesh tetra.off --family prism --layers 0.5,0.5 --field 'x^2+y^2+z^2' --refine 3 \
+    -o pf.nestgrid >out || fail "prisms with a field"
+"$program" isosurface pf.nestgrid --value 0.3 -o pf.vtp >out || fail "isosurface of prisms"
+[ "$(value open_edges)" = 0 ] && [ "$(value triangles)" -gt 50 ] || fail "isosurface of prisms"
 
 mesh=(--family bisection -o x.nestgrid)
 refused 1 'nothing.off' mesh nothing.off "${mesh[@]}"
@@ -208,7 +213,7 @@ refused 2 'family' mesh tetra.off --family oak -o x.nestgrid
 refused 1 "no field 'rain'" isosurface t.nestgrid --array rain --value 1
 "$program" mesh tetra.off --family bisection -o bare.nestgrid >out || fail 'mesh without a field'
 refused 1 'no field; give' isosurface bare.nestgrid --value 1
-refused 1 'other elements' isosurface p.nestgrid --value 1
+refused 1 'no field; give' isosurface p.nestgrid --value 1
 head -c 1000 t.nestgrid >cut.nestgrid
 refused 1 'bytes long' isosurface cut.nestgrid --value 1 -o x.vtp
 refused 1 'bytes long' info cut.nestgrid

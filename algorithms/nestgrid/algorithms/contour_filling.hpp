@@ -46,20 +46,36 @@ public:
     /// The triangle a b c with chains in the place of its sides. No edge that is made here joins
     /// two vertices of one chain.
     void add(Number a, Number b, Number c, Chain ab = {}, Chain bc = {}, Chain ca = {}) {
-        if (!ab.empty()) {
-            add(a, ab.front(), c, {}, {}, ca);
-            add(ab.front(), b, c, ab.subspan(1), bc, {});
-        } else if (!bc.empty()) {
-            add(b, c, a, bc, ca, {});
-        } else if (!ca.empty()) {
-            add(c, a, b, ca, {}, {});
-        } else {
+        if (ab.empty() && !bc.empty()) {
+            fill_chained(b, c, a, bc, ca, ab);
+        } else if (ab.empty() && !ca.empty()) {
+            fill_chained(c, a, b, ca, ab, bc);
+        } else if (ab.empty()) {
             cell_->triangle(a, b, c);
+        } else {
+            fill_chained(a, b, c, ab, bc, ca);
         }
     }
 
 private:
     using Vertices = std::array<Number, max_edges>;
+
+    /// The same where there is a chain from a to b: a fan around c, whose first and last triangles
+    /// become fans around the ends of the chain.
+    void fill_chained(Number a, Number b, Number c, const Chain& ab, const Chain& bc,
+                      const Chain& ca) {
+        fill_fan(ab.front(), c, ca, a);
+        for (std::size_t i = 1; i < ab.size(); ++i) cell_->triangle(ab[i - 1], ab[i], c);
+        fill_fan(ab.back(), b, bc, c);
+    }
+
+    void fill_fan(Number around, Number from, const Chain& between, Number to) {
+        for (const Number next : between) {
+            cell_->triangle(from, next, around);
+            from = next;
+        }
+        cell_->triangle(from, to, around);
+    }
 
     Vertices vertices(const ContourLoop& loop) const {
         Vertices v;
