@@ -82,6 +82,26 @@ inline std::vector<SampledField> sampled_fields(const Samples& n) {
 /// The thresholds of the paper's table, as fractions of the range.
 inline constexpr std::array<double, 6> thresholds{0.02, 0.01, 0.005, 0.0025, 0.00125, 0};
 
+/// The samples interpolated linearly along every direction; the point is in units of cells.
+inline double evaluate_cells(const std::vector<float>& values, const Samples& n,
+                             const std::array<double, 3>& at) {
+    double result = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        double weight = 1;
+        std::size_t index = 0;
+        std::size_t stride = 1;
+        for (std::size_t d = 0; d < 3; ++d) {
+            const int cell = std::min(static_cast<int>(at[d]), n[d] - 2);
+            const int side = static_cast<int>(corner >> d & 1U);
+            weight *= side == 1 ? at[d] - cell : 1 - (at[d] - cell);
+            index += stride * static_cast<std::size_t>(cell + side);
+            stride *= static_cast<std::size_t>(n[d]);
+        }
+        result += weight * static_cast<double>(values[index]);
+    }
+    return result;
+}
+
 /// The piecewise linear function on the leaves of the bisection of a lattice, at a point in lattice
 /// coordinates: the reference for everything that is said about "the data".
 inline double evaluate_leaves(const std::vector<float>& values, const Samples& n,

@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include <nestgrid/algorithms/contour_table.hpp>
 
@@ -28,6 +29,42 @@ namespace nestgrid {
 /// a, b, c, d are the values U - C around it; a function of the face alone, to the last bit.
 constexpr bool joins_across(double a, double b, double c, double d) {
     return a >= 0 ? a * c >= b * d : b * d >= a * c;
+}
+
+/// How far values at the corners of an element are from any affine function: the greatest residual
+/// of a least-squares fit. Affine functions are interpolated exactly, and the shape functions are a
+/// partition of 1 and nowhere below 0, so within the element the interpolated function deviates
+/// from the fit by no more. Between points where it has one value, on a segment or triangle within
+/// the element, it deviates from that value by twice as much at most.
+inline double affine_residual(std::span<const Point> x, std::span<const double> u) {
+    const std::size_t n = u.size();
+    std::array<std::array<double, max_corners>, 4> basis;  // 1, x, y, z at the corners
+    std::array<double, max_corners> rest;
+    for (std::size_t i = 0; i < n; ++i) {
+        basis[0][i] = 1;
+        for (std::size_t d = 0; d < 3; ++d) basis[d + 1][i] = x[i][d] - x[0][d];
+        rest[i] = u[i];
+    }
+    const auto product = [&](const auto& a, const auto& b) {
+        double sum = 0;
+        for (std::size_t i = 0; i < n; ++i) sum += a[i] * b[i];
+        return sum;
+    };
+    for (std::size_t k = 0; k < basis.size(); ++k) {  // Gram and Schmidt
+        const double length = product(basis[k], basis[k]);
+        for (std::size_t j = 0; j < k; ++j) {
+            const double part = product(basis[k], basis[j]);
+            for (std::size_t i = 0; i < n; ++i) basis[k][i] -= part * basis[j][i];
+        }
+        const double left = product(basis[k], basis[k]);
+        const double scale = left > 1e-24 * length ? 1 / std::sqrt(left) : 0;  // 0: a flat element
+        for (std::size_t i = 0; i < n; ++i) basis[k][i] *= scale;
+        const double part = product(rest, basis[k]);
+        for (std::size_t i = 0; i < n; ++i) rest[i] -= part * basis[k][i];
+    }
+    double greatest = 0;
+    for (std::size_t i = 0; i < n; ++i) greatest = std::max(greatest, std::abs(rest[i]));
+    return greatest;
 }
 
 /// A tunnel between two loops of a contour.

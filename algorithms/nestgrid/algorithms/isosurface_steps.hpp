@@ -155,7 +155,12 @@ NESTGRID_VISITOR::add_error(const State& s, Layer& layer) const -> void {
     }
     // An interpolated parent that was made in the same split adds its own error.
     if (s.made_by != nullptr) corner *= s.made_by->steps;
-    layer.error_bound = std::max(layer.error_bound, element_bound_ + corner);
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    const double chord =  // of a level that is not flat
+        corners == static_cast<std::size_t>(dimension) + 1
+            ? 0.0
+            : 2 * affine_residual(std::span(x_).first(corners), std::span(u_).first(corners));
+    layer.error_bound = std::max(layer.error_bound, element_bound_ + corner + chord);
 }
 
 /// Whether the corners with U >= C are joined across a face whose signs alternate.
