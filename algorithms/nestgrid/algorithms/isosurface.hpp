@@ -19,9 +19,12 @@
 #include <functional>
 
 #include <nestgrid/algorithms/contour_filling.hpp>
+#include <nestgrid/algorithms/executor.hpp>
+#include <nestgrid/algorithms/frontier.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/node_gradients.hpp>
 #include <nestgrid/algorithms/surface.hpp>
+#include <nestgrid/algorithms/surface_log.hpp>
 #include <nestgrid/algorithms/transition_contours.hpp>
 #include <nestgrid/shape_functions.hpp>
 
@@ -79,6 +82,13 @@ struct OverLimit {};
 template <class Sink>
 concept IndexedSink = !requires { requires !Sink::indexed; };
 
+template <class Grid>
+struct ContourOwner {
+    ElementOf<Grid> element;
+    Shape shape;
+    int level;
+};
+
 /// Draws the level sets of several isovalues in one traversal; each has a sink of its own.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 class IsosurfaceVisitor {
@@ -90,6 +100,10 @@ public:
     using State = typename Walk::State;
     static constexpr std::size_t attribute_count = State::components - 1;
     using Number = std::uint32_t;
+    using Cut = SurfaceCut<attribute_count>;
+    static constexpr bool logs = requires { requires Sink::logs; };
+    using Log = SurfaceLog<dimension, ElementOf<Grid>, attribute_count, indexed>;
+    using Task = IsosurfaceVisitor<Grid, Field, S, Indicator, Log>;
 
     struct Level {
         double isovalue;
@@ -107,10 +121,16 @@ public:
 
     /// Whether elements may stop without conforming, so that there is something to record.
     bool must_record() const;
-    void run();
+    template <class Executor>
+    void run(const Executor& executor);
 
     Decision inspect(const State& s, const Split& split);
     void extract(const State& s);
+
+    // What a Frontier asks for.
+    Decision look(const State& s, const Split& split);
+    void undo();
+    void restart();
 
     std::size_t level_count() const { return layers_.size(); }
     const Level& level(std::size_t i) const { return layers_[i]; }
@@ -122,18 +142,10 @@ public:
 
 private:
     friend class ContourFilling<IsosurfaceVisitor>;
+    template <class, class, class, class, class>
+    friend class IsosurfaceVisitor;
 
-    struct Cut {  // a vertex, on the edge from the lower to the higher of two nodes
-        Point x;
-        std::array<NodeKey, 2> node;
-        double fraction;
-        std::array<double, attribute_count> attributes;
-    };
-    struct Owner {
-        ElementOf<Grid> element;
-        Shape shape;
-        int level;
-    };
+    using Transitions = TransitionContours<Cut, ContourOwner<Grid>>;
     struct Where {  // the nodes a vertex lies between, for its normal
         Number low;
         Number high;
@@ -142,7 +154,8 @@ private:
     };
     struct Layer : Level {
         KeyTable<KeyPair, Number> vertex_of;
-        TransitionContours<Cut, Owner> transitions;
+        Transitions transitions;
+        const Transitions* drawn_below = nullptr;  // that of all tasks
         std::vector<Where> where;
         Number vertex_count = 0;
     };
@@ -206,10 +219,21 @@ private:
     Number inside(const Point& reference);
     void triangle(Number a, Number b, Number c);
     void simplex(const std::array<Number, static_cast<std::size_t>(dimension)>& locals);
+    void put_simplex(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
+                     std::span<const Point> reference);
     void add_boundary(const std::array<Number, static_cast<std::size_t>(dimension - 1)>& locals);
     std::array<Point, max_corners> own_gradients(const State& s) const;
     Point projected_gradient(const State& s, std::size_t corner) const;
     Point node_gradient(const State& father, const Rule& rule, std::size_t node) const;
+    void add_gradient(Number slot, const CornerGradient& g);
+
+    // isosurface_tasks.hpp
+    template <class Executor>
+    void walk(const Executor& executor);
+    template <class Main>
+    void begin_task(const Main& main);
+    void add_task(const Task& task);
+    void repeat(Layer& layer, const Log& log);
 
     const Walk* walk_;
     const S* criterion_;
@@ -225,6 +249,7 @@ private:
     double element_bound_ = 0;  // of the element inspected last
     int deepest_ = 0;
     NodeGradients gradients_;
+    std::vector<std::pair<Number, CornerGradient>> gradient_log_;  // of a task
 
     // The element being drawn; state_ is null while gaps are filled.
     const State* state_ = nullptr;
@@ -253,11 +278,13 @@ private:
 ///        was computed
 /// \throw InvalidInput where an isovalue is not a number or there is not one sink for each; for
 ///        normals into a sink without indices
-template <class Grid, class Field, Criterion S, class Indicator, class Sink>
+/// \param executor of several threads, or of one (executor.hpp); the result does not depend on it
+template <class Grid, class Field, Criterion S, class Indicator, class Sink,
+          Executor E = SequentialExecutor>
 std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
     const Grid& grid, const Field& field, std::span<const double> isovalues,
     std::vector<Sink> sinks, const S& criterion, const Indicator& indicator,
-    const IsosurfaceOptions& options = {}) {
+    const IsosurfaceOptions& options = {}, const E& executor = {}) {
     static_assert(Grid::dimension >= 2, "isosurfaces need a grid of dimension 2 or 3");
     for (const double isovalue : isovalues) {
         if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
@@ -277,7 +304,7 @@ std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
     Visitor visitor(walk, isovalues, std::move(sinks), criterion, indicator, options);
     bool cancelled = false;
     try {
-        visitor.run();
+        visitor.run(executor);
     } catch (const detail::Cancelled&) {
         cancelled = true;
     }
@@ -295,39 +322,39 @@ std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
 }
 
 /// The same as indexed surfaces.
-template <class Grid, class Field, Criterion S, class Indicator>
+template <class Grid, class Field, Criterion S, class Indicator, Executor E = SequentialExecutor>
 std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> isosurfaces(
     const Grid& grid, const Field& field, std::span<const double> isovalues, const S& criterion,
-    const Indicator& indicator, const IsosurfaceOptions& options = {}) {
+    const Indicator& indicator, const IsosurfaceOptions& options = {}, const E& executor = {}) {
     using Sink = SurfaceSink<Grid::dimension, ElementOf<Grid>>;
     std::vector<typename Sink::Target> surfaces(isovalues.size());
     std::vector<Sink> sinks;
     for (auto& surface : surfaces) sinks.emplace_back(surface, options.elements);
     auto results = extract_isosurfaces(grid, field, isovalues, std::move(sinks), criterion,
-                                       indicator, options);
+                                       indicator, options, executor);
     for (std::size_t i = 0; i < results.size(); ++i) results[i].surface = std::move(surfaces[i]);
     return results;
 }
 
 /// One isosurface.
-template <class Grid, class Field, Criterion S, class Indicator>
-Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
-                                                        double isovalue, const S& criterion,
-                                                        const Indicator& indicator,
-                                                        const IsosurfaceOptions& options = {}) {
+template <class Grid, class Field, Criterion S, class Indicator, Executor E = SequentialExecutor>
+Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(
+    const Grid& grid, const Field& field, double isovalue, const S& criterion,
+    const Indicator& indicator, const IsosurfaceOptions& options = {}, const E& executor = {}) {
     return std::move(isosurfaces(grid, field, std::span<const double>(&isovalue, 1), criterion,
-                                 indicator, options)
+                                 indicator, options, executor)
                          .front());
 }
 
 /// The same with S from options.threshold or options.max_triangles.
 /// \throw InvalidInput also where the threshold is negative or not a number, and where even the
 ///        coarsest surface has more triangles than asked for
-template <class Grid, class Field, class Indicator>
+template <class Grid, class Field, class Indicator, Executor E = SequentialExecutor>
     requires requires(const Indicator& i) { i.stop(NodeKey{}); }
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
                                                         double isovalue, const Indicator& indicator,
-                                                        const IsosurfaceOptions& options = {});
+                                                        const IsosurfaceOptions& options = {},
+                                                        const E& executor = {});
 
 /// The same with its own preroll: one call for one surface.
 template <class Grid, class Field>

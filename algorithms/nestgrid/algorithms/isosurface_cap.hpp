@@ -110,10 +110,10 @@ NESTGRID_VISITOR::cap_chain(const State& s, Layer& layer, const FaceTopology& fa
                             const CapPolygon& polygon, std::size_t side) -> std::vector<Number> {
     std::vector<Number> between;
     const std::uint8_t edge = polygon.edge[side];
-    if (edge == no_edge || layer.transitions.empty()) return between;
+    if (edge == no_edge || layer.drawn_below->empty()) return between;
     const auto end = [&](const CapPoint& p) {
         const NodeKey key = key_[face.corner[p.from]];
-        return layer.transitions.find(p.cut ? name(s, edge) : KeyPair(key, key));
+        return layer.drawn_below->find(p.cut ? name(s, edge) : KeyPair(key, key));
     };
     const Number* from = end(polygon.point[side]);
     const Number* to = end(polygon.point[(side + 1) % polygon.count]);
@@ -121,7 +121,7 @@ NESTGRID_VISITOR::cap_chain(const State& s, Layer& layer, const FaceTopology& fa
     const NodeKey key = side_key(s, edge, face, polygon.point[side].from, false);
     const bool mirrored = s.orientation < 0;
     if (mirrored) std::swap(from, to);
-    const bool found = layer.transitions.follow(
+    const bool found = layer.drawn_below->follow(
         key, *to, [&](Number v) { return v == *from; },
         [&](Number v) { between.push_back(v); });
     if (!found) return {};

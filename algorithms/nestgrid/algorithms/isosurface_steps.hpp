@@ -19,8 +19,9 @@ IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
     : walk_{&walk}, criterion_{&criterion}, indicator_{&indicator}, options_{&options},
       isovalues_{isovalues.begin(), isovalues.end()} {
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
-        layers_.push_back({{isovalues[i], std::move(sinks[i])}, {}, {}, {}, 0});
+        layers_.push_back({{isovalues[i], std::move(sinks[i])}, {}, {}, {}, {}, 0});
     }
+    for (Layer& layer : layers_) layer.drawn_below = &layer.transitions;
 }
 
 NESTGRID_VISITOR::must_record() const -> bool {
@@ -39,16 +40,17 @@ NESTGRID_VISITOR::must_record() const -> bool {
     }
 }
 
-NESTGRID_VISITOR::run() -> void {
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Executor>
+void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& executor) {
     if (must_record()) {
         recording_ = true;
-        walk_->run(*this);
+        walk(executor);
         recording_ = false;
-        counts_ = {};
-        drawn_ = 0;
+        restart();
         for (Layer& layer : layers_) layer.transitions.finish();
     }
-    walk_->run(*this);
+    walk(executor);
     for (Layer& layer : layers_) {
         fill_gaps(layer);
         if constexpr (indexed) {
@@ -96,9 +98,15 @@ NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
     if ((counts_.calls & 0xFFFFU) == 0 && options_->progress && !options_->progress(counts_)) {
         throw Cancelled{};
     }
+    const Decision decision = look(s, split);
+    counts_.visited += decision.visit != Visit::skip;
+    return decision;
+}
+
+/// What to do with an element.
+NESTGRID_VISITOR::look(const State& s, const Split& split) -> Decision {
     element_bound_ = split.rule == nullptr ? 0.0 : indicator_->bound(split.keys);
     if (!of_interest(s, element_bound_)) return {Visit::skip, 0};
-    ++counts_.visited;
     if (split.rule == nullptr) return {Visit::stop, 0};
     const NodeMask interpolated =
         (*criterion_)(NewNodes{*split.rule, split.keys, s.level + 1, split.outside});
@@ -215,7 +223,7 @@ NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, 
     const auto edge_at = [&](std::size_t i) {
         return edge_between(s, face.corner[i], face.corner[(i + 1) % n]);
     };
-    const Number* from = layer.transitions.find(name(s, edge_at(side)));
+    const Number* from = layer.drawn_below->find(name(s, edge_at(side)));
     if (from == nullptr) return false;
     std::array<Number, 2> ends{none, none};
     std::array<std::size_t, 2> sides{};
@@ -224,7 +232,7 @@ NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, 
         const unsigned there = signs >> i & 1U;
         const unsigned beyond = signs >> ((i + 1) % n) & 1U;
         if (there == beyond || there == (signs >> side & 1U)) continue;
-        const Number* end = layer.transitions.find(name(s, edge_at(i)));
+        const Number* end = layer.drawn_below->find(name(s, edge_at(i)));
         if (end == nullptr) return false;
         sides[count] = i;
         ends[count++] = *end;
@@ -233,7 +241,7 @@ NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, 
     for (std::size_t i = 0; i < n; ++i) keys[i] = key_[face.corner[i]];
     std::vector<Number> between;
     std::size_t end = 0;
-    const bool found = layer.transitions.follow(
+    const bool found = layer.drawn_below->follow(
         face_key(std::span<const NodeKey>(keys.data(), n)), *from,
         [&](Number v) {
             if (v != ends[0] && v != ends[1]) return false;
@@ -265,7 +273,7 @@ NESTGRID_VISITOR::choose(const State& s, Layer& layer, unsigned pattern, unsigne
         const auto f = static_cast<std::size_t>(std::countr_zero(left));
         if (joined(s, loop_of(s, f))) joins |= 1U << f;
     }
-    if (dimension == 2 || layer.transitions.empty()) return joins;
+    if (dimension == 2 || layer.drawn_below->empty()) return joins;
     const Topology& t = topology(s.shape);
     for (std::size_t f = 0; f < t.faces; ++f) {
         const FaceTopology& face = t.face[f];
@@ -371,4 +379,5 @@ NESTGRID_VISITOR::set_normals(Layer& layer) -> void {
 #undef NESTGRID_VISITOR
 
 #include <nestgrid/algorithms/isosurface_cap.hpp>
+#include <nestgrid/algorithms/isosurface_tasks.hpp>
 #include <nestgrid/algorithms/isosurface_vertices.hpp>

@@ -91,10 +91,14 @@ auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(const KeyPair& name
         if (is_new) {
             const Cut cut = make();
             ++layer_->vertex_count;
-            layer_->sink.add_vertex(cut.x, cut.attributes);
-            if (options_->normals) {
-                layer_->where.push_back({gradients_.slot(cut.node[0]),
-                                         gradients_.slot(cut.node[1]), cut.fraction, {}});
+            if constexpr (logs) {
+                layer_->sink.add_cut(cut);
+            } else {
+                layer_->sink.add_vertex(cut.x, cut.attributes);
+                if (options_->normals) {
+                    layer_->where.push_back({gradients_.slot(cut.node[0]),
+                                             gradients_.slot(cut.node[1]), cut.fraction, {}});
+                }
             }
         } else if (options_->verify && layer_->sink.position(number) != make().x) {
             throw GridError("two elements put the vertex " + std::to_string(number) +
@@ -110,7 +114,7 @@ NESTGRID_VISITOR::add_unnamed(const Point& x, std::span<const double> attributes
         return x;
     } else {
         layer_->sink.add_vertex(x, attributes);
-        if (options_->normals) layer_->where.push_back({none, none, 0.0, {}});
+        if (options_->normals && !logs) layer_->where.push_back({none, none, 0.0, {}});
         return layer_->vertex_count++;
     }
 }
@@ -146,7 +150,7 @@ NESTGRID_VISITOR::node_vertex(std::size_t corner) -> Number {
 
 /// A vertex that a finer side recorded on a face of the element being drawn.
 NESTGRID_VISITOR::recorded(Number index, const FaceTopology& face) -> Number {
-    const Cut& cut = layer_->transitions.cut(index);
+    const Cut& cut = layer_->drawn_below->cut(index);
     Point reference{};
     if (options_->reference) {
         // Newton's method on the map from the unit square (triangle) to the face.
@@ -228,7 +232,6 @@ NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dime
         layer_->sink.add_element(state_->element, state_->shape, state_->level);
     }
     begun_ = true;
-    if (++drawn_ > limit_) throw OverLimit{};
     const bool mirrored = state_ != nullptr && state_->orientation < 0;
     std::array<Vertex, static_cast<std::size_t>(dimension)> v;
     std::array<Point, static_cast<std::size_t>(dimension)> reference;
@@ -237,9 +240,15 @@ NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dime
         v[i] = local_[locals[from]];
         if (options_->reference) reference[i] = reference_[locals[from]];
     }
-    layer_->sink.add_simplex(v, options_->reference ? std::span<const Point>(reference)
-                                                    : std::span<const Point>());
-    if constexpr (indexed && dimension == 3) {
+    put_simplex(v, options_->reference ? std::span<const Point>(reference)
+                                       : std::span<const Point>());
+}
+
+NESTGRID_VISITOR::put_simplex(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
+                              std::span<const Point> reference) -> void {
+    if (++drawn_ > limit_) throw OverLimit{};
+    layer_->sink.add_simplex(v, reference);
+    if constexpr (indexed && !logs && dimension == 3) {
         if (options_->normals) {
             const Point x = layer_->sink.position(v[0]);
             const Point n =
@@ -306,16 +315,23 @@ NESTGRID_VISITOR::load_gradients(const State& s) -> void {
     for (std::size_t i = 0; i < corners; ++i) {
         const Number slot = gradients_.slot(key_[i]);
         if (!own) {
-            gradients_.add(slot, corner_gradient(topology(s.shape), x_, value, i));
+            add_gradient(slot, corner_gradient(topology(s.shape), x_, value, i));
         } else if (!gradients_.known(slot)) {
             const bool interpolated = (s.interpolated >> i & 1U) != 0;
             if (!interpolated && !asked) {
                 exact = own_gradients(s);
                 asked = true;
             }
-            gradients_.add(slot, {interpolated ? projected_gradient(s, i) : exact[i], 1});
+            add_gradient(slot, {interpolated ? projected_gradient(s, i) : exact[i], 1});
         }
     }
+}
+
+/// The field's own gradients are the same from every element, and added once.
+NESTGRID_VISITOR::add_gradient(Number slot, const CornerGradient& g) -> void {
+    if (gradients_.known(slot) && offers_gradients<Grid, Field>(walk_->field())) return;
+    gradients_.add(slot, g);
+    if constexpr (logs) gradient_log_.emplace_back(slot, g);
 }
 
 }  // namespace nestgrid::detail

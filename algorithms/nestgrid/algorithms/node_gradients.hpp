@@ -63,6 +63,13 @@ public:
     bool known(Index slot) const { return entries_[slot].weight > 0; }
     Point mean(Index slot) const { return (1 / entries_[slot].weight) * entries_[slot].gradient; }
 
+    /// The nodes by slot.
+    std::vector<NodeKey> nodes() const {
+        std::vector<NodeKey> keys(entries_.size());
+        slot_of_.for_each([&](NodeKey node, Index slot) { keys[slot] = node; });
+        return keys;
+    }
+
     std::size_t memory_bytes() const {
         return slot_of_.memory_bytes() + entries_.capacity() * sizeof(CornerGradient);
     }

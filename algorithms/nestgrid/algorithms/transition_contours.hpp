@@ -37,8 +37,7 @@ public:
         for (const ClosedFace* face = innermost; face != nullptr; face = face->outer) {
             record(face->key, from, to);
             if (face->split == 0) continue;
-            const auto [split, is_new] = split_of_.insert(face->key, face->split);
-            if (*split != face->split) conflicts_.insert(face->key, owner);
+            note_split(face->key, {face->split, owner});
         }
     }
     void record(NodeKey face, Index from, Index to) { segments_.push_back({face, from, to}); }
@@ -50,6 +49,23 @@ public:
         const Index number = *at;
         if (is_new) cuts_.push_back(make());
         return number;
+    }
+
+    /// Adds what another task recorded, as if this one had gone on with that task's elements.
+    void append(const TransitionContours& other) {
+        std::vector<KeyPair> names(other.cuts_.size());
+        other.vertex_of_.for_each([&](const KeyPair& name, Index v) { names[v] = name; });
+        std::vector<Index> number(names.size());
+        for (std::size_t v = 0; v < names.size(); ++v) {
+            number[v] = vertex(names[v], [&] { return other.cuts_[v]; });
+        }
+        for (const Segment& s : other.segments_) {
+            segments_.push_back({s.face, number[s.from], number[s.to]});
+        }
+        other.split_of_.for_each([&](NodeKey face, const Split& s) { note_split(face, s); });
+        other.conflicts_.for_each([&](NodeKey face, const Owner&) {
+            conflicts_.insert(face, split_of_.find(face)->owner);
+        });
     }
 
     /// To be called once between the last record() and the first lookup.
@@ -99,6 +115,16 @@ private:
         Index to;
         bool operator==(const Segment&) const = default;
     };
+    /// How a face is divided, where it is divided one way, as first seen by an element below it.
+    struct Split {
+        NodeKey by;
+        Owner owner;
+    };
+    void note_split(NodeKey face, const Split& split) {
+        const auto [first, is_new] = split_of_.insert(face, split);
+        if (first->by != split.by) conflicts_.insert(face, first->owner);
+    }
+
     static bool before(const Segment& a, const Segment& b) {
         return a.face != b.face ? a.face < b.face : a.from != b.from ? a.from < b.from : a.to < b.to;
     }
@@ -131,8 +157,8 @@ private:
 
     std::vector<Segment> segments_;
     std::vector<Gap> gaps_;
-    KeyTable<NodeKey, NodeKey> split_of_;  // of faces divided one way
-    KeyTable<NodeKey, Owner> conflicts_;
+    KeyTable<NodeKey, Split> split_of_;
+    KeyTable<NodeKey, Owner> conflicts_;  // divided in two directions
     std::vector<Cut> cuts_;
     KeyTable<KeyPair, Index> vertex_of_;
 };

@@ -28,10 +28,11 @@ struct TriangleBudget {
 namespace detail {
 
 /// Triangles (segments) at a threshold, or nothing where there are more than `most`.
-template <class Grid, class Field, class Indicator>
+template <class Grid, class Field, class Indicator, class Executor>
 std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& field, double isovalue,
                                              const Indicator& indicator, double threshold,
-                                             std::uint64_t most, const IsosurfaceOptions& options) {
+                                             std::uint64_t most, const IsosurfaceOptions& options,
+                                             const Executor& executor) {
     std::uint64_t count = 0;
     const auto add = [&](const auto&) { ++count; };
     using Sink = SimplexStream<Grid::dimension, std::decay_t<decltype(add)>>;
@@ -46,7 +47,7 @@ std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& fiel
                     criterion, indicator, plain);
     visitor.limit(most);
     try {
-        visitor.run();
+        visitor.run(executor);
     } catch (const OverLimit&) {
         return std::nullopt;
     }
@@ -57,14 +58,15 @@ std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& fiel
 
 /// \param options cap and progress count
 /// \throw InvalidInput where even the coarsest surface has more than max_triangles
-template <class Grid, class Field, class Indicator>
+template <class Grid, class Field, class Indicator, Executor E = SequentialExecutor>
 TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
                               const Indicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options = {}) {
+                              const IsosurfaceOptions& options = {}, const E& executor = {}) {
     TriangleBudget best;
     const auto fits = [&](std::uint16_t code) {
         const auto count = detail::count_triangles(grid, field, isovalue, indicator,
-                                                   bfloat16_value(code), max_triangles, options);
+                                                   bfloat16_value(code), max_triangles, options,
+                                                   executor);
         ++best.trials;
         best.extracted += count.value_or(max_triangles + 1);
         if (count) {
@@ -96,23 +98,24 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
     return best;
 }
 
-template <class Grid, class Field, class Indicator>
+template <class Grid, class Field, class Indicator, Executor E>
     requires requires(const Indicator& i) { i.stop(NodeKey{}); }
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
                                                         double isovalue, const Indicator& indicator,
-                                                        const IsosurfaceOptions& options) {
+                                                        const IsosurfaceOptions& options,
+                                                        const E& executor) {
     if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
     Threshold<Indicator> criterion{&indicator, options.threshold};
     if (options.max_triangles > 0) {
         if constexpr (requires { indicator.greatest() - indicator.least(); }) {
             criterion.epsilon = find_threshold(grid, field, isovalue, indicator,
-                                               options.max_triangles, options)
+                                               options.max_triangles, options, executor)
                                     .threshold;
         } else {
             throw InvalidInput("a budget of triangles needs an indicator that knows its range");
         }
     }
-    return isosurface(grid, field, isovalue, criterion, indicator, options);
+    return isosurface(grid, field, isovalue, criterion, indicator, options, executor);
 }
 
 }  // namespace nestgrid

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Threads of oneTBB for the algorithms (nestgrid/algorithms/executor.hpp).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <type_traits>
+
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+namespace nestgrid {
+
+class TbbExecutor {
+public:
+    /// \param threads how many to use; 0: all that oneTBB would
+    explicit TbbExecutor(int threads = 0)
+        : arena_{std::make_unique<tbb::task_arena>(threads > 0 ? threads
+                                                               : tbb::task_arena::automatic)} {}
+
+    std::size_t concurrency() const {
+        return static_cast<std::size_t>(arena_->max_concurrency());
+    }
+
+    template <class Work, class Consume>
+    void run(std::size_t count, Work&& work, Consume&& consume) const {
+        using Result = std::decay_t<decltype(work(count))>;
+        struct Task {
+            std::size_t number;
+            std::optional<Result> result;
+        };
+        std::size_t next = 0;
+        const auto begin = [&](tbb::flow_control& flow) {
+            if (next == count) {
+                flow.stop();
+                return std::size_t{0};
+            }
+            return next++;
+        };
+        const auto draw = [&](std::size_t i) {
+            return std::make_shared<Task>(Task{i, work(i)});
+        };
+        const auto end = [&](const std::shared_ptr<Task>& task) {
+            consume(task->number, *std::move(task->result));
+        };
+        // More parts in flight than threads: one that takes long does not hold up the others.
+        arena_->execute([&] {
+            tbb::parallel_pipeline(
+                4 * concurrency(),
+                tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
+                    tbb::make_filter<std::size_t, std::shared_ptr<Task>>(
+                        tbb::filter_mode::parallel, draw) &
+                    tbb::make_filter<std::shared_ptr<Task>, void>(
+                        tbb::filter_mode::serial_in_order, end));
+        });
+    }
+
+private:
+    std::unique_ptr<tbb::task_arena> arena_;
+};
+
+}  // namespace nestgrid

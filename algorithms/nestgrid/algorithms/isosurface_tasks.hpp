@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Extraction by several threads; included by isosurface_steps.hpp.
+//
+// Each task has a visitor of its own, which logs what it draws below its part of the frontier. The
+// logs are repeated in the order of the parts, while later parts are drawn: vertices get their
+// numbers, and gradients are added up, in the order of one thread. So the surface does not depend
+// on the number of threads, nor on how the grid is cut, to the last bit.
+#pragma once
+
+#include <memory>
+
+#include <nestgrid/algorithms/isosurface.hpp>
+
+#define NESTGRID_VISITOR                                                     \
+    template <class Grid, class Field, class S, class Indicator, class Sink> \
+    auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>
+
+namespace nestgrid::detail {
+
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Executor>
+void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk(const Executor& executor) {
+    if (executor.concurrency() < 2) return walk_->run(*this);
+    if constexpr (!logs) {
+        // Enough entries that parts can be even, enough parts that threads end together.
+        const std::size_t wanted = 16 * executor.concurrency();
+        const Frontier frontier(*walk_, *this, 16 * wanted);
+        const std::size_t entries = frontier.entry_count();
+        const std::size_t parts = std::min(entries, wanted);
+        IsosurfaceOptions plain = *options_;
+        plain.progress = {};
+        executor.run(
+            parts,
+            [&](std::size_t i) {
+                auto task = std::make_unique<Task>(*walk_, isovalues_, std::vector<Log>(isovalues_.size()),
+                                                   *criterion_, *indicator_, plain);
+                task->begin_task(*this);
+                frontier.run(*walk_, i * entries / parts, (i + 1) * entries / parts, *task);
+                return task;
+            },
+            [&](std::size_t, const std::unique_ptr<Task>& task) { add_task(*task); });
+    }
+}
+
+NESTGRID_VISITOR::restart() -> void {
+    counts_ = {};
+    drawn_ = 0;
+}
+
+NESTGRID_VISITOR::undo() -> void { --counts_.calls; --counts_.visited; }
+
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Main>
+void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::begin_task(const Main& main) {
+    recording_ = main.recording_;
+    limit_ = main.limit_;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        layers_[i].drawn_below = main.layers_[i].drawn_below;
+    }
+}
+
+NESTGRID_VISITOR::add_task(const Task& task) -> void {
+    counts_.calls += task.counts_.calls;
+    counts_.visited += task.counts_.visited;
+    deepest_ = std::max(deepest_, task.deepest_);
+    if (recording_ && (drawn_ += task.drawn_) > limit_) throw OverLimit{};
+    std::vector<Number> slot;
+    for (const NodeKey node : task.gradients_.nodes()) slot.push_back(gradients_.slot(node));
+    for (const auto& [at, g] : task.gradient_log_) add_gradient(slot[at], g);
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        Layer& layer = layers_[i];
+        const auto& part = task.layers_[i];
+        layer.extracted += part.extracted;
+        layer.error_bound = std::max(layer.error_bound, part.error_bound);
+        if (recording_) {
+            layer.transitions.append(part.transitions);
+        } else {
+            repeat(layer, part.sink);
+        }
+    }
+    if (options_->progress && !options_->progress(counts_)) throw Cancelled{};
+}
+
+NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
+    struct Receiver {
+        IsosurfaceVisitor* to;
+        std::vector<Vertex> vertices;
+
+        void cut(const typename Log::Cut& c) {
+            vertices.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
+        }
+        void vertex(const typename Log::Cut& c) {
+            vertices.push_back(to->add_unnamed(c.x, c.attributes));
+        }
+        void element(const typename Log::Owner& e) {
+            to->layer_->sink.add_element(e.element, e.shape, e.level);
+        }
+        void simplex(typename Log::Simplex corners, std::span<const Point> reference) {
+            if constexpr (indexed) {
+                for (auto& corner : corners) corner = vertices[corner];
+            }
+            to->put_simplex(corners, reference);
+        }
+        void boundary(typename Log::Ridge corners) {
+            if constexpr (indexed) {
+                for (auto& corner : corners) corner = vertices[corner];
+                to->layer_->sink.add_boundary(corners);
+            }
+        }
+    };
+    layer_ = &layer;
+    log.repeat(Receiver{this, {}});
+}
+
+}  // namespace nestgrid::detail
+
+#undef NESTGRID_VISITOR

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// oneTBB's threads keep the contract of an executor.
+#include <atomic>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/adapters/tbb.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+
+#include "sample_fields.hpp"
+
+using namespace nestgrid;
+using namespace nestgrid_test;
+
+namespace {
+
+static_assert(Executor<TbbExecutor>);
+
+TEST(TbbExecutor, WorksOnceAndConsumesInOrder) {
+    for (const int threads : {1, 2, 3, 0}) {
+        const TbbExecutor executor(threads);
+        EXPECT_GE(executor.concurrency(), 1U);
+        std::vector<std::atomic<int>> times(1000);
+        std::vector<std::size_t> order;
+        executor.run(
+            times.size(),
+            [&](std::size_t i) {
+                ++times[i];
+                return 2 * i;
+            },
+            [&](std::size_t i, std::size_t twice) {
+                EXPECT_EQ(twice, 2 * i);
+                order.push_back(i);
+            });
+        ASSERT_EQ(order.size(), times.size());
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            EXPECT_EQ(times[i], 1);
+            EXPECT_EQ(order[i], i);
+        }
+    }
+}
+
+TEST(TbbExecutor, PassesExceptionsOn) {
+    const TbbExecutor executor(2);
+    const auto nothing = [](std::size_t, std::size_t) {};
+    const auto fail_at_7 = [](std::size_t i) {
+        if (i == 7) throw std::runtime_error("seven");
+        return i;
+    };
+    EXPECT_THROW(executor.run(100, fail_at_7, nothing), std::runtime_error);
+    EXPECT_THROW(executor.run(
+                     100, [](std::size_t i) { return i; },
+                     [&](std::size_t i, std::size_t) { fail_at_7(i); }),
+                 std::runtime_error);
+    executor.run(0, fail_at_7, nothing);
+}
+
+TEST(TbbExecutor, ExtractsWhatOneThreadDoes) {
+    const Samples n{33, 33, 33};
+    const LatticeBisection<3> grid({.samples = n});
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        const LatticeField field(grid, std::span<const float>(data.values));
+        const HierarchicalIndicator indicator(grid, field);
+        const IsosurfaceOptions options{.threshold = 0.02 * data.range, .normals = true};
+        const auto one = isosurface(grid, field, data.isovalue, indicator, options);
+        const auto two =
+            isosurface(grid, field, data.isovalue, indicator, options, TbbExecutor(2));
+        EXPECT_EQ(one.surface.vertices, two.surface.vertices);
+        EXPECT_EQ(one.surface.normals, two.surface.normals);
+        EXPECT_EQ(one.surface.simplices, two.surface.simplices);
+    }
+}
+
+}  // namespace

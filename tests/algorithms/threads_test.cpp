@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What several threads extract is what one does: to the last bit, in the same order.
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/adapters/lattice_octree.hpp>
+
+#include "closedness.hpp"
+#include "families.hpp"
+#include "sample_fields.hpp"
+#include "thread_executor.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+template <class T>
+void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b, const char* what) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    ASSERT_EQ(a.size(), b.size()) << what;
+    EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0) << what;
+}
+
+template <int dimension, class Element>
+void expect_same(const Isosurface<dimension, Element>& a, const Isosurface<dimension, Element>& b) {
+    expect_same_bits(a.surface.vertices, b.surface.vertices, "vertices");
+    expect_same_bits(a.surface.normals, b.surface.normals, "normals");
+    expect_same_bits(a.surface.attributes, b.surface.attributes, "attributes");
+    expect_same_bits(a.surface.simplices, b.surface.simplices, "simplices");
+    expect_same_bits(a.surface.element_of, b.surface.element_of, "element_of");
+    expect_same_bits(a.surface.reference, b.surface.reference, "reference");
+    EXPECT_EQ(a.surface.elements.size(), b.surface.elements.size());
+    expect_same_bits(a.surface.shape_of, b.surface.shape_of, "shape_of");
+    expect_same_bits(a.surface.level_of, b.surface.level_of, "level_of");
+    expect_same_bits(a.surface.boundary, b.surface.boundary, "boundary");
+    EXPECT_EQ(a.counts.calls, b.counts.calls);
+    EXPECT_EQ(a.counts.visited, b.counts.visited);
+    EXPECT_EQ(a.counts.extracted, b.counts.extracted);
+    EXPECT_EQ(a.error_bound, b.error_bound);
+    EXPECT_EQ(a.stack_bytes, b.stack_bytes);
+}
+
+template <class Grid, class Field>
+void expect_same_from_threads(const Grid& grid, const Field& field,
+                              const std::vector<double>& isovalues, double threshold) {
+    const HierarchicalIndicator indicator(grid, field);
+    const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+    const IsosurfaceOptions options{.normals = Grid::dimension == 3,
+                                    .cap = true,
+                                    .reference = true,
+                                    .verify = true};
+    const auto alone = isosurfaces(grid, field, isovalues, criterion, indicator, options);
+    for (const std::size_t threads : {2U, 3U}) {
+        const auto together = isosurfaces(grid, field, isovalues, criterion, indicator, options,
+                                          ThreadExecutor(threads));
+        ASSERT_EQ(together.size(), alone.size());
+        for (std::size_t i = 0; i < alone.size(); ++i) expect_same(alone[i], together[i]);
+    }
+}
+
+template <class Family>
+class Threads : public testing::Test {};
+TYPED_TEST_SUITE(Threads, Families);
+
+TYPED_TEST(Threads, DrawWhatOneDraws) {
+    for (auto& grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 7)) {
+            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
+            for (const double threshold : {0.0, 0.1, 1.0}) {
+                SCOPED_TRACE(samples.name + " at " + std::to_string(threshold));
+                expect_same_from_threads(grid, field, {0.0, 0.05}, threshold);
+            }
+        }
+    }
+}
+
+TEST(ThreadsOnSamples, DrawWhatOneDraws) {
+    const Samples n{34, 20, 33};
+    const LatticeBisection<3> tetrahedra({.samples = n});
+    const LatticeOctree<3> hexahedra({.samples = n});
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        const std::span<const float> samples(data.values);
+        for (const double threshold : {0.0, 0.02}) {
+            expect_same_from_threads(tetrahedra, LatticeField(tetrahedra, samples),
+                                     {data.isovalue}, threshold * data.range);
+            expect_same_from_threads(hexahedra, LatticeField(hexahedra, samples), {data.isovalue},
+                                     threshold * data.range);
+        }
+    }
+}
+
+struct SphereIn {
+    Samples n{33, 33, 33};
+    LatticeBisection<3> grid{{.samples = n}};
+    SampledField data = sampled_fields(n)[0];
+    LatticeField<LatticeBisection<3>, float> field{grid, std::span<const float>(data.values)};
+    HierarchicalIndicator indicator{grid, field};
+};
+
+TEST(ThreadsOnStreams, HandOutTheSameTrianglesInTheSameOrder) {
+    const SphereIn s;
+    const auto triangles = [&](const auto& executor) {
+        std::vector<std::array<Point, 3>> all;
+        const auto keep = [&](const std::array<Point, 3>& x) { all.push_back(x); };
+        using Sink = SimplexStream<3, decltype(keep)>;
+        extract_isosurfaces(s.grid, s.field, std::span<const double>(&s.data.isovalue, 1),
+                            std::vector<Sink>{Sink(keep)},
+                            Threshold<HierarchicalIndicator>{&s.indicator, 0.01}, s.indicator, {},
+                            executor);
+        return all;
+    };
+    const auto alone = triangles(SequentialExecutor{});
+    EXPECT_GT(alone.size(), 100U);
+    EXPECT_EQ(alone, triangles(ThreadExecutor(2)));
+}
+
+TEST(ThreadsOnBudgets, FindTheSameThreshold) {
+    const SphereIn s;
+    const auto one = find_threshold(s.grid, s.field, s.data.isovalue, s.indicator, 1000);
+    const auto two =
+        find_threshold(s.grid, s.field, s.data.isovalue, s.indicator, 1000, {}, ThreadExecutor(2));
+    EXPECT_EQ(one.threshold, two.threshold);
+    EXPECT_EQ(one.triangles, two.triangles);
+}
+
+struct ThrowsBelow {
+    static constexpr bool saturated = true;
+    int level;
+    NodeMask operator()(const NewNodes& nodes) const {
+        if (nodes.level > level) throw GridError("too deep");
+        return 0;
+    }
+};
+
+TEST(ThreadsThatStop, CancelOrPassOnWhatWasThrown) {
+    const SphereIn s;
+    int asked = 0;
+    const auto part = isosurface(s.grid, s.field, s.data.isovalue, s.indicator,
+                                 {.progress = [&](const TraversalCounts&) { return ++asked < 3; }},
+                                 ThreadExecutor(2));
+    EXPECT_TRUE(part.cancelled);
+    const auto whole = isosurface(s.grid, s.field, s.data.isovalue, s.indicator, {});
+    EXPECT_GT(part.surface.simplices.size(), 0U);
+    EXPECT_LT(part.surface.simplices.size(), whole.surface.simplices.size());
+
+    EXPECT_THROW(isosurface(s.grid, s.field, s.data.isovalue, ThrowsBelow{11}, s.indicator, {},
+                            ThreadExecutor(2)),
+                 GridError);
+}
+
+/// Counts what it is shown, by element.
+template <class Grid>
+struct Recorder {
+    using Walk = Traversal<Grid, ZeroField<Grid>, Needs{}>;
+    int finest;
+    std::vector<std::uint64_t> extracted{};
+    std::uint64_t calls = 0;
+
+    Decision look(const typename Walk::State& s, const Split&) const {
+        return {s.level >= finest ? Visit::stop : Visit::descend, 0};
+    }
+    Decision inspect(const typename Walk::State& s, const Split& split) {
+        ++calls;
+        return look(s, split);
+    }
+    void undo() { --calls; }
+    void restart() { calls = 0; }
+    void extract(const typename Walk::State& s) {
+        extracted.push_back(std::uint64_t{s.element.low} << 8U | s.element.level);
+    }
+};
+
+TEST(Frontiers, CutAWalkIntoPartsThatMissNothing) {
+    const LatticeOctree<3> grid({.samples = {17, 17, 33}});
+    const ZeroField<LatticeOctree<3>> zero;
+    using R = Recorder<LatticeOctree<3>>;
+    const R::Walk walk(grid, zero);
+    for (const int finest : {0, 2, 9}) {
+        R whole{finest};
+        walk.run(whole);
+        for (const std::size_t wanted : {1U, 3U, 50U, 100000U}) {
+            R above{finest};
+            const Frontier frontier(walk, above, wanted);
+            for (const std::size_t parts : {1U, 2U, 7U}) {
+                R in_parts{finest};
+                in_parts.calls = above.calls;
+                for (std::size_t i = 0; i < parts; ++i) {
+                    frontier.run(walk, i * frontier.entry_count() / parts,
+                                 (i + 1) * frontier.entry_count() / parts, in_parts);
+                }
+                EXPECT_EQ(in_parts.extracted, whole.extracted);
+                EXPECT_EQ(in_parts.calls, whole.calls);
+            }
+        }
+    }
+}
+
+}  // namespace
