@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cstdlib>
 
+#include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/adapters/vtk_surface.hpp>
+#include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/error.hpp>
 
 #include "hierarchy.hpp"
@@ -18,14 +20,17 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
-template <class Grid, class Field>
-Extraction extract_one(const Grid& grid, const Field& field,
+/// \param criterion_at the criterion for a threshold
+/// \param budget triangles at most, beside which `threshold` is not used; or 0
+template <class Grid, class Field, class MakeCriterion>
+Extraction extract_one(const Grid& grid, const Field& field, const MakeCriterion& criterion_at,
                        const nestgrid::HierarchicalIndicator& indicator, double threshold,
+                       std::uint64_t budget, const nestgrid::TbbExecutor& executor,
                        const ExtractionRequest& request) {
     Extraction e;
     e.threshold = threshold;
-    nestgrid::IsosurfaceOptions options{
-        .threshold = threshold, .normals = request.normals, .cap = request.cap};
+    e.budget = budget;
+    nestgrid::IsosurfaceOptions options{.normals = request.normals, .cap = request.cap};
     if (request.progress) {
         options.progress = [&](const nestgrid::TraversalCounts& counts) {
             request.progress("looked at " + millions(counts.calls) + " elements");
@@ -34,8 +39,16 @@ Extraction extract_one(const Grid& grid, const Field& field,
     }
     const std::size_t before = memory::current();
     memory::reset_peak();
-    const double start = now();
-    const auto result = nestgrid::isosurface(grid, field, request.isovalue, indicator, options);
+    double start = now();
+    if (budget > 0) {
+        e.search = nestgrid::find_threshold(grid, field, request.isovalue, criterion_at, indicator,
+                                            budget, options, executor);
+        e.threshold = e.search.threshold;
+        e.search_seconds = now() - start;
+        start = now();
+    }
+    const auto result = nestgrid::isosurface(grid, field, request.isovalue,
+                                             criterion_at(e.threshold), indicator, options, executor);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
@@ -66,9 +79,35 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
     run.preroll_kept_bytes = indicator.memory_bytes();
     run.least = indicator.least();
     run.greatest = indicator.greatest();
-    for (const ThresholdText& t : request.thresholds) {
-        const double threshold = t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
-        run.surfaces.push_back(extract_one(grid, field, indicator, threshold, request));
+    const nestgrid::TbbExecutor executor(request.threads);
+    const auto extract_with = [&](const auto& criterion_at) {
+        for (const std::uint64_t budget : request.budgets) {
+            run.surfaces.push_back(extract_one(grid, field, criterion_at, indicator, 0, budget,
+                                               executor, request));
+        }
+        for (const ThresholdText& t : request.thresholds) {
+            const double threshold =
+                t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
+            run.surfaces.push_back(extract_one(grid, field, criterion_at, indicator, threshold, 0,
+                                               executor, request));
+        }
+    };
+    if (request.box) {
+        if (request.progress) request.progress("region");
+        const FineBox& box = *request.box;
+        const nestgrid::Region region(grid, [&](const nestgrid::Point& x) {
+            for (std::size_t d = 0; d < Grid::dimension; ++d) {
+                if (x[d] < box.bounds[2 * d] || x[d] > box.bounds[2 * d + 1]) return false;
+            }
+            return true;
+        });
+        extract_with([&](double threshold) {
+            return nestgrid::fine_inside(region, indicator, threshold, box.threshold);
+        });
+    } else {
+        extract_with([&](double threshold) {
+            return nestgrid::Threshold<nestgrid::HierarchicalIndicator>{&indicator, threshold};
+        });
     }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,9 +23,18 @@ struct ThresholdText {
 /// \throw nestgrid::InvalidInput unless the text is a number >= 0, with or without %
 ThresholdText parse_threshold(const std::string& text);
 
+/// A box in the coordinates of the grid, and the threshold within it.
+struct FineBox {
+    std::array<double, 6> bounds;  ///< least and greatest x, y, z
+    double threshold = 0;
+};
+
 struct ExtractionRequest {
     double isovalue = 0;
     std::vector<ThresholdText> thresholds{};
+    std::vector<std::uint64_t> budgets{};  ///< triangles at most, beside which there are no thresholds
+    std::optional<FineBox> box{};
+    int threads = 0;  ///< 0: all
     bool cap = false;
     bool normals = true;
     bool keep_surfaces = false;  ///< for files and pictures
@@ -34,6 +44,9 @@ struct ExtractionRequest {
 /// One surface and what it cost.
 struct Extraction {
     double threshold = 0;
+    std::uint64_t budget = 0;               ///< 0: none
+    nestgrid::TriangleBudget search;        ///< of the threshold for the budget
+    double search_seconds = 0;
     vtkSmartPointer<vtkPolyData> surface;  ///< where it is kept
     nestgrid::TraversalCounts counts;
     double error_bound = 0;

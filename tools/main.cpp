@@ -29,7 +29,11 @@ struct Options {
     RawFormat raw;
     std::string endian = "little";
     double value = 0;
-    std::vector<std::string> thresholds{"0"};
+    std::vector<std::string> thresholds;
+    std::vector<std::int64_t> budgets;
+    std::vector<double> box;
+    double box_threshold = 0;
+    int threads = 0;
     fs::path output;
     fs::path image;
     bool cap = false;
@@ -81,8 +85,31 @@ Volume read(Options& o) {
     return read_volume(o.input, o.array, o.raw);
 }
 
+FineBox fine_box(const Options& o) {
+    FineBox box{{}, o.box_threshold};
+    std::copy_n(o.box.begin(), 6, box.bounds.begin());
+    for (std::size_t d = 0; d < 3; ++d) {
+        if (!(box.bounds[2 * d] <= box.bounds[2 * d + 1])) {
+            throw nestgrid::InvalidInput("--box is empty: its bounds are x,x,y,y,z,z in ascending "
+                                         "order");
+        }
+    }
+    if (!(box.threshold >= 0)) {
+        throw nestgrid::InvalidInput("--box-threshold is negative or not a number");
+    }
+    return box;
+}
+
 void run_isosurface(Options& o) {
     ExtractionRequest request{.isovalue = o.value, .cap = o.cap, .normals = !o.flat};
+    if (o.thresholds.empty() && o.budgets.empty()) o.thresholds = {"0"};
+    for (const std::int64_t budget : o.budgets) {
+        if (budget <= 0) throw nestgrid::InvalidInput("--max-triangles is not positive");
+        request.budgets.push_back(static_cast<std::uint64_t>(budget));
+    }
+    if (o.threads < 0) throw nestgrid::InvalidInput("--threads is negative");
+    request.threads = o.threads;
+    if (!o.box.empty()) request.box = fine_box(o);
     for (const std::string& t : o.thresholds) request.thresholds.push_back(parse_threshold(t));
     if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
     if (!o.output.empty()) check_output(o.output);
@@ -218,6 +245,22 @@ int main(int argc, char** argv) {
                      "offsets up to this are projected away: in units of the data, or in percent "
                      "of their range (2%); give it again for a table of several")
         ->take_all();
+    isosurface
+        ->add_option("--max-triangles", o.budgets,
+                     "in the place of a threshold: the least one that gives no more triangles; give "
+                     "it again for a table of several")
+        ->take_all()
+        ->excludes("--threshold");
+    isosurface
+        ->add_option("--box", o.box,
+                     "bounds x,x,y,y,z,z of a region with a threshold of its own, --box-threshold")
+        ->delimiter(',')
+        ->expected(6);
+    isosurface
+        ->add_option("--box-threshold", o.box_threshold, "in units of the data; default: 0")
+        ->needs("--box");
+    isosurface->add_option("--threads", o.threads,
+                           "how many to use; default: all. The surface does not depend on it");
     isosurface->add_option("-o,--output", o.output, ".vtp, .ply, .stl, .obj or .gltf");
     isosurface->add_option("--image", o.image, "a picture, .png");
     isosurface->add_flag("--cap", o.cap, "close the surface along the boundary of the volume");

@@ -46,6 +46,12 @@ void print_result(const ExtractionRun& run, double isovalue, const Seconds& seco
     line("greatest_value", run.greatest);
     line("isovalue", isovalue);
     line("threshold", e.threshold);
+    if (e.budget > 0) {
+        line("max_triangles", std::size_t{e.budget});
+        line("search_trials", static_cast<std::size_t>(e.search.trials));
+        line("search_triangles", std::size_t{e.search.extracted});
+        line("search_seconds", e.search_seconds);
+    }
     line("inspect_calls", std::size_t{e.counts.calls});
     line("visited", std::size_t{e.counts.visited});
     line("extracted", std::size_t{e.counts.extracted});
@@ -82,15 +88,25 @@ void print_table(const ExtractionRun& run, double isovalue, const Seconds& secon
     line("preroll_seconds", run.preroll_seconds);
     line("preroll_peak_bytes", run.preroll_peak_bytes);
     line("preroll_kept_bytes", run.preroll_kept_bytes);
-    std::printf("\n%-16s %10s %10s %10s %11s %10s %8s %9s %9s\n", "threshold", "bound", "triangles",
+    const bool budgets = run.surfaces.front().budget > 0;
+    std::printf("\n");
+    if (budgets) std::printf("%13s %6s %6s %8s ", "max_triangles", "trials", "cost", "seconds");
+    std::printf("%-16s %10s %10s %10s %11s %10s %8s %9s %9s\n", "threshold", "bound", "triangles",
                 "vertices", "visited", "open edges", "boundary", "MiB extra", "seconds");
     for (const Extraction& e : run.surfaces) {
+        if (budgets) {
+            std::printf("%13llu %6d %6.2f %8.3f ", static_cast<unsigned long long>(e.budget),
+                        e.search.trials,
+                        static_cast<double>(e.search.extracted) / static_cast<double>(e.budget),
+                        e.search_seconds);
+        }
         std::printf("%-16.6g %10.4g %10zu %10zu %11llu %10zu %8zu %9.1f %9.3f\n", e.threshold,
                     e.error_bound, e.report.triangles, e.report.vertices,
                     static_cast<unsigned long long>(e.counts.visited), e.report.open_edges,
                     e.report.boundary_edges, mebibytes(e.peak_bytes), e.seconds);
     }
     if (contour) {
+        if (budgets) std::printf("%36s ", "");
         std::printf("%-16s %10s %10zu %10zu %11s %10s %8zu %9s %9.3f\n", "VTK FlyingEdges", "",
                     contour->triangles, contour->vertices, "", "", contour->once_edges, "",
                     contour->seconds);

@@ -27,6 +27,8 @@
 //         reaches across it; default: derived from coarse ids
 //     void for_each_star(f)
 //         calls f(Star) for every new node, fine to coarse, each node once; default: sweeps
+//     Point node_position(NodeKey)
+//         random access, with for_each_star
 //     std::uint64_t epoch()
 //         changes with the grid: tells stale prerolls
 // and a field

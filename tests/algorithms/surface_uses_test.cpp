@@ -11,6 +11,7 @@
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
+#include <nestgrid/any_grid.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"
@@ -277,6 +278,48 @@ TEST(TriangleBudgets, AreKeptByTheLeastThreshold) {
                           data.isovalue);
     expect_best_threshold(hexahedra, LatticeField(hexahedra, std::span<const float>(data.values)),
                           data.isovalue);
+}
+
+/// By stars and by sweeps.
+TEST(Regions, AreTheSameHoweverTheyAreFound) {
+    const LatticeBisection<3> grid({.samples = {17, 12, 20}});
+    const auto inside = [](const Point& x) { return norm(x - Point{5, 5, 6}) < 4; };
+    const Region by_stars(grid, inside);
+    const Region by_sweeps(AnyGrid<3>(grid), inside);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < grid.node_count(); ++i) {
+        const auto node = static_cast<NodeKey>(i);
+        ASSERT_EQ(by_stars.contains(node), by_sweeps.contains(node));
+        ASSERT_LE(inside(grid.node_position(node)), by_stars.contains(node));
+        count += by_stars.contains(node) ? 1 : 0;
+    }
+    EXPECT_GT(count, 260U);
+    EXPECT_LT(count, grid.node_count() / 2);
+}
+
+/// "200,000 triangles, fine inside this box."
+TEST(Regions, LeaveTheRestOfABudgetToTheOutside) {
+    const Samples n{33, 33, 33};
+    const LatticeBisection<3> grid({.samples = n});
+    const SampledField data = sampled_fields(n)[1];
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    const Region region(grid, [](const Point& x) { return x[0] < 10; });
+    const auto criterion_at = [&](double threshold) {
+        return fine_inside(region, indicator, threshold, 0);
+    };
+    const auto fine = isosurface(grid, field, data.isovalue, indicator, {});
+    const std::size_t budget = fine.surface.simplices.size() * 2 / 3;
+    const TriangleBudget best =
+        find_threshold(grid, field, data.isovalue, criterion_at, indicator, budget);
+    const auto mixed =
+        isosurface(grid, field, data.isovalue, criterion_at(best.threshold), indicator);
+    EXPECT_EQ(mixed.surface.simplices.size(), best.triangles);
+    EXPECT_LE(best.triangles, budget);
+    expect_closed(mixed.surface);
+    const auto inside = [](const Point& x) { return x[0] < 9; };  // elements end in the region
+    EXPECT_EQ(std::count_if(mixed.surface.vertices.begin(), mixed.surface.vertices.end(), inside),
+              std::count_if(fine.surface.vertices.begin(), fine.surface.vertices.end(), inside));
 }
 
 /// Fine in a box, coarse elsewhere, closed everywhere.

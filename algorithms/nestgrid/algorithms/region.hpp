@@ -10,7 +10,8 @@
 //     S = S_out and (S_in or not in the region)
 // is saturated, for where both (one) of two saturated criteria hold(s) at a corner, the same hold
 // at the new nodes.
-// Memory: a byte a node (a key a node where keys are not dense). Cost: a few walks over the grid.
+// Memory: a byte a node (a key a node where keys are not dense). Cost: one pass over the stars, where
+// the grid offers them, else a few walks.
 #pragma once
 
 #include <nestgrid/algorithms/criterion.hpp>
@@ -20,6 +21,23 @@
 
 namespace nestgrid {
 
+namespace detail {
+template <class Function>
+struct EachVisitor {
+    Function& function;
+    int levels = 0;
+
+    template <class State>
+    Decision inspect(const State& s, const Split&) {
+        levels = std::max(levels, s.level + 1);
+        function(s);
+        return {};
+    }
+    template <class State>
+    void extract(const State&) {}
+};
+}  // namespace detail
+
 class Region {
 public:
     static constexpr bool saturated = true;
@@ -27,34 +45,13 @@ public:
     /// \param inside whether a point lies in the region: bool(const Point&)
     template <class Grid, class Inside>
     Region(const Grid& grid, Inside&& inside) : dense_(dense_key_count(grid), 0) {
-        const ZeroField<Grid> zero;
-        const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}> walk(grid,
-                                                                                           zero);
-        std::array<NodeKey, max_corners> keys;
-        const int levels = count_levels(walk);
-        for (int level = 0; level < levels; ++level) {
-            for_each_on_level(walk, level, [&](const auto& s, const Split&) {
-                std::array<Point, max_corners> x;
-                walk.keys(s, keys);
-                walk.positions(s, x);
-                for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-                    if (inside(x[i])) add(keys[i]);
-                }
-            });
-        }
-        for (bool changed = true; changed;) {
-            changed = false;
-            for (int level = levels - 1; level >= 0; --level) {
-                for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
-                    const bool below = std::any_of(split.keys.begin(), split.keys.end(),
-                                                   [&](NodeKey key) { return contains(key); });
-                    if (!below) return;
-                    walk.keys(s, keys);
-                    for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-                        changed = add(keys[i]) || changed;
-                    }
-                });
-            }
+        if constexpr (requires {
+                          grid.for_each_star([](const Star&) {});
+                          grid.node_position(NodeKey{});
+                      }) {
+            sweep_stars(grid, inside);
+        } else {
+            sweep_levels(grid, inside);
         }
     }
 
@@ -69,6 +66,60 @@ public:
 private:
     struct Present {};
 
+    template <class Grid, class Inside>
+    void sweep_stars(const Grid& grid, Inside&& inside) {
+        for (std::size_t i = 0; i < grid.node_count(); ++i) {
+            const auto node = static_cast<NodeKey>(i);
+            if (inside(grid.node_position(node))) add(node);
+        }
+        grid.for_each_star([&](const Star& star) {
+            if (!contains(star.node)) return;
+            for (const NodeKey corner : star.corners) add(corner);
+        });
+    }
+
+    template <class Grid, class Inside>
+    void sweep_levels(const Grid& grid, Inside&& inside) {
+        const ZeroField<Grid> zero;
+        using Walk = Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}>;
+        const Walk walk(grid, zero);
+        std::array<NodeKey, max_corners> keys;
+        const auto add_corners = [&](const auto& s) {
+            walk.keys(s, keys);
+            std::array<Point, max_corners> x;
+            walk.positions(s, x);
+            for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+                if (inside(x[i])) add(keys[i]);
+            }
+        };
+        detail::EachVisitor<decltype(add_corners)> each{add_corners};
+        walk.run(each);
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (int level = each.levels - 1; level >= 0; --level) {
+                for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
+                    if (split.rule == nullptr) return;
+                    const auto corners = static_cast<std::size_t>(s.corner_count());
+                    bool below = false;
+                    for (std::size_t n = split.keys.size(); n-- > 0;) {
+                        if (!contains(split.keys[n])) continue;
+                        below = true;
+                        // A parent that is a new node itself is to this one as a corner is.
+                        const Stencil& stencil = split.rule->new_nodes[n];
+                        for (std::size_t i = 0; i < stencil.count; ++i) {
+                            if (stencil.parent[i] < corners) continue;
+                            changed = add(split.keys[stencil.parent[i] - corners]) || changed;
+                        }
+                    }
+                    if (!below) return;
+                    walk.keys(s, keys);
+                    for (std::size_t i = 0; i < corners; ++i) changed = add(keys[i]) || changed;
+                });
+            }
+        }
+    }
+
+    /// \return whether it is new
     bool add(NodeKey node) {
         if (dense_.empty()) return sparse_.insert(node, {}).second;
         return std::exchange(dense_[static_cast<std::size_t>(node)], std::uint8_t{1}) == 0;

@@ -27,18 +27,16 @@ struct TriangleBudget {
 
 namespace detail {
 
-/// Triangles (segments) at a threshold, or nothing where there are more than `most`.
-template <class Grid, class Field, class Indicator, class Executor>
+/// Triangles (segments) under a criterion, or nothing where there are more than `most`.
+template <class Grid, class Field, class S, class Indicator, class Executor>
 std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& field, double isovalue,
-                                             const Indicator& indicator, double threshold,
+                                             const S& criterion, const Indicator& indicator,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor) {
     std::uint64_t count = 0;
     const auto add = [&](const auto&) { ++count; };
     using Sink = SimplexStream<Grid::dimension, std::decay_t<decltype(add)>>;
-    using S = Threshold<Indicator>;
     using Visitor = IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>;
-    const S criterion{&indicator, threshold};
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
@@ -56,21 +54,27 @@ std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& fiel
 
 }  // namespace detail
 
+/// \param criterion_at the criterion for a threshold: S(double), one that holds at more nodes the
+///        greater the threshold is; fine_inside (region.hpp) with a threshold of its own, say
 /// \param options cap and progress count
 /// \throw InvalidInput where even the coarsest surface has more than max_triangles
-template <class Grid, class Field, class Indicator, Executor E = SequentialExecutor>
+template <class Grid, class Field, class MakeCriterion, class Indicator,
+          Executor E = SequentialExecutor>
+    requires requires(const MakeCriterion& make) { { make(0.0) } -> Criterion; }
 TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
-                              const Indicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options = {}, const E& executor = {}) {
+                              const MakeCriterion& criterion_at, const Indicator& indicator,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
+                              const E& executor = {}) {
     TriangleBudget best;
     const auto fits = [&](std::uint16_t code) {
-        const auto count = detail::count_triangles(grid, field, isovalue, indicator,
-                                                   bfloat16_value(code), max_triangles, options,
-                                                   executor);
+        const double threshold = bfloat16_value(code);
+        const auto count =
+            detail::count_triangles(grid, field, isovalue, criterion_at(threshold), indicator,
+                                    max_triangles, options, executor);
         ++best.trials;
         best.extracted += count.value_or(max_triangles + 1);
         if (count) {
-            best.threshold = bfloat16_value(code);
+            best.threshold = threshold;
             best.triangles = *count;
         }
         return count.has_value();
@@ -79,8 +83,12 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
     // The greatest stopping number is at most the range of the data.
     std::uint16_t within = bfloat16_above(float_above(indicator.greatest() - indicator.least()));
     if (within == 0 || !fits(within)) {
-        throw InvalidInput("the coarsest surface has more than " + std::to_string(max_triangles) +
-                           " triangles");
+        const auto coarsest = detail::count_triangles(
+            grid, field, isovalue, criterion_at(bfloat16_value(within)), indicator,
+            std::numeric_limits<std::uint64_t>::max(), options, executor);
+        throw InvalidInput("even the coarsest surface has more than " +
+                           std::to_string(max_triangles) + " triangles: " +
+                           std::to_string(*coarsest));
     }
     constexpr std::uint16_t octave = 128;
     const auto halved = [](std::uint16_t code) {
@@ -96,6 +104,18 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
         (fits(middle) ? within : beyond) = middle;
     }
     return best;
+}
+
+/// The same for one threshold everywhere.
+template <class Grid, class Field, class Indicator, Executor E = SequentialExecutor>
+TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
+                              const Indicator& indicator, std::uint64_t max_triangles,
+                              const IsosurfaceOptions& options = {}, const E& executor = {}) {
+    const auto everywhere = [&](double threshold) {
+        return Threshold<Indicator>{&indicator, threshold};
+    };
+    return find_threshold(grid, field, isovalue, everywhere, indicator, max_triangles, options,
+                          executor);
 }
 
 template <class Grid, class Field, class Indicator, Executor E>

@@ -80,6 +80,7 @@ public:
         }
         return x;
     }
+    Point node_position(NodeKey node) const { return position(place(node)); }
     const LatticeGeometry<dim>& geometry() const { return geometry_; }
     std::size_t sample_count() const { return sample_stride_[size_ - 1] * samples(size_ - 1); }
     std::size_t samples(std::size_t d) const { return cells_[d] + 1U; }

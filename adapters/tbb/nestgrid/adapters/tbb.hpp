@@ -17,8 +17,7 @@ class TbbExecutor {
 public:
     /// \param threads how many to use; 0: all that oneTBB would
     explicit TbbExecutor(int threads = 0)
-        : arena_{std::make_unique<tbb::task_arena>(threads > 0 ? threads
-                                                               : tbb::task_arena::automatic)} {}
+        : arena_{std::make_unique<tbb::task_arena>(threads > 0 ? threads : all)} {}
 
     std::size_t concurrency() const {
         return static_cast<std::size_t>(arena_->max_concurrency());
@@ -58,6 +57,8 @@ public:
     }
 
 private:
+    static constexpr int all = tbb::task_arena::automatic;
+
     std::unique_ptr<tbb::task_arena> arena_;
 };
 
