@@ -57,6 +57,34 @@ done
 "$program" isosurface v.vti --value 130 --threshold 4.8 >out && b=$(value triangles)
 [ "$a" = "$b" ] || fail "percent: $a, $b"
 
+# Budgets, boxes and threads.
+"$program" isosurface v.vti --value 130 --threshold 0 --threads 1 -o one.vtp >out &&
+    finest=$(value triangles)
+"$program" isosurface v.vti --value 130 --threshold 0 --threads 3 -o three.vtp >out || fail "threads"
+cmp -s one.vtp three.vtp || fail "three threads draw something else"
+"$program" isosurface v.vti --value 130 --max-triangles $((finest / 2)) >out || fail "budget"
+[ "$(value triangles)" -le $((finest / 2)) ] || fail "budget: $(value triangles) triangles"
+[ "$(value open_edges)" = 0 ] && [ "$(value search_trials)" -gt 5 ] || fail "budget: search"
+"$program" isosurface v.vti --value 130 --max-triangles $((2 * finest)) \
+    --max-triangles $((finest / 2)) >out || fail "budgets"
+[ "$(grep -c " 0 *0 " out)" -ge 1 ] && grep -q "^max_triangles  *trials" <(sed 's/^ *//' out) ||
+    fail "budgets: $(cat out)"
+"$program" isosurface v.vti --value 130 --threshold 50 --box=-100,100,-100,100,-100,100 >out ||
+    fail "box"
+[ "$(value triangles)" = "$finest" ] || fail "box around everything: $(value triangles)"
+"$program" isosurface v.vti --value 130 --threshold 50 --box=2,5,2,5,2,5 --box-threshold 1 >out ||
+    fail "box"
+[ "$(value triangles)" -lt "$finest" ] && [ "$(value open_edges)" = 0 ] || fail "small box"
+refused 1 'even the coarsest surface has more than 1' isosurface v.vti --value 130 --max-triangles 1
+refused 1 'max-triangles is not positive' isosurface v.vti --value 130 --max-triangles 0
+refused 2 'excludes' isosurface v.vti --value 130 --max-triangles 9 --threshold 1
+refused 1 'box is empty' isosurface v.vti --value 130 --box 1,0,0,1,0,1
+refused 1 'box is empty' isosurface v.vti --value 130 --box 0,nan,0,1,0,1
+refused 1 'box-threshold is negative' isosurface v.vti --value 130 --box 0,1,0,1,0,1 --box-threshold -1
+refused 2 'box' isosurface v.vti --value 130 --box 0,1
+refused 2 'box' isosurface v.vti --value 130 --box-threshold 1
+refused 1 'threads is negative' isosurface v.vti --value 130 --threads -1
+
 for format in vtp ply stl obj gltf; do
     "$program" isosurface float.vti --value 130 -o s.$format >out 2>err || fail "-o s.$format: $(cat err)"
     [ -s s.$format ] || fail "s.$format is missing"

@@ -4,10 +4,12 @@
 // Threads of oneTBB for the algorithms (nestgrid/algorithms/executor.hpp).
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <type_traits>
 
+#include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -15,9 +17,11 @@ namespace nestgrid {
 
 class TbbExecutor {
 public:
-    /// \param threads how many to use; 0: all that oneTBB would
+    /// \param threads how many to use, though no more than oneTBB would; 0: all of these
     explicit TbbExecutor(int threads = 0)
-        : arena_{std::make_unique<tbb::task_arena>(threads > 0 ? threads : all)} {}
+        : arena_{std::make_unique<tbb::task_arena>(
+              threads > 0 ? std::min(threads, tbb::info::default_concurrency())
+                          : tbb::info::default_concurrency())} {}
 
     std::size_t concurrency() const {
         return static_cast<std::size_t>(arena_->max_concurrency());
@@ -57,8 +61,6 @@ public:
     }
 
 private:
-    static constexpr int all = tbb::task_arena::automatic;
-
     std::unique_ptr<tbb::task_arena> arena_;
 };
 
