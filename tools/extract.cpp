@@ -47,8 +47,8 @@ Extraction extract_one(const Grid& grid, const Field& field, const MakeCriterion
         e.search_seconds = now() - start;
         start = now();
     }
-    const auto result = nestgrid::isosurface(grid, field, request.isovalue,
-                                             criterion_at(e.threshold), indicator, options, executor);
+    const auto result = nestgrid::isosurface(
+        grid, field, request.isovalue, criterion_at(e.threshold), indicator, options, executor);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
@@ -82,14 +82,14 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
     const nestgrid::TbbExecutor executor(request.threads);
     const auto extract_with = [&](const auto& criterion_at) {
         for (const std::uint64_t budget : request.budgets) {
-            run.surfaces.push_back(extract_one(grid, field, criterion_at, indicator, 0, budget,
-                                               executor, request));
+            run.surfaces.push_back(
+                extract_one(grid, field, criterion_at, indicator, 0, budget, executor, request));
         }
         for (const ThresholdText& t : request.thresholds) {
             const double threshold =
                 t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
-            run.surfaces.push_back(extract_one(grid, field, criterion_at, indicator, threshold, 0,
-                                               executor, request));
+            run.surfaces.push_back(
+                extract_one(grid, field, criterion_at, indicator, threshold, 0, executor, request));
         }
     };
     if (request.box) {

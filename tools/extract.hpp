@@ -32,7 +32,8 @@ struct FineBox {
 struct ExtractionRequest {
     double isovalue = 0;
     std::vector<ThresholdText> thresholds{};
-    std::vector<std::uint64_t> budgets{};  ///< triangles at most, beside which there are no thresholds
+    std::vector<std::uint64_t>
+        budgets{};  ///< triangles at most, beside which there are no thresholds
     std::optional<FineBox> box{};
     int threads = 0;  ///< 0: all
     bool cap = false;
@@ -44,8 +45,8 @@ struct ExtractionRequest {
 /// One surface and what it cost.
 struct Extraction {
     double threshold = 0;
-    std::uint64_t budget = 0;               ///< 0: none
-    nestgrid::TriangleBudget search;        ///< of the threshold for the budget
+    std::uint64_t budget = 0;         ///< 0: none
+    nestgrid::TriangleBudget search;  ///< of the threshold for the budget
     double search_seconds = 0;
     vtkSmartPointer<vtkPolyData> surface;  ///< where it is kept
     nestgrid::TraversalCounts counts;

@@ -90,8 +90,9 @@ FineBox fine_box(const Options& o) {
     std::copy_n(o.box.begin(), 6, box.bounds.begin());
     for (std::size_t d = 0; d < 3; ++d) {
         if (!(box.bounds[2 * d] <= box.bounds[2 * d + 1])) {
-            throw nestgrid::InvalidInput("--box is empty: its bounds are x,x,y,y,z,z in ascending "
-                                         "order");
+            throw nestgrid::InvalidInput(
+                "--box is empty: its bounds are x,x,y,y,z,z in ascending "
+                "order");
         }
     }
     if (!(box.threshold >= 0)) {
@@ -246,9 +247,10 @@ int main(int argc, char** argv) {
                      "of their range (2%); give it again for a table of several")
         ->take_all();
     isosurface
-        ->add_option("--max-triangles", o.budgets,
-                     "in the place of a threshold: the least one that gives no more triangles; give "
-                     "it again for a table of several")
+        ->add_option(
+            "--max-triangles", o.budgets,
+            "in the place of a threshold: the least one that gives no more triangles; give "
+            "it again for a table of several")
         ->take_all()
         ->excludes("--threshold");
     isosurface
@@ -256,8 +258,7 @@ int main(int argc, char** argv) {
                      "bounds x,x,y,y,z,z of a region with a threshold of its own, --box-threshold")
         ->delimiter(',')
         ->expected(6);
-    isosurface
-        ->add_option("--box-threshold", o.box_threshold, "in units of the data; default: 0")
+    isosurface->add_option("--box-threshold", o.box_threshold, "in units of the data; default: 0")
         ->needs("--box");
     isosurface->add_option("--threads", o.threads,
                            "how many to use; default: all. The surface does not depend on it");

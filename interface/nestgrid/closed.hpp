@@ -53,7 +53,7 @@ struct ClosedParts {
     static constexpr std::size_t edges = corners == 3 ? 3 : corners <= 4 ? 6 : max_edges;
     static constexpr std::size_t faces = corners == 3 ? 3 : corners == 4 ? 4 : max_faces;
 
-    bool any;                              ///< otherwise nothing else is set
+    bool any;  ///< otherwise nothing else is set
     std::array<const Edge*, edges> edge;
     std::array<const ClosedFace*, faces> face;
 };

@@ -101,8 +101,8 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
             const std::span<const NodeKey> of(loop.data(), face.corners);
             NodeKey divided_by = 0;
             for (NodeMask left = face.one_way ? face.first : 0; left != 0; left &= left - 1) {
-                divided_by += detail::mix(
-                    key(static_cast<std::uint8_t>(corners + std::countr_zero(left))));
+                divided_by += detail::mix(key(static_cast<std::uint8_t>(
+                    corners + static_cast<std::size_t>(std::countr_zero(left)))));
             }
             parts.closed_face[f] = {face_key(of), parts.face[f], divided_by};
             parts.face[f] = &parts.closed_face[f];

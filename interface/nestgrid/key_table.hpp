@@ -23,7 +23,7 @@ struct KeyPair {
 };
 
 constexpr std::uint64_t hash(const KeyPair& pair) {
-    return detail::mix64(hash(pair.low) ^ (static_cast<std::uint64_t>(pair.high) << 1U));
+    return hash(pair.low * NodeKey{0xd1342543de82ef95ULL} + pair.high);
 }
 
 /// Maps keys to values. References stay valid until the next insertion.
@@ -36,26 +36,25 @@ public:
     /// The value of `key` and whether it is new; new ones start as `value`.
     std::pair<Value*, bool> insert(const Key& key, const Value& value) {
         if (2 * (size_ + 1) > slots_.size()) rehash(slots_.empty() ? 64 : 2 * slots_.size());
-        const std::size_t at = place(key);
-        if (used_[at]) return {&slots_[at].second, false};
-        used_[at] = true;
-        slots_[at] = {key, value};
+        Slot& slot = slots_[place(key)];
+        if (slot.used) return {&slot.value, false};
+        slot = {key, value, true};
         ++size_;
-        return {&slots_[at].second, true};
+        return {&slot.value, true};
     }
 
     Value* find(const Key& key) { return const_cast<Value*>(std::as_const(*this).find(key)); }
 
     const Value* find(const Key& key) const {
         if (slots_.empty()) return nullptr;
-        const std::size_t at = place(key);
-        return used_[at] ? &slots_[at].second : nullptr;
+        const Slot& slot = slots_[place(key)];
+        return slot.used ? &slot.value : nullptr;
     }
 
     template <class Function>
     void for_each(Function&& function) const {
-        for (std::size_t i = 0; i < slots_.size(); ++i) {
-            if (used_[i]) function(slots_[i].first, slots_[i].second);
+        for (const Slot& slot : slots_) {
+            if (slot.used) function(slot.key, slot.value);
         }
     }
 
@@ -66,33 +65,31 @@ public:
     }
 
     std::size_t size() const { return size_; }
-    std::size_t memory_bytes() const {
-        return slots_.capacity() * sizeof(slots_[0]) + used_.capacity() / 8;
-    }
+    std::size_t memory_bytes() const { return slots_.capacity() * sizeof(Slot); }
 
 private:
+    struct Slot {
+        Key key;
+        Value value;
+        bool used = false;
+    };
+
     std::size_t place(const Key& key) const {
         const std::size_t mask = slots_.size() - 1;
         std::size_t at = static_cast<std::size_t>(hash(key)) & mask;
-        while (used_[at] && !(slots_[at].first == key)) at = (at + 1) & mask;
+        while (slots_[at].used && !(slots_[at].key == key)) at = (at + 1) & mask;
         return at;
     }
 
     void rehash(std::size_t capacity) {
-        std::vector<std::pair<Key, Value>> old(capacity);
-        std::vector<bool> was_used(capacity, false);
+        std::vector<Slot> old(capacity);
         old.swap(slots_);
-        was_used.swap(used_);
-        for (std::size_t i = 0; i < old.size(); ++i) {
-            if (!was_used[i]) continue;
-            const std::size_t at = place(old[i].first);
-            used_[at] = true;
-            slots_[at] = old[i];
+        for (const Slot& slot : old) {
+            if (slot.used) slots_[place(slot.key)] = slot;
         }
     }
 
-    std::vector<std::pair<Key, Value>> slots_;
-    std::vector<bool> used_;
+    std::vector<Slot> slots_;
     std::size_t size_ = 0;
 };
 

@@ -141,8 +141,10 @@ inline void place_in_parts(Rule& rule) {
         for (std::size_t e = 0; e < t.edges; ++e) {
             const std::array<std::uint8_t, 2> ends{child.corner[t.edge[e][0]],
                                                    child.corner[t.edge[e][1]]};
-            for (std::uint8_t r = 0; r < rule.edges.size(); ++r) {
-                if (NodeSet(rule, rule.edges[r].end).contains(ends)) child.rule_edge[e] = r;
+            for (std::size_t r = 0; r < rule.edges.size(); ++r) {
+                if (NodeSet(rule, rule.edges[r].end).contains(ends)) {
+                    child.rule_edge[e] = static_cast<std::uint8_t>(r);
+                }
             }
         }
         for (std::size_t f = 0; f < t.faces; ++f) {
@@ -150,12 +152,14 @@ inline void place_in_parts(Rule& rule) {
             for (std::size_t i = 0; i < t.face[f].corners; ++i) {
                 corners.push_back(child.corner[t.face[f].corner[i]]);
             }
-            for (std::uint8_t r = 0; r < rule.faces.size(); ++r) {
+            for (std::size_t r = 0; r < rule.faces.size(); ++r) {
                 RuleFace& face = rule.faces[r];
                 if (!NodeSet(rule, corners_of(face)).contains(corners)) continue;
                 const bool whole = same_nodes(corners, corners_of(face));
                 face.divided = face.divided || !whole;
-                if (face.parent == no_face || !whole) child.rule_face[f] = r;
+                if (face.parent == no_face || !whole) {
+                    child.rule_face[f] = static_cast<std::uint8_t>(r);
+                }
             }
         }
     }

@@ -36,8 +36,8 @@ inline std::array<double, max_corners> shape_functions(Shape shape, const Point&
     }
     std::array<double, max_corners> w{};
     for (std::size_t i = 0; i < 8; ++i) {
-        w[i] = ((i & 1U) != 0 ? x : 1 - x) * ((i & 2U) != 0 ? y : 1 - y) *
-               ((i & 4U) != 0 ? z : 1 - z);
+        w[i] =
+            ((i & 1U) != 0 ? x : 1 - x) * ((i & 2U) != 0 ? y : 1 - y) * ((i & 4U) != 0 ? z : 1 - z);
     }
     return w;
 }

@@ -115,7 +115,13 @@ struct ElementState {
         position;
     [[no_unique_address]] detail::CarriedIf<needs.closed, Closed> closed;
 
-    int corner_count() const { return topology(shape).corners; }
+    int corner_count() const {
+        if constexpr (capacity == static_cast<std::size_t>(Grid::dimension) + 1) {
+            return Grid::dimension + 1;  // nothing but simplices, so that loops are unrolled
+        } else {
+            return topology(shape).corners;
+        }
+    }
 };
 
 /// Walks a grid with a field on it. Construction looks at the coarse grid once; the walk itself

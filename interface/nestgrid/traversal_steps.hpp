@@ -225,7 +225,7 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
                 k.boundary |= static_cast<std::uint8_t>(1U << f);
             }
         }
-        for (std::size_t i = 0; i < t.corners; ++i) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(k.corner_count()); ++i) {
             const std::size_t n = child.corner[i];
             for (std::size_t q = 0; q < c_count; ++q) {
                 k.value[i * c_count + q] = nodes.value[n * c_count + q];

@@ -32,8 +32,7 @@ void expect_same(vtkPolyData* a, vtkPolyData* b) {
 TEST(PolyDataSink, IsFilledWhileExtracting) {
     const PolyDataSink<3> sink;
     const auto expected = pour_sphere(sink).surface;  // a sink refers to its data
-    ASSERT_EQ(sink.data()->GetNumberOfPoints(),
-              static_cast<vtkIdType>(expected.vertices.size()));
+    ASSERT_EQ(sink.data()->GetNumberOfPoints(), static_cast<vtkIdType>(expected.vertices.size()));
     for (std::uint32_t v = 0; v < expected.vertices.size(); ++v) {
         EXPECT_EQ(sink.position(v), expected.vertices[v]);
     }

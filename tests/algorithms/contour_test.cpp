@@ -197,7 +197,9 @@ TEST(FaceContour, AgreesFromBothSides) {
                         a.insert({here.segment[k].falls, here.segment[k].rises});
                     }
                     for (std::size_t k = 0; k < beyond.count; ++k) {
-                        const auto side = [&](std::size_t i) { return (start + 2 * n - i - 1) % n; };
+                        const auto side = [&](std::size_t i) {
+                            return (start + 2 * n - i - 1) % n;
+                        };
                         b.insert({side(beyond.segment[k].rises), side(beyond.segment[k].falls)});
                     }
                     EXPECT_EQ(a, b);
@@ -259,9 +261,7 @@ struct OneCellField {
 /// Says that the level set may be anywhere.
 struct Everywhere {
     double stop(NodeKey) const { return 0; }
-    double bound(std::span<const NodeKey>) const {
-        return std::numeric_limits<double>::infinity();
-    }
+    double bound(std::span<const NodeKey>) const { return std::numeric_limits<double>::infinity(); }
     const HangingNodes* hanging() const { return nullptr; }
     std::uint64_t epoch() const { return epoch_; }
     bool stops_conform() const { return true; }
@@ -278,7 +278,8 @@ CoarseGrid cut(Shape shape) {
          {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}}};
     CoarseGrid grid;
     const Topology& t = topology(shape);
-    grid.nodes = Coordinates(std::vector<Point>(t.reference.begin(), t.reference.begin() + t.corners));
+    grid.nodes =
+        Coordinates(std::vector<Point>(t.reference.begin(), t.reference.begin() + t.corners));
     for (const auto& of : parts.at(shape)) grid.add(Shape::tetrahedron, of);
     return grid;
 }
@@ -298,9 +299,9 @@ public:
             values.push_back(sum);
         }
         const NodeField<RedGreenSimplices<3>, double> field(grid_, values);
-        const auto surface = isosurface(grid_, field, 0.0, Exact{},
-                                        Everywhere{epoch(grid_)}, {.elements = false})
-                                 .surface;
+        const auto surface =
+            isosurface(grid_, field, 0.0, Exact{}, Everywhere{epoch(grid_)}, {.elements = false})
+                .surface;
         const SurfaceReport report = surface_report(surface);
         return {report.components, report.euler};
     }
@@ -342,8 +343,7 @@ TEST(Contour, HasTheTopologyOfTheLevelSet) {
                 if (samples.size() == level) {
                     samples.push_back(std::make_unique<FineSample>(shape, 3 + int(level)));
                 }
-                same = samples[level]->topology_of(u) ==
-                       std::pair(report.components, report.euler);
+                same = samples[level]->topology_of(u) == std::pair(report.components, report.euler);
             }
             if (!same) ++unresolved;
         }

@@ -120,8 +120,8 @@ void expect_error_bounds(const Evaluate& evaluate) {
                         (surface.vertices[t[0]] + surface.vertices[t[1]] + surface.vertices[t[2]]);
                     for (const Point& p : {surface.vertices[t[0]], surface.vertices[t[1]],
                                            surface.vertices[t[2]], centre}) {
-                        worst = std::max(worst,
-                                         std::abs(evaluate(data.values, n, p) - data.isovalue));
+                        worst =
+                            std::max(worst, std::abs(evaluate(data.values, n, p) - data.isovalue));
                     }
                 }
                 // Cuts are moved by up to 2^-20 of a coarse edge.

@@ -9,6 +9,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/any_grid.hpp>
@@ -37,9 +38,7 @@ public:
             values_.push_back({0.36 - norm(p - centre), p[0], p[1], p[2], p[0] * p[1]});
         }
     }
-    std::array<double, 5> at(NodeKey node) const {
-        return values_[static_cast<std::size_t>(node)];
-    }
+    std::array<double, 5> at(NodeKey node) const { return values_[static_cast<std::size_t>(node)]; }
 
 private:
     std::vector<std::array<double, 5>> values_;
@@ -212,8 +211,7 @@ TYPED_TEST(Uses, StreamsHandOutTheSameTriangles) {
         using Sink = SimplexStream<3, decltype(keep)>;
         extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1),
                             std::vector<Sink>{Sink(keep)}, criterion, indicator, {.cap = true});
-        const auto result =
-            isosurface(grid, field, isovalue, criterion, indicator, {.cap = true});
+        const auto result = isosurface(grid, field, isovalue, criterion, indicator, {.cap = true});
         const auto& s = result.surface;
         ASSERT_EQ(triangles.size(), s.simplices.size());
         for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -238,6 +236,45 @@ TYPED_TEST(Uses, VolumesBetweenIsovaluesAreExactForLinearFunctions) {
     EXPECT_THROW(volume_between(grid, field, 1, 0, indicator), InvalidInput);
 }
 
+/// A shell: its level sets run into opposite directions, and every corner stays in its element.
+TYPED_TEST(Uses, BandsAreClosedAroundTheirVolume) {
+    auto grid = TypeParam::grids()[0];
+    refine_at_sphere(grid, 2 * TypeParam::steps);
+    const ScalarAndMore values(grid);
+    const FieldOn field(grid, values);
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : {0.0, 0.02}) {
+        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+        const auto band = isoband(grid, field, -0.05, 0.1, criterion, indicator,
+                                  {.normals = true, .reference = true});
+        const auto& s = band.surface;
+        expect_closed(s);
+        const SurfaceMeasurement measured = measure_surface(s);
+        const double volume = volume_between(grid, field, -0.05, 0.1, indicator, threshold);
+        EXPECT_GT(volume, 0);
+        EXPECT_TRUE(measured.total.closed);
+        EXPECT_NEAR(measured.total.volume, volume, 1e-12);
+        EXPECT_EQ(measured.components.size(), 2U);
+        ASSERT_EQ(s.normals.size(), s.vertices.size());
+        ASSERT_EQ(s.attributes.size(), 4 * s.vertices.size());
+        for (std::size_t v = 0; v < s.vertices.size(); ++v) {
+            const Point out = s.vertices[v] - centre;
+            EXPECT_GT(dot(s.normals[v], out) * (norm(out) - 0.335), 0);
+        }
+        for (std::size_t c = 0; c < s.reference.size(); ++c) {
+            const std::size_t e = s.element_of[c / 3];
+            const std::vector<Point> x = corners_of(grid, s.elements[e], s.shape_of[e]);
+            const auto w = shape_functions(s.shape_of[e], s.reference[c]);
+            Point there{0, 0, 0};
+            for (std::size_t i = 0; i < x.size(); ++i) there = there + w[i] * x[i];
+            EXPECT_NEAR(norm(there - s.vertices[s.simplices[c / 3][c % 3]]), 0, 1e-6);
+        }
+        EXPECT_THROW(isoband(grid, field, 0.1, 0.1, criterion, indicator), InvalidInput);
+        EXPECT_THROW(isoband(grid, field, 0, 0.1, criterion, indicator, {.cap = true}),
+                     InvalidInput);
+    }
+}
+
 template <class Grid, class Field>
 void expect_best_threshold(const Grid& grid, const Field& field, double isovalue) {
     const HierarchicalIndicator indicator(grid, field);
@@ -260,13 +297,11 @@ void expect_best_threshold(const Grid& grid, const Field& field, double isovalue
         } else {
             EXPECT_GE(budget, finest);
         }
-        const auto result =
-            isosurface(grid, field, isovalue, indicator, {.max_triangles = budget});
+        const auto result = isosurface(grid, field, isovalue, indicator, {.max_triangles = budget});
         EXPECT_EQ(result.surface.simplices.size(), best.triangles);
     }
-    EXPECT_THROW(
-        find_threshold(grid, field, indicator.least() - 1, indicator, 1, {.cap = true}),
-        InvalidInput);
+    EXPECT_THROW(find_threshold(grid, field, indicator.least() - 1, indicator, 1, {.cap = true}),
+                 InvalidInput);
 }
 
 TEST(TriangleBudgets, AreKeptByTheLeastThreshold) {

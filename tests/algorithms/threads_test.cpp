@@ -49,10 +49,8 @@ void expect_same_from_threads(const Grid& grid, const Field& field,
                               const std::vector<double>& isovalues, double threshold) {
     const HierarchicalIndicator indicator(grid, field);
     const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
-    const IsosurfaceOptions options{.normals = Grid::dimension == 3,
-                                    .cap = true,
-                                    .reference = true,
-                                    .verify = true};
+    const IsosurfaceOptions options{
+        .normals = Grid::dimension == 3, .cap = true, .reference = true, .verify = true};
     const auto alone = isosurfaces(grid, field, isovalues, criterion, indicator, options);
     for (const std::size_t threads : {2U, 3U}) {
         const auto together = isosurfaces(grid, field, isovalues, criterion, indicator, options,
@@ -87,8 +85,8 @@ TEST(ThreadsOnSamples, DrawWhatOneDraws) {
         SCOPED_TRACE(data.name);
         const std::span<const float> samples(data.values);
         for (const double threshold : {0.0, 0.02}) {
-            expect_same_from_threads(tetrahedra, LatticeField(tetrahedra, samples),
-                                     {data.isovalue}, threshold * data.range);
+            expect_same_from_threads(tetrahedra, LatticeField(tetrahedra, samples), {data.isovalue},
+                                     threshold * data.range);
             expect_same_from_threads(hexahedra, LatticeField(hexahedra, samples), {data.isovalue},
                                      threshold * data.range);
         }

@@ -276,15 +276,17 @@ void run_deal_ii(const char* mesh, const char* name, const Leaves& leaves) {
 void run(const char* mesh, const Grid& grid) {
     std::mt19937 random(1);
     const std::vector<std::pair<const char*, std::function<double(const Point&)>>> fields{
-        {"sphere", [](const Point& x) { return 0.36 - norm(x - Point{0.51, 0.49, 0.5}); }},
+        {"sphere",
+         [](const Point& x) {
+             return 0.36 - norm(x - Point{0.51, 0.49, 0.5});
+         }},
         {"gyroid",
          [](const Point& x) {
              const auto [a, b, c] = 15.0 * x;
              return std::sin(a) * std::cos(b) + std::sin(b) * std::cos(c) +
                     std::sin(c) * std::cos(a) + 1e-3;
          }},
-        {"noise",
-         [&](const Point&) { return static_cast<double>(random()) / 4294967296.0 - 0.5; }},
+        {"noise", [&](const Point&) { return static_cast<double>(random()) / 4294967296.0 - 0.5; }},
         {"integers -1, 0, 1",
          [&](const Point&) { return static_cast<double>(random() % 3) - 1.0; }},
     };
@@ -318,8 +320,9 @@ Grid refined(int rounds, const std::function<bool(const Leaf&)>& refine) {
 int main(int argc, char** argv) {
     const bool quick = argc > 1 && std::string(argv[1]) == "--quick";
     const int rounds = quick ? 2 : 4;
-    std::printf("| mesh | field | by | triangles | open edges | edges of more than two | "
-                "preparation, s | extraction, s |\n|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| mesh | field | by | triangles | open edges | edges of more than two | "
+        "preparation, s | extraction, s |\n|---|---|---|---|---|---|---|---|\n");
     const auto at_sphere = refined(rounds, [](const Leaf& leaf) {
         int inside = 0;
         for (const Point& x : leaf.corners) inside += norm(x - Point{0.51, 0.49, 0.5}) < 0.36;

@@ -62,8 +62,9 @@ inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes
         for (const Point& x : nodes) samples.values.push_back(f(x));
         fields.push_back(std::move(samples));
     };
-    add("sphere", true,
-        [](const Point& x) { return 0.36 - norm(x - Point{0.51, 0.49, x[2] == 0 ? 0 : 0.5}); });
+    add("sphere", true, [](const Point& x) {
+        return 0.36 - norm(x - Point{0.51, 0.49, x[2] == 0 ? 0 : 0.5});
+    });
     add("gyroid", true, [](const Point& x) {
         const auto [a, b, c] = 9.0 * x;
         return std::sin(a) * std::cos(b) + std::sin(b) * std::cos(c) + std::sin(c) * std::cos(a) +
@@ -71,8 +72,9 @@ inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes
     });
     add("noise", true, [&](const Point&) { return uniform() - 0.5; });
     add("plane through nodes and edges", false, [](const Point& x) { return x[0] + x[1] - 1; });
-    add("plateau at the isovalue", false,
-        [](const Point& x) { return std::max(0.0, norm(x - Point{0.5, 0.5, 0.5}) - 0.3); });
+    add("plateau at the isovalue", false, [](const Point& x) {
+        return std::max(0.0, norm(x - Point{0.5, 0.5, 0.5}) - 0.3);
+    });
     add("integers", false, [&](const Point&) { return static_cast<double>(random() % 3) - 1; });
     add("saddle", true, [&](const Point& x) {
         return (x[0] - 0.51) * (x[1] - 0.47) + 0.3 * (x[2] - 0.5) * (x[0] - 0.4) +
@@ -80,9 +82,8 @@ inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes
     });
     add("5 units in the last place", false,
         [&](const Point&) { return (static_cast<double>(random() % 11) - 5) * 0x1p-52; });
-    add("tiny", false, [&](const Point&) {
-        return (random() % 2 == 0 ? -1 : 1) * std::pow(10, -18 * uniform());
-    });
+    add("tiny", false,
+        [&](const Point&) { return (random() % 2 == 0 ? -1 : 1) * std::pow(10, -18 * uniform()); });
     add("checkerboard of every level", true, [&](const Point& x) {
         int sum = 0;  // of the coordinates on the coarsest lattice that has the node
         for (const double at : x) {

@@ -11,7 +11,8 @@
 //   - in prisms and pyramids every loop bounds a disc of the level set: a section of a prism is
 //     linear and meets it in one arc, and the sections of a pyramid along its axis meet the levels
 //     of one bilinear function in falling or in rising order;
-//   - in a hexahedron two regions of one sign, apart on its surface, may be joined inside. A section
+//   - in a hexahedron two regions of one sign, apart on its surface, may be joined inside. A
+//   section
 //     has no component without a corner of its own, so they are joined if and only if in some
 //     section across an axis opposite corners are joined whose regions differ (after Chernyaev
 //     1995).
@@ -69,7 +70,7 @@ inline double affine_residual(std::span<const Point> x, std::span<const double> 
 
 /// A tunnel between two loops of a contour.
 struct Tunnel {
-    std::size_t from = 0;       ///< the two loops it joins
+    std::size_t from = 0;  ///< the two loops it joins
     std::size_t to = 0;
     std::array<Point, 4> ring;  ///< points of the level set around its neck, reference coordinates
 };
@@ -127,8 +128,8 @@ inline std::optional<std::array<double, 2>> heights(const std::array<double, 8>&
 /// The tunnel of a hexahedron, if it has one. u are the values U - C at its corners.
 inline std::optional<Tunnel> find_tunnel(const Contour& contour, const std::array<double, 8>& u) {
     if (contour.loop_count < 2) return std::nullopt;
-    for (const unsigned diagonal : {0U, 1U}) {      // corners 0 and 3, or 1 and 2, of a section
-        for (const double sign : {1.0, -1.0}) {     // of the corners that may be joined
+    for (const unsigned diagonal : {0U, 1U}) {   // corners 0 and 3, or 1 and 2, of a section
+        for (const double sign : {1.0, -1.0}) {  // of the corners that may be joined
             const double one = diagonal == 0 ? sign : -sign;
             const auto range = detail::heights(u, {one, -one, -one, one});
             if (!range) continue;
@@ -143,7 +144,9 @@ inline std::optional<Tunnel> find_tunnel(const Contour& contour, const std::arra
             if (!(best > (*range)[0] && best < (*range)[1])) continue;
             const double discriminant = q * q - 4 * p * r;
             if (!(discriminant > 0)) continue;
-            const auto corner = [&](std::size_t i) { return (u[i] >= 0) == (sign > 0) ? i : i + 4; };
+            const auto corner = [&](std::size_t i) {
+                return (u[i] >= 0) == (sign > 0) ? i : i + 4;
+            };
             const std::uint8_t from = contour.region[corner(diagonal == 0 ? 0 : 1)];
             const std::uint8_t to = contour.region[corner(diagonal == 0 ? 3 : 2)];
             if (from == to) continue;
@@ -151,10 +154,10 @@ inline std::optional<Tunnel> find_tunnel(const Contour& contour, const std::arra
                 for (std::size_t j = 0; j < contour.loop_count; ++j) {
                     const ContourLoop& a = contour.loop[i];
                     const ContourLoop& b = contour.loop[j];
-                    const bool around = sign > 0 ? a.positive == from && b.positive == to &&
-                                                       a.negative == b.negative
-                                                 : a.negative == from && b.negative == to &&
-                                                       a.positive == b.positive;
+                    const bool around =
+                        sign > 0
+                            ? a.positive == from && b.positive == to && a.negative == b.negative
+                            : a.negative == from && b.negative == to && a.positive == b.positive;
                     if (!around) continue;
                     const double half = std::sqrt(discriminant) / (-2 * r);
                     const double lo = std::max(best - half, (*range)[0]);

@@ -25,9 +25,8 @@ inline const ContourTable& ContourTable::of(Shape shape) {
 
 inline FaceTopology ContourTable::face(std::size_t f) const {
     if (topology_->dimension == 3) return topology_->face[f];
-    FaceTopology loop{topology_->corners == 3 ? Shape::triangle : Shape::quadrilateral,
-                      topology_->corners,
-                      {}};
+    FaceTopology loop{
+        topology_->corners == 3 ? Shape::triangle : Shape::quadrilateral, topology_->corners, {}};
     for (std::size_t i = 1; i < loop.corners; ++i) {  // counterclockwise, from corner 0 on
         for (std::size_t side = 0; side < topology_->faces; ++side) {
             const auto& ends = topology_->face[side].corner;
@@ -86,7 +85,8 @@ inline Contour ContourTable::make_contour(unsigned pattern, unsigned joined) con
         fill(loop);
         contour.loop[contour.loop_count++] = loop;
     };
-    for (std::uint8_t f = 0; f < face_count(); ++f) {
+    const auto faces = static_cast<std::uint8_t>(face_count());
+    for (std::uint8_t f = 0; f < faces; ++f) {
         const FaceTopology corners = face(f);
         unsigned signs = 0;
         for (std::size_t i = 0; i < corners.corners; ++i) {

@@ -43,8 +43,8 @@ public:
             while (!pending.empty() && items_[pending.back()].head > items_[i].level) {
                 pending.pop_back();
             }
-            items_[i].next = pending.empty() ? static_cast<std::uint32_t>(items_.size())
-                                             : pending.back();
+            items_[i].next =
+                pending.empty() ? static_cast<std::uint32_t>(items_.size()) : pending.back();
             pending.push_back(i);
         }
     }

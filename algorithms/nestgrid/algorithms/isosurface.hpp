@@ -10,7 +10,8 @@
 //   - the contour on a face is a function of the face alone, or what the finer side draws there.
 // Consequences, with a saturated criterion: every edge of the surface belongs to two triangles, or
 // to one on the boundary of the domain; shared vertices are equal to the last bit; values equal to
-// C are no special case, and no triangle degenerates to a point. The proof: docs/closed_surfaces.md.
+// C are no special case, and no triangle degenerates to a point. The proof:
+// docs/closed_surfaces.md.
 //
 // Grids whose elements stop without conforming are walked twice: first what the finer sides draw on
 // closed faces is recorded (transition_contours.hpp), then everything is drawn.
@@ -80,7 +81,9 @@ struct Cancelled {};
 struct OverLimit {};
 
 template <class Sink>
-concept IndexedSink = !requires { requires !Sink::indexed; };
+concept IndexedSink = !requires {
+    requires !Sink::indexed;
+};
 
 template <class Grid>
 struct ContourOwner {
@@ -195,8 +198,8 @@ private:
     void draw_cap(const State& s, Layer& layer, unsigned pattern);
     std::vector<Number> cap_chain(const State& s, Layer& layer, const FaceTopology& face,
                                   const CapPolygon& polygon, std::size_t side);
-    NodeKey side_key(const State& s, std::uint8_t edge, const FaceTopology& face,
-                     std::uint8_t from, bool forward) const;
+    NodeKey side_key(const State& s, std::uint8_t edge, const FaceTopology& face, std::uint8_t from,
+                     bool forward) const;
 
     // isosurface_vertices.hpp: cuts, vertices, and what ContourFilling asks
     std::uint8_t edge_between(const State& s, std::uint8_t a, std::uint8_t b) const;
@@ -245,7 +248,7 @@ private:
     TraversalCounts counts_;
     bool recording_ = false;
     std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
-    std::uint64_t drawn_ = 0;  // simplices; elements while recording, which draw one at least
+    std::uint64_t drawn_ = 0;   // simplices; elements while recording, which draw one at least
     double element_bound_ = 0;  // of the element inspected last
     int deepest_ = 0;
     NodeGradients gradients_;
@@ -259,8 +262,8 @@ private:
     std::array<NodeKey, max_corners> key_{};
     std::array<Point, max_corners> x_{};
     std::array<double, max_corners> u_{};  // U - C at the corners
-    std::vector<Vertex> local_;     // its vertices, by number
-    std::vector<Point> reference_;  // where they lie in it, where wanted
+    std::vector<Vertex> local_;            // its vertices, by number
+    std::vector<Point> reference_;         // where they lie in it, where wanted
     std::array<Number, State::Closed::edges> on_edge_{};
     std::array<Number, max_corners> on_corner_{};
     std::uint16_t chained_ = 0;  // edges with a chain behind them
@@ -290,8 +293,8 @@ std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
         if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
     }
     if (sinks.size() != isovalues.size()) {
-        throw InvalidInput(std::to_string(isovalues.size()) + " isovalues need as many sinks, not " +
-                           std::to_string(sinks.size()));
+        throw InvalidInput(std::to_string(isovalues.size()) +
+                           " isovalues need as many sinks, not " + std::to_string(sinks.size()));
     }
     if (!detail::IndexedSink<Sink> && options.normals) {
         throw InvalidInput("a stream of triangles has no normals");
@@ -338,9 +341,11 @@ std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> isosurfaces(
 
 /// One isosurface.
 template <class Grid, class Field, Criterion S, class Indicator, Executor E = SequentialExecutor>
-Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(
-    const Grid& grid, const Field& field, double isovalue, const S& criterion,
-    const Indicator& indicator, const IsosurfaceOptions& options = {}, const E& executor = {}) {
+Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
+                                                        double isovalue, const S& criterion,
+                                                        const Indicator& indicator,
+                                                        const IsosurfaceOptions& options = {},
+                                                        const E& executor = {}) {
     return std::move(isosurfaces(grid, field, std::span<const double>(&isovalue, 1), criterion,
                                  indicator, options, executor)
                          .front());

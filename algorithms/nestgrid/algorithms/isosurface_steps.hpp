@@ -77,8 +77,8 @@ NESTGRID_VISITOR::pattern(const State& s, const Layer& layer) const -> unsigned 
 }
 
 NESTGRID_VISITOR::of_interest(const State& s, double bound) const -> bool {
-    double lo = static_cast<double>(s.value[0]);
-    double hi = lo;
+    auto lo = static_cast<double>(s.value[0]);
+    auto hi = lo;
     for (std::size_t i = 1; i < static_cast<std::size_t>(s.corner_count()); ++i) {
         const double v = s.value[i * State::components];
         lo = std::min(lo, v);
@@ -347,7 +347,7 @@ NESTGRID_VISITOR::fill_gaps(Layer& layer) -> void {
                 attributes[i] += weight * cut.attributes[i];
             }
         }
-        const Number n = static_cast<Number>(local_.size());
+        const auto n = static_cast<Number>(local_.size());
         if (n == 3) {
             triangle(0, 1, 2);
             continue;

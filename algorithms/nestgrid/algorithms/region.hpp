@@ -10,8 +10,8 @@
 //     S = S_out and (S_in or not in the region)
 // is saturated, for where both (one) of two saturated criteria hold(s) at a corner, the same hold
 // at the new nodes.
-// Memory: a byte a node (a key a node where keys are not dense). Cost: one pass over the stars, where
-// the grid offers them, else a few walks.
+// Memory: a byte a node (a key a node where keys are not dense). Cost: one pass over the stars,
+// where the grid offers them, else a few walks.
 #pragma once
 
 #include <nestgrid/algorithms/criterion.hpp>

@@ -67,8 +67,7 @@ public:
 
     void add_vertex(const Point& x, std::span<const double> attributes) {
         surface_->vertices.push_back(x);
-        surface_->attributes.insert(surface_->attributes.end(), attributes.begin(),
-                                    attributes.end());
+        for (const double a : attributes) surface_->attributes.push_back(a);
     }
     Point position(std::uint32_t vertex) const { return surface_->vertices[vertex]; }
     void add_element(const Element& element, Shape shape, int level) {
@@ -83,7 +82,7 @@ public:
             surface_->element_of.push_back(
                 static_cast<std::uint32_t>(surface_->elements.size() - 1));
         }
-        surface_->reference.insert(surface_->reference.end(), reference.begin(), reference.end());
+        for (const Point& x : reference) surface_->reference.push_back(x);
     }
     void add_boundary(const typename Target::Ridge& vertices) {
         surface_->boundary.push_back(vertices);

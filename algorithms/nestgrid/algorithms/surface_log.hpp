@@ -48,7 +48,8 @@ public:
     void add_vertex(const Point& x, std::span<const double> attributes) {
         calls_.push_back(Call::vertex);
         cuts_.push_back({x, {}, 0, {}});
-        for (std::size_t i = 0; i < attribute_count; ++i) cuts_.back().attributes[i] = attributes[i];
+        for (std::size_t i = 0; i < attribute_count; ++i)
+            cuts_.back().attributes[i] = attributes[i];
     }
     Point position(std::uint32_t vertex) const { return cuts_[vertex].x; }
     void add_element(const Element& element, Shape shape, int level) {
@@ -76,14 +77,22 @@ public:
         const std::size_t step = reference_.empty() ? 0 : dimension;
         for (const Call call : calls_) {
             switch (call) {
-                case Call::cut: to.cut(*cut++); break;
-                case Call::vertex: to.vertex(*cut++); break;
-                case Call::element: to.element(*element++); break;
+                case Call::cut:
+                    to.cut(*cut++);
+                    break;
+                case Call::vertex:
+                    to.vertex(*cut++);
+                    break;
+                case Call::element:
+                    to.element(*element++);
+                    break;
                 case Call::simplex:
                     to.simplex(*simplex++, reference.first(step));
                     reference = reference.subspan(step);
                     break;
-                case Call::boundary: to.boundary(*boundary++); break;
+                case Call::boundary:
+                    to.boundary(*boundary++);
+                    break;
             }
         }
     }

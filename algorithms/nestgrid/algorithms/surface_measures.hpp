@@ -28,7 +28,7 @@ struct SurfaceMeasures {
 };
 
 struct SurfaceMeasurement {
-    std::vector<SurfaceMeasures> components;   ///< in the order of their first triangles
+    std::vector<SurfaceMeasures> components;  ///< in the order of their first triangles
     std::vector<std::uint32_t> component_of;  ///< per triangle
     SurfaceMeasures total;
 };
@@ -129,8 +129,7 @@ std::vector<double> flux(const Surface<3, Element>& surface, const SurfaceMeasur
     for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
         const auto& of = surface.simplices[t];
         const Point& x = surface.vertices[of[0]];
-        const Point normal =
-            0.5 * cross(surface.vertices[of[1]] - x, surface.vertices[of[2]] - x);
+        const Point normal = 0.5 * cross(surface.vertices[of[1]] - x, surface.vertices[of[2]] - x);
         for (std::size_t d = 0; d < 3; ++d) {
             double sum = 0;
             for (const std::uint32_t v : of) sum += surface.attributes[v * attributes + first + d];

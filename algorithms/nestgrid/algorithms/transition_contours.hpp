@@ -126,7 +126,9 @@ private:
     }
 
     static bool before(const Segment& a, const Segment& b) {
-        return a.face != b.face ? a.face < b.face : a.from != b.from ? a.from < b.from : a.to < b.to;
+        return a.face != b.face   ? a.face < b.face
+               : a.from != b.from ? a.from < b.from
+                                  : a.to < b.to;
     }
 
     /// Segments that only one side draws link up to loops: each vertex is as often left as met.

@@ -60,7 +60,9 @@ std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& fiel
 /// \throw InvalidInput where even the coarsest surface has more than max_triangles
 template <class Grid, class Field, class MakeCriterion, class Indicator,
           Executor E = SequentialExecutor>
-    requires requires(const MakeCriterion& make) { { make(0.0) } -> Criterion; }
+    requires requires(const MakeCriterion& make) {
+        { make(0.0) } -> Criterion;
+    }
 TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
                               const MakeCriterion& criterion_at, const Indicator& indicator,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
@@ -68,9 +70,8 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
     TriangleBudget best;
     const auto fits = [&](std::uint16_t code) {
         const double threshold = bfloat16_value(code);
-        const auto count =
-            detail::count_triangles(grid, field, isovalue, criterion_at(threshold), indicator,
-                                    max_triangles, options, executor);
+        const auto count = detail::count_triangles(grid, field, isovalue, criterion_at(threshold),
+                                                   indicator, max_triangles, options, executor);
         ++best.trials;
         best.extracted += count.value_or(max_triangles + 1);
         if (count) {
@@ -87,8 +88,8 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
             grid, field, isovalue, criterion_at(bfloat16_value(within)), indicator,
             std::numeric_limits<std::uint64_t>::max(), options, executor);
         throw InvalidInput("even the coarsest surface has more than " +
-                           std::to_string(max_triangles) + " triangles: " +
-                           std::to_string(*coarsest));
+                           std::to_string(max_triangles) +
+                           " triangles: " + std::to_string(*coarsest));
     }
     constexpr std::uint16_t octave = 128;
     const auto halved = [](std::uint16_t code) {

@@ -101,10 +101,13 @@ public:
     unsigned boundary_faces(const Element& e) const {
         unsigned faces = 0;
         for (std::size_t d = 0; d < size_; ++d) {
-            for (const Place p : e.corner) {
-                if (padded_ && at(p, d) > cells_[d]) return (1U << corners_) - 1U;
+            if (padded_ &&
+                std::ranges::any_of(e.corner, [&](Place p) { return at(p, d) > cells_[d]; })) {
+                return (1U << corners_) - 1U;
             }
             for (const std::uint32_t plane : {0U, cells_[d]}) {
+                // A face has at least one of any two corners.
+                if (at(e.corner[0], d) != plane && at(e.corner[1], d) != plane) continue;
                 unsigned off = 0;
                 for (std::size_t i = 0; i < corners_; ++i) {
                     off |= unsigned{at(e.corner[i], d) != plane} << i;

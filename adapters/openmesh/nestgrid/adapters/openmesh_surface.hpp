@@ -20,9 +20,7 @@ public:
     explicit OpenMeshSink(Mesh& mesh)
         : mesh_{&mesh}, first_{static_cast<std::uint32_t>(mesh.n_vertices())} {}
 
-    void add_vertex(const Point& x, std::span<const double>) {
-        mesh_->add_vertex(vector(x));
-    }
+    void add_vertex(const Point& x, std::span<const double>) { mesh_->add_vertex(vector(x)); }
     Point position(std::uint32_t vertex) const {
         const auto& p = mesh_->point(handle(vertex));
         return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};

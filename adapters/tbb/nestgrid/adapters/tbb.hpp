@@ -23,9 +23,7 @@ public:
               threads > 0 ? std::min(threads, tbb::info::default_concurrency())
                           : tbb::info::default_concurrency())} {}
 
-    std::size_t concurrency() const {
-        return static_cast<std::size_t>(arena_->max_concurrency());
-    }
+    std::size_t concurrency() const { return static_cast<std::size_t>(arena_->max_concurrency()); }
 
     template <class Work, class Consume>
     void run(std::size_t count, Work&& work, Consume&& consume) const {
@@ -42,9 +40,7 @@ public:
             }
             return next++;
         };
-        const auto draw = [&](std::size_t i) {
-            return std::make_shared<Task>(Task{i, work(i)});
-        };
+        const auto draw = [&](std::size_t i) { return std::make_shared<Task>(Task{i, work(i)}); };
         const auto end = [&](const std::shared_ptr<Task>& task) {
             consume(task->number, *std::move(task->result));
         };
@@ -53,10 +49,10 @@ public:
             tbb::parallel_pipeline(
                 4 * concurrency(),
                 tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
-                    tbb::make_filter<std::size_t, std::shared_ptr<Task>>(
-                        tbb::filter_mode::parallel, draw) &
-                    tbb::make_filter<std::shared_ptr<Task>, void>(
-                        tbb::filter_mode::serial_in_order, end));
+                    tbb::make_filter<std::size_t, std::shared_ptr<Task>>(tbb::filter_mode::parallel,
+                                                                         draw) &
+                    tbb::make_filter<std::shared_ptr<Task>, void>(tbb::filter_mode::serial_in_order,
+                                                                  end));
         });
     }
 
