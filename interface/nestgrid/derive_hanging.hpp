@@ -4,9 +4,10 @@
 // Deriving the hanging nodes of a grid whose adapter does not know them.
 //
 // A node that hangs on a leaf would have been created by refining an edge or a face of that leaf,
-// so its key is known without the node: every leaf probes the would-be keys of its edges and faces,
-// and, where one exists, those of the parts, recursively. This finds nodes that a test of faces
-// misses, because the coarse leaf touches the finer element in an edge only.
+// so its parents are known without the node: every leaf probes for nodes with the parents that its
+// edges and faces have, and, where there is one, for those of the parts, recursively. This finds
+// nodes that a test of faces misses, because the coarse leaf touches the finer element in an edge
+// only. Keys may be derived or the grid's own.
 // Costs O(nodes) memory while it runs, and keeps the keys of hanging nodes.
 #pragma once
 
@@ -32,7 +33,17 @@ namespace detail {
 
 class HangingProbe {
 public:
-    void add_node(NodeKey key) { nodes_.insert(key, {}); }
+    /// The new nodes of a split; `corners` and `nodes` are keys, in the order of the rule.
+    void add_nodes(const Rule& rule, std::span<const NodeKey> corners,
+                   std::span<const NodeKey> nodes) {
+        std::array<NodeKey, max_corners + max_new_nodes> mixed;
+        const auto count = static_cast<std::size_t>(rule.corner_count());
+        for (std::size_t i = 0; i < count; ++i) mixed[i] = mix(corners[i]);
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            nodes_.insert(derived_key(rule.new_nodes[n], mixed.data()), nodes[n]);
+            mixed[count + n] = mix(nodes[n]);
+        }
+    }
 
     void probe_leaf(Shape shape, std::span<const NodeKey> k) {
         const Topology& t = topology(shape);
@@ -49,82 +60,93 @@ public:
 
 private:
     struct Present {};
+    /// The key of a node that exists, or null.
+    using Found = const NodeKey*;
 
-    bool exists(NodeKey key) const { return nodes_.find(key) != nullptr; }
-    static NodeKey middle(NodeKey a, NodeKey b) { return mean_key(a + b, 2); }
+    /// The node in the middle of others. Own keys may be small numbers, whose sums coincide, so
+    /// each is mixed first.
+    template <class... Keys>
+    Found middle(Keys... of) const {
+        return nodes_.find(mean_key((mix(of) + ...), sizeof...(of)));
+    }
 
     void probe_edge(NodeKey a, NodeKey b) {
-        const NodeKey m = middle(a, b);
-        if (!exists(m)) return;
-        hanging_.insert(m);
-        probe_edge(a, m);
-        probe_edge(m, b);
+        const Found m = middle(a, b);
+        if (m == nullptr) return;
+        hanging_.insert(*m);
+        probe_edge(a, *m);
+        probe_edge(*m, b);
     }
 
     /// Bisected or refined into four, along any of its edges.
     void probe_triangle(NodeKey a, NodeKey b, NodeKey c) {
-        if (!triangles_.insert(mean_key(a + b + c, 3), {}).second) return;
+        if (!triangles_.insert(mean_key(mix(a) + mix(b) + mix(c), 3), {}).second) return;
         const std::array<std::array<NodeKey, 3>, 3> turns{{{a, b, c}, {b, c, a}, {c, a, b}}};
-        bool all = true;
         for (const auto& [p, q, r] : turns) {
-            const NodeKey m = middle(p, q);
-            all = all && exists(m);
-            if (!exists(m)) continue;
-            probe_edge(m, r);
-            probe_triangle(p, m, r);
-            probe_triangle(m, q, r);
+            const Found m = middle(p, q);
+            if (m == nullptr) continue;
+            probe_edge(*m, r);
+            probe_triangle(p, *m, r);
+            probe_triangle(*m, q, r);
         }
-        if (!all) return;
-        const NodeKey ab = middle(a, b);
-        const NodeKey bc = middle(b, c);
-        const NodeKey ca = middle(c, a);
-        probe_edge(ab, bc);
-        probe_edge(bc, ca);
-        probe_edge(ca, ab);
-        probe_triangle(a, ab, ca);
-        probe_triangle(ab, b, bc);
-        probe_triangle(ca, bc, c);
-        probe_triangle(ab, bc, ca);
+        const Found ab = middle(a, b);
+        const Found bc = middle(b, c);
+        const Found ca = middle(c, a);
+        if (ab == nullptr || bc == nullptr || ca == nullptr) return;
+        probe_edge(*ab, *bc);
+        probe_edge(*bc, *ca);
+        probe_edge(*ca, *ab);
+        probe_triangle(a, *ab, *ca);
+        probe_triangle(*ab, b, *bc);
+        probe_triangle(*ca, *bc, c);
+        probe_triangle(*ab, *bc, *ca);
     }
 
     /// Corners in tensor order; refined into four, or halved in one direction.
     void probe_quadrilateral(NodeKey a, NodeKey b, NodeKey c, NodeKey d) {
-        const NodeKey ab = middle(a, b);
-        const NodeKey cd = middle(c, d);
-        const NodeKey ac = middle(a, c);
-        const NodeKey bd = middle(b, d);
-        const NodeKey centre = mean_key(a + b + c + d, 4);
-        if (exists(centre)) {
-            hanging_.insert(centre);
-            for (const NodeKey m : {ab, cd, ac, bd}) probe_edge(m, centre);
-            probe_quadrilateral(a, ab, ac, centre);
-            probe_quadrilateral(ab, b, centre, bd);
-            probe_quadrilateral(ac, centre, c, cd);
-            probe_quadrilateral(centre, bd, cd, d);
+        const Found ab = middle(a, b);
+        const Found cd = middle(c, d);
+        const Found ac = middle(a, c);
+        const Found bd = middle(b, d);
+        const Found centre = middle(a, b, c, d);
+        const bool across = ab != nullptr && cd != nullptr;
+        const bool along = ac != nullptr && bd != nullptr;
+        if (centre != nullptr && across && along) {
+            hanging_.insert(*centre);
+            for (const Found m : {ab, cd, ac, bd}) probe_edge(*m, *centre);
+            probe_quadrilateral(a, *ab, *ac, *centre);
+            probe_quadrilateral(*ab, b, *centre, *bd);
+            probe_quadrilateral(*ac, *centre, c, *cd);
+            probe_quadrilateral(*centre, *bd, *cd, d);
             return;
         }
-        if (exists(ab) && exists(cd)) {
-            probe_edge(ab, cd);
-            probe_quadrilateral(a, ab, c, cd);
-            probe_quadrilateral(ab, b, cd, d);
+        if (across) {
+            probe_edge(*ab, *cd);
+            probe_quadrilateral(a, *ab, c, *cd);
+            probe_quadrilateral(*ab, b, *cd, d);
         }
-        if (exists(ac) && exists(bd)) {
-            probe_edge(ac, bd);
-            probe_quadrilateral(a, b, ac, bd);
-            probe_quadrilateral(ac, bd, c, d);
+        if (along) {
+            probe_edge(*ac, *bd);
+            probe_quadrilateral(a, b, *ac, *bd);
+            probe_quadrilateral(*ac, *bd, c, d);
         }
     }
 
-    KeyTable<NodeKey, Present> nodes_;
+    KeyTable<NodeKey, NodeKey> nodes_;  // by their parents
     KeyTable<NodeKey, Present> triangles_;
     HangingNodes hanging_;
 };
 
+template <class Walk>
 struct CollectNodes {
+    const Walk& walk;
     HangingProbe& probe;
     template <class State>
-    Decision inspect(const State&, const Split& split) {
-        for (const NodeKey key : split.keys) probe.add_node(key);
+    Decision inspect(const State& s, const Split& split) {
+        if (split.rule == nullptr) return {};
+        std::array<NodeKey, max_corners> keys;
+        walk.keys(s, keys);
+        probe.add_nodes(*split.rule, keys, split.keys);
         return {};
     }
     template <class State>
@@ -149,18 +171,13 @@ struct ProbeLeaves {
 
 }  // namespace detail
 
-/// The hanging nodes of a grid with derived keys.
-/// \throw GridError for a grid with own keys, which must offer `constrained` or be `conforming`
+/// The hanging nodes of a grid.
 template <class Grid>
 HangingNodes derive_hanging_nodes(const Grid& grid) {
-    if (offers(grid, Feature::own_keys)) {
-        throw GridError(
-            "a grid with own node keys must offer 'constrained' or say that it is 'conforming'");
-    }
     const ZeroField<Grid> zero;
     const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
     detail::HangingProbe probe;
-    detail::CollectNodes collect{probe};
+    detail::CollectNodes<decltype(walk)> collect{walk, probe};
     walk.run(collect);
     detail::ProbeLeaves<decltype(walk)> leaves{walk, probe};
     walk.run(leaves);

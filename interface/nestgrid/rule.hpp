@@ -30,6 +30,7 @@ inline constexpr int max_new_nodes = 64;
 inline constexpr int max_children = 64;
 inline constexpr std::uint8_t no_face = 0xFF;
 inline constexpr std::uint8_t no_edge = 0xFF;
+inline constexpr std::uint8_t no_child = 0xFF;
 inline constexpr int max_rule_edges = 24;
 inline constexpr int max_rule_faces = 24;
 
@@ -81,11 +82,18 @@ struct RuleFace {
     bool one_way = false;  ///< a quadrilateral that is first divided in one direction only
 };
 
+/// A corner of a child.
+struct ChildCorner {
+    std::uint8_t child = no_child;
+    std::uint8_t corner = 0;
+};
+
 struct Rule {
     std::string name;
     Shape parent = Shape::point;
     std::vector<Stencil> new_nodes;
     std::vector<Child> children;
+    std::vector<ChildCorner> new_corner{};  // derived: where each new node is a corner first
     std::vector<RuleEdge> edges{};  // derived: first those of the parent, as in its topology
     std::vector<RuleFace> faces{};  // derived: likewise; none in two dimensions
     int steps = 1;  // derived: the longest chain of new nodes that are parents of each other

@@ -262,6 +262,15 @@ inline Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_n
     rule.children = std::move(children);
     if (auto violation = find_violation(rule)) throw InvalidInput(*violation);
     for (Stencil& s : rule.new_nodes) detail::complete_stencil(rule, s);
+    rule.new_corner.resize(rule.new_nodes.size());
+    for (std::size_t c = rule.children.size(); c-- > 0;) {
+        const Child& child = rule.children[c];
+        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+            if (child.corner[i] < rule.corner_count()) continue;
+            const auto n = static_cast<std::size_t>(child.corner[i] - rule.corner_count());
+            rule.new_corner[n] = {static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(i)};
+        }
+    }
     const std::vector<unsigned> incidence = detail::face_incidence(rule);
     for (Child& child : rule.children) {
         child.parent_face.fill(no_face);

@@ -83,6 +83,7 @@ struct StopAsBound {
     const HierarchicalIndicator& good;
 
     double stop(NodeKey node) const { return good.stop(node); }
+    double offset_bound(NodeKey node) const { return good.offset_bound(node); }
     double bound(std::span<const NodeKey> nodes) const {
         double largest = 0;
         for (const NodeKey node : nodes) largest = std::max(largest, good.stop(node));

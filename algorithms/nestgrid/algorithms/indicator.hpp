@@ -14,8 +14,10 @@
 //   - bound(corner) >= |U_delta(corner)| + bound(new node), for every split element, corners that
 //     are themselves new nodes of something;
 //   - both also for a parent of a new node that is a new node of the same split.
-// Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is monotone, so the first
-// invariant survives it exactly, and the second stays on the safe side.
+// A solver's own error indicator, one number per leaf, may take the place of the offsets in `stop`:
+// that of a node is then the largest of the leaves around it, saturated likewise. Bounds always
+// come from the data. Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is
+// monotone, so the first invariant survives it exactly, and the second stays on the safe side.
 // Memory: O(nodes), 4 bytes (plus 16 to 48 for a hash table where node keys are not dense).
 #pragma once
 
@@ -39,11 +41,22 @@ public:
     template <class Grid, class Field>
     HierarchicalIndicator(const Grid& grid, const Field& field);
 
+    /// The same with the errors of leaves, such as a Kelly or residual estimate, in the place of
+    /// offsets; then thresholds have their unit.
+    /// \param leaf_error called as double(const Element&) for every leaf; not negative
+    /// \throw InvalidInput also where an error is negative or not a number
+    template <class Grid, class Field, class LeafError>
+        requires std::is_invocable_r_v < double, const LeafError&, const ElementOf<Grid>
+    & > HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error);
+
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
     double stop(NodeKey node) const {
         const Entry* e = entry(node);
         return e == nullptr ? 0.0 : bfloat16_value(e->stop);
     }
+
+    /// U and P_S U differ by at most this at a node of the finest level that is interpolated.
+    double offset_bound(NodeKey node) const { return own_errors_ ? bound(node) : stop(node); }
 
     /// The bound of a node, for the intersection test.
     double bound(NodeKey node) const {
@@ -64,6 +77,11 @@ public:
 
     /// Nodes that hang, where the grid did not say so itself: hand them to every Traversal.
     const HangingNodes* hanging() const { return hanging_.size() > 0 ? &hanging_ : nullptr; }
+
+    /// The largest difference between the field at a hanging node and its interpolant there, where
+    /// the field gives one. Not 0 up to rounding: constraints were not distributed. The field is
+    /// interpolated there all the same.
+    double hanging_violation() const { return hanging_violation_; }
 
     double least() const { return least_; }        ///< of the values at all nodes
     double greatest() const { return greatest_; }  ///< of the values at all nodes
@@ -101,8 +119,8 @@ private:
 
     template <class Grid, class Field>
     void sweep_stars(const Grid& grid, const Field& field);
-    template <class Grid, class Field>
-    void sweep_levels(const Grid& grid, const Field& field);
+    template <class Grid, class Field, class LeafError>
+    void sweep_levels(const Grid& grid, const Field& field, const LeafError& leaf_error);
 
     std::vector<Entry> dense_;
     KeyTable<NodeKey, Entry> sparse_;
@@ -112,6 +130,8 @@ private:
     std::size_t node_count_ = 0;
     std::uint64_t epoch_ = 0;
     std::size_t largest_split_ = 0;  // number of new nodes
+    double hanging_violation_ = 0;
+    bool own_errors_ = false;  // of leaves, instead of offsets
 };
 
 namespace detail {
@@ -141,8 +161,20 @@ HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& fiel
     if constexpr (detail::KnowsStars<Grid, Field>) {
         sweep_stars(grid, field);
     } else {
-        sweep_levels(grid, field);
+        sweep_levels(grid, field, detail::Nothing{});
     }
+}
+
+template <class Grid, class Field, class LeafError>
+    requires std::is_invocable_r_v < double, const LeafError&, const ElementOf<Grid>
+& > HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& field,
+                                                 const LeafError& leaf_error)
+    : epoch_{nestgrid::epoch(grid)},
+own_errors_{true} {
+    static_assert(require_nested_grid<Grid>());
+    static_assert(require_nodal_field<Field, Grid>());
+    if (hanging_nodes_unknown(grid)) hanging_ = derive_hanging_nodes(grid);
+    sweep_levels(grid, field, leaf_error);
 }
 
 template <class Grid, class Field>
@@ -179,8 +211,10 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     for (std::size_t i = 0; i < node_count_; ++i) dense_[i].bound = bfloat16_above(bound[i]);
 }
 
-template <class Grid, class Field>
-void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
+template <class Grid, class Field, class LeafError>
+void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
+                                         [[maybe_unused]] const LeafError& leaf_error) {
+    constexpr bool of_leaves = !std::is_same_v<LeafError, detail::Nothing>;
     using Real = typename Field::value_type;
     constexpr double limit = std::numeric_limits<Real>::max() / 8;
     constexpr auto stride = static_cast<std::size_t>(detail::components_of<Field>());
@@ -208,18 +242,30 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
                     slot(corner_keys[i]);
                 }
             }
-            if (split.rule == nullptr) return;
+            if (split.rule == nullptr) {
+                if constexpr (of_leaves) {
+                    const double error = leaf_error(s.element);
+                    if (!(error >= 0)) {
+                        throw InvalidInput("the error of a leaf is not a usable number: " +
+                                           std::to_string(error));
+                    }
+                    walk.keys(s, corner_keys);
+                    for (std::size_t i = 0; i < corners; ++i) {
+                        std::uint16_t& stop = nodes[slot(corner_keys[i])].entry.stop;
+                        stop = std::max(stop, bfloat16_above(float_above(error)));
+                    }
+                }
+                return;
+            }
             const Rule& rule = *split.rule;
             largest_split_ = std::max(largest_split_, rule.new_nodes.size());
             std::array<Real, max_corners + max_new_nodes> value;
             std::array<Real, max_new_nodes * stride> given;
             for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];
             const NodeMask which = rule.all() & ~split.constrained;
-            const NodeMask missing =
-                which == 0 ? NodeMask{0}
-                           : detail::call_new_values(
-                                 field, *s.context, s.element, which,
-                                 std::span<Real>(given.data(), rule.new_nodes.size() * stride));
+            const NodeMask missing = detail::call_new_values(
+                field, *s.context, s.element, rule.all(),
+                std::span<Real>(given.data(), rule.new_nodes.size() * stride));
             if ((missing & which) != 0) {
                 throw GridError("the field has no value at a new node of an element on level " +
                                 std::to_string(s.level) + " below coarse element " +
@@ -230,15 +276,21 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field) {
                 Node& node = nodes[slot(split.keys[n])];
                 if ((which >> n & 1U) == 0) {
                     value[corners + n] = detail::interpolate(stencil, value.data(), 1);
+                    if ((missing >> n & 1U) == 0) {
+                        const double off = std::abs(static_cast<double>(given[n * stride]) -
+                                                    static_cast<double>(value[corners + n]));
+                        if (!(off <= hanging_violation_)) hanging_violation_ = off;
+                    }
                 } else {
                     value[corners + n] = given[n * stride];
                     add_value(given[n * stride], limit);
                     node.offset = std::max(node.offset, detail::offset_above(stencil, value.data(),
                                                                              value[corners + n]));
                 }
-                node.entry.stop = std::max(node.entry.stop, (split.outside >> n & 1U) != 0
-                                                                ? bfloat16_infinity
-                                                                : bfloat16_above(node.offset));
+                const std::uint16_t own = (split.outside >> n & 1U) != 0 ? bfloat16_infinity
+                                          : of_leaves                    ? std::uint16_t{0}
+                                                      : bfloat16_above(node.offset);
+                node.entry.stop = std::max(node.entry.stop, own);
             }
         });
     }

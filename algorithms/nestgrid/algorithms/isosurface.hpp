@@ -275,7 +275,7 @@ private:
 /// The isosurfaces U = isovalues[i] of component 0 of the field under the projection with
 /// `criterion`, in one traversal, each into its own sink (surface.hpp).
 /// \param indicator of the same grid and field: its bounds guide the search. HierarchicalIndicator,
-///        or any class with its stop(), bound(), hanging() and epoch()
+///        or any class with its offset_bound(), bound(), hanging() and epoch()
 /// \return what is known beside the surfaces, one per isovalue; `surface` stays empty
 /// \throw GridError where the field has no value, or where the grid has changed since the indicator
 ///        was computed
