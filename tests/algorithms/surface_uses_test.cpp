@@ -9,6 +9,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
+#include <nestgrid/algorithms/derived_field.hpp>
 #include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
@@ -234,6 +235,38 @@ TYPED_TEST(Uses, VolumesBetweenIsovaluesAreExactForLinearFunctions) {
     EXPECT_NEAR(volume_between(grid, field, 0.6, 2.4, indicator), 1 - 0.6 * 0.6 * 0.6 / 3, 1e-5);
     EXPECT_NEAR(volume_between(grid, field, -1, 4, indicator), 1, 1e-12);
     EXPECT_THROW(volume_between(grid, field, 1, 0, indicator), InvalidInput);
+}
+
+/// Derived, then projected: the same surface as that of the derived values themselves.
+TYPED_TEST(Uses, DerivedScalarsAreProjectedAfterwards) {
+    auto grid = TypeParam::grids()[0];
+    refine_at_sphere(grid, 2 * TypeParam::steps);
+    const ScalarAndMore values(grid);
+    const FieldOn field(grid, values);
+    const auto derive = [](std::span<const double> u) {
+        return std::hypot(u[1] - 0.5, u[2] - 0.5, u[3] - 0.5);
+    };
+    const auto direct = sample_nodes(grid, [&](const Point& x) {
+        return derive(std::array<double, 4>{0, x[0], x[1], x[2]});
+    });
+    const NodeField<typename TypeParam::Grid, double> directly(grid, direct);
+    const DerivedField<FieldOn<typename TypeParam::Grid>, decltype(derive), 2> derived(field,
+                                                                                       derive);
+    for (const double threshold : {0.0, 0.02}) {
+        const auto a = isosurface(grid, directly, 0.33, {.threshold = threshold}).surface;
+        const auto b = isosurface(grid, derived, 0.33, {.threshold = threshold}).surface;
+        EXPECT_EQ(a.vertices, b.vertices);
+        EXPECT_EQ(a.simplices, b.simplices);
+        ASSERT_EQ(b.attributes.size(), 2 * b.vertices.size());
+        for (std::size_t v = 0; v < b.vertices.size(); ++v) {  // the first two of the field
+            EXPECT_NEAR(b.attributes[2 * v + 1], b.vertices[v][0], 1e-9);
+        }
+    }
+    const DerivedField<FieldOn<typename TypeParam::Grid>, Component> first(field, Component{0});
+    EXPECT_EQ(isosurface(grid, first, 0.0).surface.vertices,
+              isosurface(grid, field, 0.0).surface.vertices);
+    const std::array<double, 3> v{2, 3, 6};
+    EXPECT_EQ(Magnitude{}(std::span<const double>(v)), 7);
 }
 
 /// A shell: its level sets run into opposite directions, and every corner stays in its element.

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of dealii.hpp.
+#pragma once
+
+#include <nestgrid/adapters/dealii.hpp>
+
+namespace nestgrid {
+
+template <int dim, int spacedim>
+DealiiGrid<dim, spacedim>::DealiiGrid(const Triangulation& triangulation,
+                                      const dealii::Mapping<dim, spacedim>* mapping)
+    : triangulation_{&triangulation}, mapping_{mapping} {
+    namespace mpi = dealii::Utilities::MPI;
+    const unsigned processes =
+        mpi::job_supports_mpi() ? mpi::n_mpi_processes(triangulation.get_communicator()) : 1;
+    if (processes > 1) {
+        throw InvalidInput("the triangulation is distributed over " + std::to_string(processes) +
+                           " processes, which is not supported");
+    }
+    halving_ = &dyadic_rule(dim == 1   ? Shape::segment
+                            : dim == 2 ? Shape::quadrilateral
+                                       : Shape::hexahedron);
+    refined_ = triangulation.signals.any_change.connect([this] {
+        ++epoch_;
+        update();
+    });
+    update();
+}
+
+template <int dim, int spacedim>
+auto DealiiGrid<dim, spacedim>::coarse(std::size_t i) const -> CoarseElement<Element> {
+    const Cell c = cell({0, int(i)});
+    CoarseElement<Element> result{{0, int(i)}, shape(c), {}, {}, 1};
+    for (unsigned k = 0; k < c->n_vertices(); ++k) {
+        result.corners[k] = position(c, k);
+        result.ids[k] = c->vertex_index(k);
+    }
+    const Point v = measure_vector(result.shape, result.corners);
+    if (dim == spacedim && v[dim == 1 ? 0 : 2] < 0) result.orientation = -1;
+    return result;
+}
+
+template <int dim, int spacedim>
+const Rule* DealiiGrid<dim, spacedim>::split(const Element& e) const {
+    const Cell c = cell(e);
+    if (!c->has_children()) return nullptr;
+    if (c->n_vertices() == unsigned{max_corners}) return halving_;
+    if (only_simplex_rule_ != nullptr) return only_simplex_rule_;
+    return simplex_rules_.find(shape(c), simplex_children(c));
+}
+
+template <int dim, int spacedim>
+Shape DealiiGrid<dim, spacedim>::shape(const Cell& c) {
+    for (int s = 0; s < shape_count; ++s) {  // numbers of corners tell them apart
+        const Topology& t = topology(static_cast<Shape>(s));
+        if (t.dimension == dim && t.corners == c->n_vertices()) return static_cast<Shape>(s);
+    }
+    throw GridError("a cell of the triangulation has an unknown shape");
+}
+
+template <int dim, int spacedim>
+Point DealiiGrid<dim, spacedim>::position(const Cell& c, unsigned corner) const {
+    dealii::Point<spacedim> x = c->vertex(corner);
+    if (mapping_ != nullptr) {  // which may know leaves alone: child k has corner k
+        Cell leaf = c;
+        while (leaf->has_children()) leaf = leaf->child(corner);
+        x = mapping_->get_vertices(leaf)[corner];
+    }
+    Point result{0, 0, 0};
+    for (unsigned d = 0; d < spacedim; ++d) result[d] = x[d];
+    return result;
+}
+
+/// How the children of a simplex lie in it: every new vertex is the middle of an edge.
+template <int dim, int spacedim>
+std::vector<PlacedChild> DealiiGrid<dim, spacedim>::simplex_children(const Cell& c) const {
+    const Topology& t = topology(shape(c));
+    std::vector<std::pair<unsigned, Point>> places;
+    for (unsigned k = 0; k < c->n_vertices(); ++k) {
+        places.emplace_back(c->vertex_index(k), t.reference[k]);
+    }
+    if constexpr (dim > 1) {
+        for (unsigned l = 0; l < c->n_lines(); ++l) {
+            Point middle{0, 0, 0};
+            for (unsigned k = 0; k < c->n_vertices(); ++k) {
+                for (const unsigned end : {0U, 1U}) {
+                    if (c->line(l)->vertex_index(end) != c->vertex_index(k)) continue;
+                    middle = middle + 0.5 * t.reference[k];
+                }
+            }
+            places.emplace_back(c->line(l)->child(0)->vertex_index(1), middle);
+        }
+    }
+    std::vector<PlacedChild> children(c->n_children());
+    for (unsigned i = 0; i < children.size(); ++i) {
+        children[i].shape = shape(c);
+        for (unsigned k = 0; k < c->n_vertices(); ++k) {
+            const unsigned vertex = c->child(i)->vertex_index(k);
+            for (const auto& [at, x] : places) {
+                if (at == vertex) children[i].corners[k] = x;
+            }
+        }
+    }
+    return children;
+}
+
+/// The vertices inside a line or face of a leaf, where it is refined on another side.
+template <int dim, int spacedim>
+template <class Object>
+void DealiiGrid<dim, spacedim>::mark(const Object& object) {
+    if constexpr (Object::AccessorType::structure_dimension == 2) {
+        for (unsigned l = 0; l < object->n_lines(); ++l) mark(object->line(l));
+    }
+    if (!object->has_children()) return;
+    if constexpr (Object::AccessorType::structure_dimension == 1) {
+        hangs_[object->child(0)->vertex_index(1)] = true;
+    } else if (object->n_vertices() == 4) {
+        hangs_[object->child(0)->vertex_index(3)] = true;
+    }
+    for (unsigned i = 0; i < object->n_children(); ++i) mark(object->child(i));
+}
+
+template <int dim, int spacedim>
+void DealiiGrid<dim, spacedim>::update() {
+    hangs_.assign(triangulation_->n_vertices(), false);
+    only_simplex_rule_ = nullptr;
+    std::size_t simplex_rules = 0;
+    for (const auto& c : triangulation_->cell_iterators()) {
+        if (c->has_children()) {
+            if (c->n_vertices() != unsigned{max_corners}) {
+                only_simplex_rule_ = &simplex_rules_.add(shape(c), simplex_children(c));
+                simplex_rules = simplex_rules_.size();
+            } else if (c->n_children() != unsigned{max_children}) {
+                throw InvalidInput("cell " + c->id().to_string() +
+                                   " is refined in some directions only");
+            }
+        } else if constexpr (dim == 2) {
+            for (unsigned l = 0; l < c->n_lines(); ++l) mark(c->line(l));
+        } else if constexpr (dim == 3) {
+            for (unsigned f = 0; f < c->n_faces(); ++f) mark(c->face(f));
+        }
+    }
+    if (simplex_rules > 1) only_simplex_rule_ = nullptr;
+}
+
+template <int dim, class Vector, int component_count, int spacedim>
+DealiiField<dim, Vector, component_count, spacedim>::DealiiField(
+    const Grid& grid, const dealii::DoFHandler<dim, spacedim>& dofs, const Vector& values,
+    const std::array<unsigned, component_count>& which)
+    : grid_{&grid}, dofs_{&dofs}, values_{&values} {
+    if (&dofs.get_triangulation() != &grid.triangulation()) {
+        throw InvalidInput("the degrees of freedom are those of another triangulation");
+    }
+    if (dofs.has_hp_capabilities()) {
+        throw InvalidInput("degrees of freedom of hp elements are not supported");
+    }
+    if (values.size() != dofs.n_dofs()) {
+        throw InvalidInput("the vector has " + std::to_string(values.size()) + " entries for " +
+                           std::to_string(dofs.n_dofs()) + " degrees of freedom");
+    }
+    const auto& fe = dofs.get_fe();
+    const unsigned per_vertex = fe.n_dofs_per_vertex();
+    for (std::size_t c = 0; c < which.size(); ++c) {
+        if (which[c] >= fe.n_components()) {
+            throw InvalidInput("the finite element has " + std::to_string(fe.n_components()) +
+                               " components and no number " + std::to_string(which[c]));
+        }
+        bool found = false;
+        for (unsigned i = 0; i < per_vertex && !found; ++i) {
+            // A node of the component at the vertex itself.
+            if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != which[c]) continue;
+            const unsigned base = fe.system_to_base_index(i).first.first;
+            found = fe.base_element(base).has_support_points();
+            offset_[c] = i;
+        }
+        if (!found) {
+            throw InvalidInput("component " + std::to_string(which[c]) + " of " + fe.get_name() +
+                               " has no nodal values at vertices");
+        }
+    }
+}
+
+}  // namespace nestgrid

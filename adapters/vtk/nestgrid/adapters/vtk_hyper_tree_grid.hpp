@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// VTK's hyper tree grids, in place: forests of bisected quadrilaterals or hexahedra on a
+// rectilinear coarse grid, with data of cells.
+//
+// A node is named by its place on the lattice of the deepest level, so that trees agree about
+// it. Data of cells get to the nodes by CellAverages (cell_data.hpp).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <vtkDataArray.h>
+#include <vtkHyperTree.h>
+#include <vtkHyperTreeGrid.h>
+
+#include <nestgrid/error.hpp>
+#include <nestgrid/operations.hpp>
+#include <nestgrid/standard_rules.hpp>
+
+namespace nestgrid {
+
+/// A hyper tree grid of dimension 2 or 3. It must outlive this object and not change meanwhile.
+template <int dim>
+class HyperTreeGrid {
+public:
+    static constexpr int dimension = dim;
+    static constexpr int max_corners = 1 << dim;
+    static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
+    static constexpr int max_children = 1 << dim;
+    using Place = std::array<std::uint32_t, 3>;
+    struct Element {
+        vtkHyperTree* tree = nullptr;
+        vtkIdType vertex = 0;  ///< in the tree
+        int level = 0;
+        Place place{};  ///< of its first corner, in lattice steps of its own level
+    };
+
+    /// \throw InvalidInput for a grid of another dimension, with another branch factor than two,
+    ///        with masked cells, or with more than 2^31 steps along a side at its deepest level
+    explicit HyperTreeGrid(vtkHyperTreeGrid& grid)
+        : grid_{&grid}, rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
+        if (grid.GetDimension() != dim) {
+            throw InvalidInput("the hyper tree grid has dimension " +
+                               std::to_string(grid.GetDimension()) + ", not " +
+                               std::to_string(dim));
+        }
+        if (grid.GetBranchFactor() != 2) {
+            throw InvalidInput("the hyper tree grid has the branch factor " +
+                               std::to_string(grid.GetBranchFactor()) + ", not 2");
+        }
+        if (grid.HasMask() && grid.GetMask()->GetNumberOfTuples() > 0) {
+            for (vtkIdType i = 0; i < grid.GetNumberOfVertices(); ++i) {
+                if (grid.GetMask()->GetTuple1(i) != 0) {
+                    throw InvalidInput("cell " + std::to_string(i) +
+                                       " of the hyper tree grid is masked, which is not supported");
+                }
+            }
+        }
+        depth_ = static_cast<int>(grid.GetNumberOfLevels()) - 1;
+        const std::array<vtkDataArray*, 3> x{grid.GetXCoordinates(), grid.GetYCoordinates(),
+                                             grid.GetZCoordinates()};
+        const unsigned* points = grid.GetDimensions();
+        std::size_t axes = 0;
+        for (std::size_t d = 0; d < 3; ++d) {
+            if (points[d] == 1) continue;
+            if (depth_ > 30 || points[d] >= 1U << (31 - depth_)) {
+                throw InvalidInput("the hyper tree grid is too deep for its " +
+                                   std::to_string(points[d] - 1) + " trees along a side");
+            }
+            axis_[axes++] = d;
+        }
+        for (std::size_t d = 0; d < 3; ++d) {
+            for (unsigned i = 0; i < points[d]; ++i) coordinates_[d].push_back(x[d]->GetTuple1(i));
+        }
+        for (vtkIdType i = 0; i < grid.GetMaxNumberOfTrees(); ++i) {
+            if (vtkHyperTree* tree = grid.GetTree(i)) trees_.push_back(tree);
+        }
+    }
+
+    std::size_t coarse_count() const { return trees_.size(); }
+    CoarseElement<Element> coarse(std::size_t i) const {
+        CoarseElement<Element> c;
+        std::array<unsigned, 3> at{};
+        grid_->GetLevelZeroCoordinatesFromIndex(trees_[i]->GetTreeIndex(), at[0], at[1], at[2]);
+        c.element = {trees_[i], 0, 0, {at[0], at[1], at[2]}};
+        c.shape = rule_->parent;
+        for (std::size_t k = 0; k < max_corners; ++k) {
+            Place corner = c.element.place;
+            for (std::size_t a = 0; a < dim; ++a) corner[axis_[a]] += k >> a & 1U;
+            std::uint64_t id = 0;
+            for (std::size_t d = 3; d-- > 0;) {
+                c.corners[k][d] = coordinates_[d][corner[d]];
+                id = id * coordinates_[d].size() + corner[d];
+            }
+            c.ids[k] = id;
+        }
+        const Point v = measure_vector(c.shape, c.corners);
+        if (dim == 3 && v[2] < 0) c.orientation = -1;  // where a coordinate decreases
+        return c;
+    }
+    const Rule* split(const Element& e) const {
+        return e.tree->IsLeaf(e.vertex) ? nullptr : rule_;
+    }
+    void children(const Element& e, std::span<Element> out) const {
+        const vtkIdType first = e.tree->GetElderChildIndex(static_cast<unsigned>(e.vertex));
+        for (std::size_t c = 0; c < out.size(); ++c) {
+            out[c] = {e.tree, first + static_cast<vtkIdType>(c), e.level + 1, e.place};
+            for (std::uint32_t& x : out[c].place) x *= 2;
+            for (std::size_t a = 0; a < dim; ++a) out[c].place[axis_[a]] += c >> a & 1U;
+        }
+    }
+
+    void corner_keys(const Element& e, std::span<NodeKey> out) const {
+        for (std::size_t k = 0; k < out.size(); ++k) out[k] = corner_key(e, k);
+    }
+    void new_keys(const Element& e, std::span<NodeKey> out) const {
+        std::array<Element, max_children> child;
+        children(e, child);
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            const ChildCorner at = rule_->new_corner[n];
+            out[n] = corner_key(child[at.child], at.corner);
+        }
+    }
+
+    /// Number of an element, leaf or not, in the arrays of cell data.
+    vtkIdType index(const Element& e) const { return e.tree->GetGlobalIndexFromLocal(e.vertex); }
+
+private:
+    NodeKey corner_key(const Element& e, std::size_t k) const {
+        Place at = e.place;
+        for (std::size_t a = 0; a < dim; ++a) at[axis_[a]] += k >> a & 1U;
+        NodeKey key = 0;
+        for (const std::uint32_t x : at) key = detail::mix(key + (NodeKey{x} << (depth_ - e.level)));
+        return key;
+    }
+
+    vtkHyperTreeGrid* grid_;
+    const Rule* rule_;
+    int depth_ = 0;
+    std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
+    std::array<std::vector<double>, 3> coordinates_;
+    std::vector<vtkHyperTree*> trees_;
+};
+
+}  // namespace nestgrid

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The laws that a grid inside a real solver must obey, with the solver's own data on it.
+#pragma once
+
+#include <nestgrid/algorithms/project.hpp>
+#include <nestgrid/check_grid.hpp>
+
+#include "closedness.hpp"
+
+namespace nestgrid_test {
+
+inline const std::vector<double> six_thresholds{0, 0.01, 0.1, 0.3, 1, 10};
+
+/// The grid keeps the contract, hanging values included where the solver has constrained them.
+template <class Grid, class Field>
+void expect_sound_grid(const Grid& grid, const Field& field, const CheckOptions& options = {}) {
+    const auto violation = check_grid(grid, field, options);
+    EXPECT_FALSE(violation) << violation->sentence;
+}
+
+/// A node has one projected value and one place, whichever element is asked.
+template <class Grid, class Field>
+void expect_single_valued(const Grid& grid, const Field& field,
+                          const HierarchicalIndicator& indicator, double threshold) {
+    using Walk = Traversal<Grid, Field, Needs{.keys = true, .positions = true}>;
+    const Walk walk(grid, field, indicator.hanging());
+    using Real = typename Field::value_type;
+    KeyTable<NodeKey, std::pair<Real, Point>> seen;
+    project(walk, Threshold<HierarchicalIndicator>{&indicator, threshold}, [&](const auto& s) {
+        std::array<NodeKey, max_corners> keys;
+        std::array<Point, max_corners> x;
+        walk.keys(s, keys);
+        walk.positions(s, x);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(s.corner_count()); ++k) {
+            const std::pair here{s.value[k * Walk::State::components], x[k]};
+            const auto [at, is_new] = seen.insert(keys[k], here);
+            EXPECT_EQ(*at, here);
+        }
+    });
+}
+
+/// At six thresholds, capped and not: no open edge inside the domain, a manifold, shared vertices
+/// equal to the last bit, and one value per node.
+template <class Grid, class Field>
+void expect_closed_levels(const Grid& grid, const Field& field, double isovalue, double scale = 1) {
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : six_thresholds) {
+        SCOPED_TRACE("threshold " + std::to_string(scale * threshold));
+        expect_single_valued(grid, field, indicator, scale * threshold);
+        for (const bool cap : {false, true}) {
+            const auto result =
+                isosurface(grid, field, isovalue, indicator,
+                           {.threshold = scale * threshold, .cap = cap, .verify = true});
+            expect_closed(result.surface, cap);
+            if (threshold == 0) {
+                EXPECT_GT(result.surface.simplices.size(), 0U);
+            }
+        }
+    }
+}
+
+/// A linear function is its own projection: every vertex lies on the plane, at any threshold.
+template <class Grid, class Field, class Linear>
+void expect_linear_exact(const Grid& grid, const Field& field, double isovalue,
+                         const Linear& linear) {
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : {1e-12, 1.0}) {
+        const auto result = isosurface(grid, field, isovalue, indicator, {.threshold = threshold});
+        EXPECT_GT(result.surface.vertices.size(), 0U);
+        for (const Point& x : result.surface.vertices) {
+            EXPECT_NEAR(linear(x), isovalue, 2e-6);  // cuts keep away from nodes
+        }
+    }
+}
+
+}  // namespace nestgrid_test

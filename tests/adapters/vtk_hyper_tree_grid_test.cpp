@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// VTK's own hyper tree grids: data of cells, by the means at nodes.
+#include <vtkBitArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkHyperTreeGridNonOrientedCursor.h>
+#include <vtkNew.h>
+
+#include <nestgrid/adapters/vtk_hyper_tree_grid.hpp>
+#include <nestgrid/algorithms/cell_data.hpp>
+
+#include "solver_laws.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+/// Coordinates of n points from 0 to 1, not quite uniform.
+vtkNew<vtkDoubleArray> coordinates(int n) {
+    vtkNew<vtkDoubleArray> x;
+    for (int i = 0; i < n; ++i) {
+        const double t = n == 1 ? 0.0 : static_cast<double>(i) / (n - 1);
+        x->InsertNextValue(t + 0.2 * t * (1 - t));
+    }
+    return x;
+}
+
+void subdivide(vtkHyperTreeGridNonOrientedCursor* cursor, std::mt19937& random, int depth,
+               vtkIdType& next) {
+    cursor->SetGlobalIndexFromLocal(next++);
+    const bool deeper = depth > 0 && (cursor->GetLevel() == 0 || random() % 3 == 0);
+    if (!deeper) return;
+    cursor->SubdivideLeaf();
+    for (int c = 0; c < cursor->GetNumberOfChildren(); ++c) {
+        cursor->ToChild(static_cast<unsigned char>(c));
+        subdivide(cursor, random, depth - 1, next);
+        cursor->ToParent();
+    }
+}
+
+/// Trees refined at random, neighbours differing by any number of levels.
+vtkNew<vtkHyperTreeGrid> random_trees(std::array<unsigned, 3> points, int depth, unsigned seed,
+                                      bool transposed = false) {
+    vtkNew<vtkHyperTreeGrid> grid;
+    grid->SetTransposedRootIndexing(transposed);
+    grid->SetDimensions(points.data());
+    grid->SetBranchFactor(2);
+    grid->SetXCoordinates(coordinates(static_cast<int>(points[0])));
+    grid->SetYCoordinates(coordinates(static_cast<int>(points[1])));
+    grid->SetZCoordinates(coordinates(static_cast<int>(points[2])));
+    std::mt19937 random(seed);
+    vtkIdType next = 0;
+    vtkNew<vtkHyperTreeGridNonOrientedCursor> cursor;
+    for (vtkIdType i = 0; i < grid->GetMaxNumberOfTrees(); ++i) {
+        grid->InitializeNonOrientedCursor(cursor, i, true);
+        subdivide(cursor, random, depth, next);
+    }
+    return grid;
+}
+
+/// Value of a function at the centre of every cell, in the order of the arrays.
+template <int dim>
+std::vector<double> at_centres(const HyperTreeGrid<dim>& grid, std::size_t cells,
+                               const std::function<double(const Point&)>& f) {
+    std::vector<double> values(cells, 0.0);
+    using Zero = ZeroField<HyperTreeGrid<dim>>;
+    const Zero zero;
+    const Traversal<HyperTreeGrid<dim>, Zero, Needs{.keys = true, .positions = true}> walk(grid,
+                                                                                           zero);
+    project(walk, Exact{}, [&](const auto& s) {
+        std::array<Point, max_corners> x;
+        walk.positions(s, x);
+        Point centre{0, 0, 0};
+        const auto n = static_cast<std::size_t>(s.corner_count());
+        for (std::size_t k = 0; k < n; ++k) centre = centre + (1.0 / double(n)) * x[k];
+        values.at(static_cast<std::size_t>(grid.index(s.element))) = f(centre);
+    });
+    return values;
+}
+
+template <int dim>
+void expect_laws(vtkHyperTreeGrid& trees) {
+    const HyperTreeGrid<dim> grid(trees);
+    const auto cells = static_cast<std::size_t>(trees.GetNumberOfVertices());
+    std::mt19937 random(3);
+    const std::vector<std::function<double(const Point&)>> functions{
+        [](const Point& x) { return x[0] + x[1] * x[1] + x[2] - 1.03; },
+        [&](const Point&) { return static_cast<double>(random()) / 4294967296.0 - 0.5; },
+        [&](const Point&) { return static_cast<double>(random() % 3) - 1; }};
+    for (const auto& f : functions) {
+        const std::vector<double> values = at_centres(grid, cells, f);
+        const CellAverages field(grid, [&](const typename HyperTreeGrid<dim>::Element& e) {
+            return values[static_cast<std::size_t>(grid.index(e))];
+        });
+        expect_sound_grid(grid, field);
+        expect_closed_levels(grid, field, 0.0);
+    }
+}
+
+TEST(HyperTreeGrid, KeepsTheLaws) {
+    for (const bool transposed : {false, true}) {
+        expect_laws<3>(*random_trees({3, 4, 3}, 4, 1, transposed));
+        expect_laws<2>(*random_trees({4, 3, 1}, 6, 2, transposed));
+        expect_laws<2>(*random_trees({1, 4, 3}, 5, 3, transposed));
+    }
+}
+
+/// Every triangle carries the data of its cell as they are.
+TEST(HyperTreeGrid, SurfacesCarryTheDataOfLeaves) {
+    const vtkNew<vtkHyperTreeGrid> trees = random_trees({4, 4, 4}, 4, 5);
+    const HyperTreeGrid<3> grid(*trees);
+    const auto cells = static_cast<std::size_t>(trees->GetNumberOfVertices());
+    const auto f = [](const Point& x) { return x[0] + x[1] * x[2]; };
+    const std::vector<double> values = at_centres<3>(grid, cells, f);
+    const CellAverages field(grid, [&](const HyperTreeGrid<3>::Element& e) {
+        return values[static_cast<std::size_t>(grid.index(e))];
+    });
+    const HierarchicalIndicator indicator(grid, field);
+    const Surface<3, HyperTreeGrid<3>::Element> surface =
+        isosurface(grid, field, 0.7, Exact{}, indicator).surface;
+    ASSERT_GT(surface.simplices.size(), 500U);
+    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
+        const auto& e = surface.elements[surface.element_of[t]];
+        ASSERT_EQ(grid.split(e), nullptr);
+        EXPECT_EQ(field.leaf_value(e), values[static_cast<std::size_t>(grid.index(e))]);
+        EXPECT_NEAR(field.leaf_value(e), 0.7, 0.6);
+    }
+}
+
+template <class Function>
+void expect_refused(Function&& f, const std::string& part) {
+    try {
+        f();
+        FAIL() << "accepted, without '" << part << "'";
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+}
+
+TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
+    const vtkNew<vtkHyperTreeGrid> flat = random_trees({3, 3, 1}, 1, 1);
+    expect_refused([&] { HyperTreeGrid<3> grid(*flat); }, "has dimension 2, not 3");
+    const vtkNew<vtkHyperTreeGrid> masked = random_trees({3, 3, 3}, 1, 1);
+    vtkNew<vtkBitArray> mask;
+    for (vtkIdType i = 0; i < masked->GetNumberOfVertices(); ++i) mask->InsertNextValue(i == 5);
+    masked->SetMask(mask);
+    expect_refused([&] { HyperTreeGrid<3> grid(*masked); }, "cell 5 of the hyper tree grid is masked");
+    vtkNew<vtkHyperTreeGrid> thirds;
+    thirds->SetDimensions(2, 2, 2);
+    thirds->SetBranchFactor(3);
+    expect_refused([&] { HyperTreeGrid<3> grid(*thirds); }, "branch factor 3");
+}
+
+}  // namespace
