@@ -145,7 +145,8 @@ TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
     vtkNew<vtkBitArray> mask;
     for (vtkIdType i = 0; i < masked->GetNumberOfVertices(); ++i) mask->InsertNextValue(i == 5);
     masked->SetMask(mask);
-    expect_refused([&] { HyperTreeGrid<3> grid(*masked); }, "cell 5 of the hyper tree grid is masked");
+    expect_refused([&] { HyperTreeGrid<3> grid(*masked); },
+                   "cell 5 of the hyper tree grid is masked");
     vtkNew<vtkHyperTreeGrid> thirds;
     thirds->SetDimensions(2, 2, 2);
     thirds->SetBranchFactor(3);

@@ -100,9 +100,7 @@ public:
         if (dim == 3 && v[2] < 0) c.orientation = -1;  // where a coordinate decreases
         return c;
     }
-    const Rule* split(const Element& e) const {
-        return e.tree->IsLeaf(e.vertex) ? nullptr : rule_;
-    }
+    const Rule* split(const Element& e) const { return e.tree->IsLeaf(e.vertex) ? nullptr : rule_; }
     void children(const Element& e, std::span<Element> out) const {
         const vtkIdType first = e.tree->GetElderChildIndex(static_cast<unsigned>(e.vertex));
         for (std::size_t c = 0; c < out.size(); ++c) {
@@ -132,7 +130,8 @@ private:
         Place at = e.place;
         for (std::size_t a = 0; a < dim; ++a) at[axis_[a]] += k >> a & 1U;
         NodeKey key = 0;
-        for (const std::uint32_t x : at) key = detail::mix(key + (NodeKey{x} << (depth_ - e.level)));
+        for (const std::uint32_t x : at)
+            key = detail::mix(key + (NodeKey{x} << (depth_ - e.level)));
         return key;
     }
 

@@ -4,6 +4,8 @@
 // Level sets as vtkPolyData, filled while they are extracted.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,8 +20,10 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkTypeInt32Array.h>
 
 #include <nestgrid/algorithms/surface.hpp>
+#include <nestgrid/error.hpp>
 
 namespace nestgrid {
 
@@ -97,7 +101,7 @@ private:
     int current_level_ = 0;
 };
 
-/// The surface as vtkPolyData.
+/// The surface as vtkPolyData with copies of its arrays.
 template <int dimension, class Element>
 vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension, Element>& surface) {
     PolyDataSink<dimension> sink;
@@ -120,6 +124,55 @@ vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension, Element>& s
         sink.set_normal(v, surface.normals[v]);
     }
     return sink.data();
+}
+
+/// The surface as vtkPolyData on its own arrays: positions, corners of simplices, normals and
+/// attributes ("attributes", one component each). It must outlive the result and stay as it is.
+/// \throw InvalidInput for more vertices, or corners of simplices, than 32 bits number
+template <int dimension, class Element>
+vtkSmartPointer<vtkPolyData> share_poly_data(Surface<dimension, Element>& surface) {
+    constexpr std::size_t limit = std::numeric_limits<std::int32_t>::max();
+    if (std::max(surface.vertices.size(), dimension * surface.simplices.size()) > limit) {
+        throw InvalidInput("the surface is too large for VTK's arrays of 32 bits");
+    }
+    const auto share = [](double* of, std::size_t tuples, std::size_t components) {
+        const vtkNew<vtkDoubleArray> array;
+        array->SetNumberOfComponents(static_cast<int>(components));
+        array->SetArray(of, static_cast<vtkIdType>(tuples * components), 1);
+        return vtkSmartPointer<vtkDoubleArray>(array);
+    };
+    const std::size_t vertices = surface.vertices.size();
+    const vtkNew<vtkPolyData> data;
+    const vtkNew<vtkPoints> points;
+    if (vertices > 0) points->SetData(share(surface.vertices[0].data(), vertices, 3));
+    data->SetPoints(points);
+    const auto n = static_cast<vtkIdType>(surface.simplices.size());
+    const vtkNew<vtkTypeInt32Array> offsets;
+    offsets->SetNumberOfTuples(n + 1);
+    for (vtkIdType i = 0; i <= n; ++i) {
+        offsets->SetValue(i, static_cast<std::int32_t>(dimension * i));
+    }
+    const vtkNew<vtkTypeInt32Array> corners;
+    if (n > 0) {
+        // Signed and unsigned integers of one width may share memory.
+        corners->SetArray(reinterpret_cast<std::int32_t*>(surface.simplices[0].data()),
+                          dimension * n, 1);
+    }
+    const vtkNew<vtkCellArray> cells;
+    cells->SetData(offsets, corners);
+    dimension == 3 ? data->SetPolys(cells) : data->SetLines(cells);
+    if (!surface.normals.empty()) {
+        const auto normals = share(surface.normals[0].data(), vertices, 3);
+        normals->SetName("Normals");
+        data->GetPointData()->SetNormals(normals);
+    }
+    if (!surface.attributes.empty()) {
+        const auto attributes =
+            share(surface.attributes.data(), vertices, surface.attributes.size() / vertices);
+        attributes->SetName("attributes");
+        data->GetPointData()->AddArray(attributes);
+    }
+    return data;
 }
 
 }  // namespace nestgrid
