@@ -13,10 +13,12 @@ namespace nestgrid {
 
 namespace detail {
 
-template <class Function>
+template <bool splits_only, class Function>
 struct LevelVisitor {
     int level;
     Function& function;
+
+    bool passes_over_leaves() const { return splits_only; }
 
     template <class State>
     Decision inspect(const State& s, const Split& split) {
@@ -28,12 +30,15 @@ struct LevelVisitor {
     void extract(const State&) {}
 };
 
-struct DepthVisitor {
-    int levels = 0;
+template <bool splits_only, class Function>
+struct EachVisitor {
+    Function& function;
+
+    bool passes_over_leaves() const { return splits_only; }
 
     template <class State>
-    Decision inspect(const State& s, const Split&) {
-        levels = std::max(levels, s.level + 1);
+    Decision inspect(const State& s, const Split& split) {
+        function(s, split);
         return {};
     }
     template <class State>
@@ -44,18 +49,27 @@ struct DepthVisitor {
 
 /// Calls function(state, split) for every element on a level, leaves included (split.rule is null
 /// there), with the true values at the corners, hanging nodes interpolated.
-template <class Walk, class Function>
+/// \tparam splits_only pass over leaves, those of the coarse grid excepted
+template <bool splits_only = false, class Walk, class Function>
 void for_each_on_level(const Walk& walk, int level, Function&& function) {
-    detail::LevelVisitor<Function> visitor{level, function};
+    detail::LevelVisitor<splits_only, Function> visitor{level, function};
+    walk.run(visitor);
+}
+
+/// The same for all elements, depth first.
+template <bool splits_only = false, class Walk, class Function>
+void for_each_element(const Walk& walk, Function&& function) {
+    detail::EachVisitor<splits_only, Function> visitor{function};
     walk.run(visitor);
 }
 
 /// Number of levels of a hierarchy: 1 for a coarse grid alone.
 template <class Walk>
 int count_levels(const Walk& walk) {
-    detail::DepthVisitor visitor;
-    walk.run(visitor);
-    return visitor.levels;
+    int levels = 0;
+    for_each_element(walk,
+                     [&](const auto& s, const Split&) { levels = std::max(levels, s.level + 1); });
+    return levels;
 }
 
 }  // namespace nestgrid

@@ -128,6 +128,8 @@ struct ElementState {
 /// allocates nothing. A visitor has
 ///     Decision inspect(const State&, const Split&);
 ///     void extract(const State&);              called for elements where it said stop, and leaves
+///     bool passes_over_leaves() const;         optional: whether leaves around which nothing is
+///                                              closed may be left out, unless coarse
 /// Elements whose split creates no node (copies) are looked through: never shown to the visitor.
 template <class Grid, class Field, Needs needs = Needs{}>
 class Traversal {

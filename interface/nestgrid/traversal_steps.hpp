@@ -198,8 +198,16 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
     std::array<Element, detail::child_capacity<Grid>()> elements;
     detail::call_children(*grid_, *s.context, s.element,
                           std::span<Element>(elements.data(), rule.children.size()));
+    bool passes_over_leaves = false;
+    if constexpr (requires { visitor.passes_over_leaves(); }) {
+        passes_over_leaves = parts == nullptr && visitor.passes_over_leaves();
+    }
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         const Child& child = rule.children[c];
+        if (passes_over_leaves &&
+            detail::call_split(*grid_, *s.context, elements[c]) == nullptr) {
+            continue;
+        }
         if constexpr (may_offer<Grid>(Feature::masked)) {
             if (offers(*grid_, Feature::masked) &&
                 detail::call_masked(*grid_, *s.context, elements[c])) {

@@ -37,10 +37,10 @@ constexpr bool joins_across(double a, double b, double c, double d) {
 /// partition of 1 and nowhere below 0, so within the element the interpolated function deviates
 /// from the fit by no more. Between points where it has one value, on a segment or triangle within
 /// the element, it deviates from that value by twice as much at most.
-inline double affine_residual(std::span<const Point> x, std::span<const double> u) {
-    const std::size_t n = u.size();
-    std::array<std::array<double, max_corners>, 4> basis;  // 1, x, y, z at the corners
-    std::array<double, max_corners> rest;
+template <std::size_t n>  // corners: the loops are short, and unrolled
+double affine_residual(std::span<const Point, n> x, std::span<const double, n> u) {
+    std::array<std::array<double, n>, 4> basis;  // 1, x, y, z at the corners
+    std::array<double, n> rest;
     for (std::size_t i = 0; i < n; ++i) {
         basis[0][i] = 1;
         for (std::size_t d = 0; d < 3; ++d) basis[d + 1][i] = x[i][d] - x[0][d];
@@ -66,6 +66,21 @@ inline double affine_residual(std::span<const Point> x, std::span<const double> 
     double greatest = 0;
     for (std::size_t i = 0; i < n; ++i) greatest = std::max(greatest, std::abs(rest[i]));
     return greatest;
+}
+
+inline double affine_residual(std::span<const Point> x, std::span<const double> u) {
+    switch (u.size()) {
+        case 4:
+            return affine_residual(x.first<4>(), u.first<4>());
+        case 5:
+            return affine_residual(x.first<5>(), u.first<5>());
+        case 6:
+            return affine_residual(x.first<6>(), u.first<6>());
+        case 8:
+            return affine_residual(x.first<8>(), u.first<8>());
+        default:
+            return 0;  // simplices of lower dimension
+    }
 }
 
 /// A tunnel between two loops of a contour.

@@ -219,88 +219,99 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     constexpr double limit = std::numeric_limits<Real>::max() / 8;
     constexpr auto stride = static_cast<std::size_t>(detail::components_of<Field>());
     const Traversal<Grid, Field, Needs{.keys = true}> walk(grid, field, hanging());
-    const int levels = count_levels(walk);
+    int levels = 1;
     std::vector<Node> nodes(dense_key_count(grid));
+    std::vector<std::uint8_t> made_on(nodes.size(), 0);  // 1 + level, modulo 255; 0: not known yet
+    bool one_sweep = true;
     KeyTable<NodeKey, std::size_t> slots;
     const bool dense = !nodes.empty();
     const auto slot = [&](NodeKey key) {
         if (dense) return static_cast<std::size_t>(key);
         const auto [at, is_new] = slots.insert(key, nodes.size());
-        if (is_new) nodes.emplace_back();
+        if (is_new) {
+            nodes.emplace_back();
+            made_on.push_back(0);
+        }
         return *at;
     };
     std::array<NodeKey, max_corners> corner_keys;
 
     // Offsets, from the true values.
-    for (int level = 0; level < levels; ++level) {
-        for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
-            const auto corners = static_cast<std::size_t>(s.corner_count());
-            if (level == 0) {
+    for_each_element<!of_leaves>(walk, [&](const auto& s, const Split& split) {
+        const auto corners = static_cast<std::size_t>(s.corner_count());
+        levels = std::max(levels, s.level + 1);
+        if (s.level == 0) {
+            walk.keys(s, corner_keys);
+            for (std::size_t i = 0; i < corners; ++i) {
+                add_value(s.value[i * stride], limit);
+                slot(corner_keys[i]);
+            }
+        }
+        if (split.rule == nullptr) {
+            if constexpr (of_leaves) {
+                const double error = leaf_error(s.element);
+                if (!(error >= 0)) {
+                    throw InvalidInput("the error of a leaf is not a usable number: " +
+                                       std::to_string(error));
+                }
                 walk.keys(s, corner_keys);
                 for (std::size_t i = 0; i < corners; ++i) {
-                    add_value(s.value[i * stride], limit);
-                    slot(corner_keys[i]);
+                    std::uint16_t& stop = nodes[slot(corner_keys[i])].entry.stop;
+                    stop = std::max(stop, bfloat16_above(float_above(error)));
                 }
             }
-            if (split.rule == nullptr) {
-                if constexpr (of_leaves) {
-                    const double error = leaf_error(s.element);
-                    if (!(error >= 0)) {
-                        throw InvalidInput("the error of a leaf is not a usable number: " +
-                                           std::to_string(error));
-                    }
-                    walk.keys(s, corner_keys);
-                    for (std::size_t i = 0; i < corners; ++i) {
-                        std::uint16_t& stop = nodes[slot(corner_keys[i])].entry.stop;
-                        stop = std::max(stop, bfloat16_above(float_above(error)));
-                    }
+            return;
+        }
+        const Rule& rule = *split.rule;
+        largest_split_ = std::max(largest_split_, rule.new_nodes.size());
+        one_sweep = one_sweep && rule.steps == 1;
+        std::array<Real, max_corners + max_new_nodes> value;
+        std::array<Real, max_new_nodes * stride> given;
+        for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];
+        const NodeMask which = rule.all() & ~split.constrained;
+        const NodeMask missing =
+            detail::call_new_values(field, *s.context, s.element, rule.all(),
+                                    std::span<Real>(given.data(), rule.new_nodes.size() * stride));
+        if ((missing & which) != 0) {
+            throw GridError("the field has no value at a new node of an element on level " +
+                            std::to_string(s.level) + " below coarse element " +
+                            std::to_string(s.coarse));
+        }
+        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+            const Stencil& stencil = rule.new_nodes[n];
+            const std::size_t at = slot(split.keys[n]);
+            Node& node = nodes[at];
+            const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
+            one_sweep = one_sweep && (made_on[at] == 0 || made_on[at] == level);
+            made_on[at] = level;
+            if ((which >> n & 1U) == 0) {
+                value[corners + n] = detail::interpolate(stencil, value.data(), 1);
+                if ((missing >> n & 1U) == 0) {
+                    const double off = std::abs(static_cast<double>(given[n * stride]) -
+                                                static_cast<double>(value[corners + n]));
+                    if (!(off <= hanging_violation_)) hanging_violation_ = off;
                 }
-                return;
+            } else {
+                value[corners + n] = given[n * stride];
+                add_value(given[n * stride], limit);
+                node.offset = std::max(
+                    node.offset, detail::offset_above(stencil, value.data(), value[corners + n]));
             }
-            const Rule& rule = *split.rule;
-            largest_split_ = std::max(largest_split_, rule.new_nodes.size());
-            std::array<Real, max_corners + max_new_nodes> value;
-            std::array<Real, max_new_nodes * stride> given;
-            for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];
-            const NodeMask which = rule.all() & ~split.constrained;
-            const NodeMask missing = detail::call_new_values(
-                field, *s.context, s.element, rule.all(),
-                std::span<Real>(given.data(), rule.new_nodes.size() * stride));
-            if ((missing & which) != 0) {
-                throw GridError("the field has no value at a new node of an element on level " +
-                                std::to_string(s.level) + " below coarse element " +
-                                std::to_string(s.coarse));
-            }
-            for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-                const Stencil& stencil = rule.new_nodes[n];
-                Node& node = nodes[slot(split.keys[n])];
-                if ((which >> n & 1U) == 0) {
-                    value[corners + n] = detail::interpolate(stencil, value.data(), 1);
-                    if ((missing >> n & 1U) == 0) {
-                        const double off = std::abs(static_cast<double>(given[n * stride]) -
-                                                    static_cast<double>(value[corners + n]));
-                        if (!(off <= hanging_violation_)) hanging_violation_ = off;
-                    }
-                } else {
-                    value[corners + n] = given[n * stride];
-                    add_value(given[n * stride], limit);
-                    node.offset = std::max(node.offset, detail::offset_above(stencil, value.data(),
-                                                                             value[corners + n]));
-                }
-                const std::uint16_t own = (split.outside >> n & 1U) != 0 ? bfloat16_infinity
-                                          : of_leaves                    ? std::uint16_t{0}
-                                                      : bfloat16_above(node.offset);
-                node.entry.stop = std::max(node.entry.stop, own);
-            }
-        });
-    }
+            const std::uint16_t own = (split.outside >> n & 1U) != 0 ? bfloat16_infinity
+                                      : of_leaves                    ? std::uint16_t{0}
+                                                                     : bfloat16_above(node.offset);
+            node.entry.stop = std::max(node.entry.stop, own);
+        }
+    });
 
     // Saturation and bounds: fine to coarse until nothing changes, since a node may be created on
-    // different levels of the tree.
+    // different levels of the tree. Where none is, one sweep does it.
+    const ZeroField<Grid> zero;
+    const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> sweep(grid, zero);
     for (bool changed = true; changed;) {
         changed = false;
         for (int level = levels - 1; level >= 0; --level) {
-            for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
+            for_each_on_level<true>(sweep, level, [&](const auto& s, const Split& split) {
                 if (split.rule == nullptr) return;
                 const auto raise = [&](NodeKey key, std::uint16_t stop, float bound) {
                     Node& node = nodes[slot(key)];
@@ -324,10 +335,11 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
                         }
                     }
                 }
-                walk.keys(s, corner_keys);
+                sweep.keys(s, corner_keys);
                 for (std::size_t i = 0; i < corners; ++i) raise(corner_keys[i], stop, bound);
             });
         }
+        changed = changed && !one_sweep;
     }
 
     for (Node& node : nodes) {

@@ -129,6 +129,8 @@ public:
 
     Decision inspect(const State& s, const Split& split);
     void extract(const State& s);
+    /// Where nothing is closed around a leaf it records nothing, and is only counted for a limit.
+    bool passes_over_leaves() const { return recording_ && !limited(); }
 
     // What a Frontier asks for.
     Decision look(const State& s, const Split& split);
@@ -166,6 +168,7 @@ private:
     static constexpr Number none = std::numeric_limits<Number>::max();
 
     // isosurface_steps.hpp
+    bool limited() const { return limit_ != std::numeric_limits<std::uint64_t>::max(); }
     static bool inside(double value, const Layer& layer) { return value >= layer.isovalue; }
     unsigned pattern(const State& s, const Layer& layer) const;
     bool of_interest(const State& s, double bound) const;

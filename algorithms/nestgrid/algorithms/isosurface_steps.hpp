@@ -114,7 +114,7 @@ NESTGRID_VISITOR::look(const State& s, const Split& split) -> Decision {
 }
 
 NESTGRID_VISITOR::extract(const State& s) -> void {
-    if (recording_ && !s.closed.any && limit_ == std::numeric_limits<std::uint64_t>::max()) return;
+    if (recording_ && !s.closed.any && !limited()) return;
     const unsigned all = (1U << s.corner_count()) - 1;
     const unsigned boundary = options_->cap ? walk_->boundary(s) : 0U;
     loaded_ = false;

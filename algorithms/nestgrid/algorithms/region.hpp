@@ -21,23 +21,6 @@
 
 namespace nestgrid {
 
-namespace detail {
-template <class Function>
-struct EachVisitor {
-    Function& function;
-    int levels = 0;
-
-    template <class State>
-    Decision inspect(const State& s, const Split&) {
-        levels = std::max(levels, s.level + 1);
-        function(s);
-        return {};
-    }
-    template <class State>
-    void extract(const State&) {}
-};
-}  // namespace detail
-
 class Region {
 public:
     static constexpr bool saturated = true;
@@ -84,20 +67,20 @@ private:
         using Walk = Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}>;
         const Walk walk(grid, zero);
         std::array<NodeKey, max_corners> keys;
-        const auto add_corners = [&](const auto& s) {
+        int levels = 0;
+        for_each_element(walk, [&](const auto& s, const Split&) {
+            levels = std::max(levels, s.level + 1);
             walk.keys(s, keys);
             std::array<Point, max_corners> x;
             walk.positions(s, x);
             for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
                 if (inside(x[i])) add(keys[i]);
             }
-        };
-        detail::EachVisitor<decltype(add_corners)> each{add_corners};
-        walk.run(each);
+        });
         for (bool changed = true; changed;) {
             changed = false;
-            for (int level = each.levels - 1; level >= 0; --level) {
-                for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
+            for (int level = levels - 1; level >= 0; --level) {
+                for_each_on_level<true>(walk, level, [&](const auto& s, const Split& split) {
                     if (split.rule == nullptr) return;
                     const auto corners = static_cast<std::size_t>(s.corner_count());
                     bool below = false;

@@ -85,9 +85,10 @@ public:
     template <class Function>
     void for_each_new_node(const Element& e, Function&& f) const {
         const Rule& rule = *split(e);
+        const Cell c = cell(e);
         for (std::size_t n = 0; n < rule.new_corner.size(); ++n) {
             const ChildCorner at = rule.new_corner[n];
-            f(n, cell({e.level + 1, cell(e)->child_index(at.child)}), unsigned{at.corner});
+            f(n, cell({e.level + 1, c->child_index(at.child)}), unsigned{at.corner});
         }
     }
 

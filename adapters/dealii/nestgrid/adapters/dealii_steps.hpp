@@ -4,6 +4,8 @@
 // Definitions of dealii.hpp.
 #pragma once
 
+#include <algorithm>
+
 #include <nestgrid/adapters/dealii.hpp>
 
 namespace nestgrid {
@@ -127,22 +129,32 @@ void DealiiGrid<dim, spacedim>::update() {
     hangs_.assign(triangulation_->n_vertices(), false);
     only_simplex_rule_ = nullptr;
     std::size_t simplex_rules = 0;
+    std::vector<std::uint8_t> finest(triangulation_->n_vertices(), 0);  // level around a vertex
     for (const auto& c : triangulation_->cell_iterators()) {
-        if (c->has_children()) {
-            if (c->n_vertices() != unsigned{max_corners}) {
-                only_simplex_rule_ = &simplex_rules_.add(shape(c), simplex_children(c));
-                simplex_rules = simplex_rules_.size();
-            } else if (c->n_children() != unsigned{max_children}) {
-                throw InvalidInput("cell " + c->id().to_string() +
-                                   " is refined in some directions only");
+        if (!c->has_children()) {
+            for (const unsigned k : c->vertex_indices()) {
+                std::uint8_t& level = finest[c->vertex_index(k)];
+                level = std::max(level, static_cast<std::uint8_t>(c->level()));
             }
-        } else if constexpr (dim == 2) {
+        } else if (c->n_vertices() != unsigned{max_corners}) {
+            only_simplex_rule_ = &simplex_rules_.add(shape(c), simplex_children(c));
+            simplex_rules = simplex_rules_.size();
+        } else if (c->n_children() != unsigned{max_children}) {
+            throw InvalidInput("cell " + c->id().to_string() +
+                               " is refined in some directions only");
+        }
+    }
+    if (simplex_rules > 1) only_simplex_rule_ = nullptr;
+    for (const auto& c : triangulation_->active_cell_iterators()) {
+        // Where an edge is refined on another side, so is a cell at its ends.
+        const auto is_finer = [&](unsigned k) { return finest[c->vertex_index(k)] > c->level(); };
+        if (dim == 1 || std::ranges::none_of(c->vertex_indices(), is_finer)) continue;
+        if constexpr (dim == 2) {
             for (unsigned l = 0; l < c->n_lines(); ++l) mark(c->line(l));
         } else if constexpr (dim == 3) {
             for (unsigned f = 0; f < c->n_faces(); ++f) mark(c->face(f));
         }
     }
-    if (simplex_rules > 1) only_simplex_rule_ = nullptr;
 }
 
 template <int dim, class Vector, int component_count, int spacedim>

@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// An isosurface of a solution on an adaptive triangulation of deal.II: straight from the solver's
+// vector, and as it is done otherwise, by dealii::DataOut and VTK's contour, in memory or through a
+// file. Each contestant runs in a process of its own on the same solution, so that its peak of
+// memory is its own. Prints one "name value" line per figure; --quick takes a small grid.
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/vector.h>
+#include <deal.II/numerics/data_out.h>
+#include <deal.II/numerics/vector_tools.h>
+
+#include <vtkCellArray.h>
+#include <vtkCellType.h>
+#include <vtkContour3DLinearGrid.h>
+#include <vtkContourFilter.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <nestgrid/adapters/dealii.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Vector = dealii::Vector<double>;
+constexpr double isovalue = 0;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Run {
+    double first = 0;  // seconds, with everything a first surface needs
+    double next = 0;   // seconds, another isovalue on the same data
+    double bytes = 0;  // peak beside what was there before
+    double triangles = 0;
+    double visited = 0;
+};
+
+double peak_bytes() {
+    std::ifstream status("/proc/self/status");
+    std::string word;
+    while (status >> word) {
+        double kilobytes = 0;
+        if (word == "VmHWM:" && status >> kilobytes) return 1024 * kilobytes;
+    }
+    return 0;
+}
+
+/// Runs in a process of its own; its peak is counted from here.
+Run alone(const std::function<Run()>& contestant) {
+    std::array<int, 2> ends{};
+    malloc_trim(0);
+    if (pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
+    const pid_t child = fork();
+    if (child == 0) {
+        std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts here
+        const double before = peak_bytes();
+        Run run = contestant();
+        run.bytes = peak_bytes() - before;
+        const bool told = write(ends[1], &run, sizeof run) == sizeof run;
+        _exit(told ? 0 : 1);
+    }
+    close(ends[1]);
+    Run run;
+    const bool told = read(ends[0], &run, sizeof run) == sizeof run;
+    close(ends[0]);
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (!told || status != 0) throw std::runtime_error("a contestant failed");
+    return run;
+}
+
+struct Problem {
+    dealii::Triangulation<3> triangulation;
+    dealii::DoFHandler<3> dofs{triangulation};
+    Vector values;
+
+    explicit Problem(std::size_t cells) {
+        dealii::GridGenerator::hyper_cube(triangulation);
+        triangulation.refine_global(3);
+        const auto f = [](const dealii::Point<3>& x) {
+            return 0.31 - x.distance({0.52, 0.49, 0.5}) + 0.04 * std::sin(20 * x[0]) * x[1];
+        };
+        while (triangulation.n_active_cells() < cells) {
+            for (const auto& c : triangulation.active_cell_iterators()) {
+                if (std::abs(f(c->center())) < 0.6 * c->diameter()) c->set_refine_flag();
+            }
+            triangulation.execute_coarsening_and_refinement();
+        }
+        dofs.distribute_dofs(dealii::FE_Q<3>(1));
+        values.reinit(dofs.n_dofs());
+        dealii::VectorTools::interpolate(dofs, dealii::ScalarFunctionFromFunctionObject<3>(f),
+                                         values);
+        dealii::AffineConstraints<double> constraints;
+        dealii::DoFTools::make_hanging_node_constraints(dofs, constraints);
+        constraints.close();
+        constraints.distribute(values);
+    }
+};
+
+Run ours(const Problem& p, double threshold) {
+    Run run;
+    const auto start = Clock::now();
+    const nestgrid::DealiiGrid<3> grid(p.triangulation);
+    const nestgrid::DealiiField field(grid, p.dofs, p.values);
+    const nestgrid::HierarchicalIndicator indicator(grid, field);
+    {
+        const auto result = nestgrid::isosurface(grid, field, isovalue, indicator,
+                                                 {.threshold = threshold, .elements = false});
+        run.first = seconds_since(start);
+        run.triangles = static_cast<double>(result.surface.simplices.size());
+        run.visited = static_cast<double>(result.counts.visited);
+    }
+    const auto again = Clock::now();
+    nestgrid::isosurface(grid, field, isovalue + 1e-3, indicator,
+                         {.threshold = threshold, .elements = false});
+    run.next = seconds_since(again);
+    return run;
+}
+
+/// DataOut keeps its patches to itself and its writers.
+class Patches : public dealii::DataOut<3> {
+public:
+    using dealii::DataOut<3>::get_patches;
+};
+
+void build(Patches& out, const Problem& p) {
+    out.attach_dof_handler(p.dofs);
+    out.add_data_vector(p.values, "u");
+    out.build_patches();
+}
+
+/// The contour of leaves: by VTK's fast filter for linear cells.
+template <class Input>
+void contour(Input&& connect, Run& run, Clock::time_point start) {
+    const vtkNew<vtkContour3DLinearGrid> filter;
+    connect(filter.Get());
+    filter->SetMergePoints(true);
+    filter->SetSequentialProcessing(true);
+    filter->SetValue(0, isovalue);
+    filter->Update();
+    run.first = seconds_since(start);
+    run.triangles = static_cast<double>(
+        vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPolys());
+    const auto again = Clock::now();
+    filter->SetValue(0, isovalue + 1e-3);
+    filter->Update();
+    run.next = seconds_since(again);
+}
+
+Run in_memory(const Problem& p) {
+    Run run;
+    const auto start = Clock::now();
+    const vtkNew<vtkUnstructuredGrid> leaves;
+    {
+        Patches out;
+        build(out, p);
+        const vtkNew<vtkPoints> points;
+        const vtkNew<vtkDoubleArray> u;
+        const vtkNew<vtkCellArray> cells;
+        u->SetName("u");
+        for (const auto& patch : out.get_patches()) {
+            std::array<vtkIdType, 8> corner{};
+            // VTK goes around the lower and upper faces.
+            const std::array<unsigned, 8> order{0, 1, 3, 2, 4, 5, 7, 6};
+            for (unsigned k = 0; k < 8; ++k) {
+                const auto& x = patch.vertices[order[k]];
+                corner[k] = points->InsertNextPoint(x[0], x[1], x[2]);
+                u->InsertNextValue(patch.data(0, order[k]));
+            }
+            cells->InsertNextCell(8, corner.data());
+        }
+        leaves->SetPoints(points);
+        leaves->SetCells(VTK_HEXAHEDRON, cells);
+        leaves->GetPointData()->SetScalars(u);
+    }
+    contour([&](vtkContour3DLinearGrid* filter) { filter->SetInputData(leaves); }, run, start);
+    return run;
+}
+
+Run through_file(const Problem& p) {
+    Run run;
+    const auto path = std::filesystem::temp_directory_path() /
+                      ("bench_solvers_" + std::to_string(getpid()) + ".vtu");
+    const auto start = Clock::now();
+    {
+        Patches out;
+        build(out, p);
+        std::ofstream file(path);
+        out.write_vtu(file);
+    }
+    const vtkNew<vtkXMLUnstructuredGridReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    reader->GetOutput()->GetPointData()->SetActiveScalars("u");
+    contour([&](vtkContour3DLinearGrid* filter) { filter->SetInputData(reader->GetOutput()); }, run,
+            start);
+    std::filesystem::remove(path);
+    return run;
+}
+
+void print(const std::string& name, double value) { std::printf("%s %g\n", name.c_str(), value); }
+
+void print_run(const std::string& name, const Run& run) {
+    print(name + "_seconds_first", run.first);
+    print(name + "_seconds_next", run.next);
+    print(name + "_extra_megabytes", run.bytes / 1e6);
+    print(name + "_triangles", run.triangles);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
+    try {
+        const Problem problem(quick ? 20000 : 1000000);
+        print("dealii_cells", problem.triangulation.n_active_cells());
+        print("dealii_levels", problem.triangulation.n_levels());
+        const Run here = alone([&] { return ours(problem, 0); });
+        const Run coarse = alone([&] { return ours(problem, 0.005); });
+        const Run memory = alone([&] { return in_memory(problem); });
+        const Run file = alone([&] { return through_file(problem); });
+        print_run("dealii_ours", here);
+        print_run("dealii_ours_threshold_0.005", coarse);
+        print_run("dealii_data_out_in_memory", memory);
+        print_run("dealii_data_out_file", file);
+        print("dealii_ns_per_visited", 1e9 * here.next / here.visited);
+        print("dealii_memory_ratio", memory.bytes / here.bytes);
+        print("dealii_time_ratio_first", memory.first / here.first);
+        print("dealii_time_ratio_next", memory.next / here.next);
+        print("dealii_file_time_ratio_first", file.first / here.first);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_solvers: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
