@@ -9,8 +9,13 @@ cd "$(dirname "$0")/.."
 . tools/packages.sh
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}"
 
+# What was installed must be found.
+demanded=()
+for component in CGAL DEALII OPENMESH TBB TETGEN VTK; do
+    demanded+=(-D "NESTGRID_$component=ON")
+done
 log=$(mktemp)
-cmake --preset release >"$log" 2>&1 || { cat "$log"; exit 1; }
+cmake --preset release "${demanded[@]}" >"$log" 2>&1 || { cat "$log"; exit 1; }
 rm "$log"
 cmake --build --preset release
 
