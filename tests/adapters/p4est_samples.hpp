@@ -78,8 +78,8 @@ public:
         Api::refine(
             forest_.get(), 1,
             [](typename Types::Forest* f, p4est_topidx_t, Quadrant* q) -> int {
-                return (*static_cast<const std::function<bool(const Quadrant&)>*>(
-                           f->user_pointer))(*q)
+                return (*static_cast<const std::function<bool(const Quadrant&)>*>(f->user_pointer))(
+                           *q)
                            ? 1
                            : 0;
             },

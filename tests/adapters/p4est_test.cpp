@@ -262,8 +262,8 @@ void check_nodal_field(double threshold) {
     for_each_forest<dim>(true, [&](const std::string& name, const auto& forest, const auto& map) {
         const P4estGrid grid(forest.get(), map);
         const auto nodes = forest.nodes();
-        const std::vector<Real> values = nodal_values(
-            grid, *nodes, [](const Point& x) { return static_cast<Real>(linear(x)); });
+        const std::vector<Real> values =
+            nodal_values(grid, *nodes, [](const Point& x) { return static_cast<Real>(linear(x)); });
         const P4estNodalField field(grid, nodes.get(), values);
         const auto violation = check_grid(grid, field, {.hanging_values = true});
         EXPECT_FALSE(violation) << violation->sentence;
@@ -304,6 +304,46 @@ TEST(P4estNodalField, SurfacesAreClosedAtEveryThreshold) {
         const auto violation = check_grid(grid, field, {.hanging_values = true});
         EXPECT_FALSE(violation) << violation->sentence;
         expect_closed_at_all_thresholds(grid, field, name != "moebius");
+    };
+    for_each_forest<2>(true, check);
+    for_each_forest<3>(true, check);
+}
+
+struct CompareHanging {
+    const HangingNodes& hanging;
+    template <class State>
+    Decision inspect(const State&, const Split& split) {
+        EXPECT_EQ(split.constrained, hanging.mask(split.keys));
+        return {};
+    }
+    template <class State>
+    void extract(const State&) {}
+};
+
+/// What face codes tell is what the library derives.
+TEST(P4estBalancedGrid, KnowsWhichNodesHang) {
+    const auto check = [](const std::string& name, const auto& forest, const auto& map) {
+        const auto nodes = forest.nodes();
+        const P4estGrid plain(forest.get(), map);
+        const P4estBalancedGrid grid(forest.get(), nodes.get(), map);
+        using Grid = std::decay_t<decltype(grid)>;
+        const HangingNodes hanging = derive_hanging_nodes(plain);
+        EXPECT_GT(hanging.size(), 0U);
+        const ZeroField<Grid> zero;
+        const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
+        CompareHanging compare{hanging};
+        walk.run(compare);
+
+        const std::vector<double> values =
+            noise(static_cast<std::size_t>(nodes->num_local_nodes), 5);
+        const P4estNodalField field(grid, nodes.get(), values);
+        const auto violation = check_grid(grid, field, {.hanging_values = true});
+        EXPECT_FALSE(violation) << violation->sentence;
+        const auto a = isosurface(plain, field, 0, {.threshold = 0.2});
+        const auto b = isosurface(grid, field, 0, {.threshold = 0.2});
+        EXPECT_EQ(a.surface.vertices, b.surface.vertices);
+        EXPECT_EQ(a.surface.simplices, b.surface.simplices);
+        if (name != "moebius") expect_closed(b.surface);
     };
     for_each_forest<2>(true, check);
     for_each_forest<3>(true, check);
@@ -354,8 +394,8 @@ TEST(P4estCellValues, PlateausStayFlat) {
 }
 
 /// A forest refined at a sphere, with the distance to it in each leaf's own data.
-Forest<3> refined_at_sphere(int depth, int width = 2) {
-    Forest<3> forest(p8est_connectivity_new_brick(width, width, 1, 0, 0, 0), sizeof(double));
+Forest<3> refined_at_sphere(int depth) {
+    Forest<3> forest(p8est_connectivity_new_brick(2, 2, 1, 0, 0, 0), sizeof(double));
     const auto distance = [](const p8est_quadrant_t& q, double& half) {
         half = 0.5 * P8EST_QUADRANT_LEN(q.level) / P8EST_ROOT_LEN;
         const auto at = [&](p4est_qcoord_t x) { return double(x) / P8EST_ROOT_LEN + half; };
@@ -386,8 +426,8 @@ TEST(P4estGrid, SavedAndLoadedGivesTheSameSurface) {
     const std::string file = testing::TempDir() + "nestgrid_p4est_test.p8est";
     p8est_save(file.c_str(), forest.get(), 1);
     p8est_connectivity_t* connectivity = nullptr;
-    p8est_t* loaded = p8est_load(file.c_str(), sc_MPI_COMM_WORLD, sizeof(double), 1, nullptr,
-                                 &connectivity);
+    p8est_t* loaded =
+        p8est_load(file.c_str(), sc_MPI_COMM_WORLD, sizeof(double), 1, nullptr, &connectivity);
     std::filesystem::remove(file);
     const Forest<3> again(loaded, connectivity);
     const P4estGrid<3> grid(forest.get());
@@ -403,13 +443,14 @@ TEST(P4estGrid, SavedAndLoadedGivesTheSameSurface) {
 }
 
 TEST(P4estGrid, LargeForestsAreReadInPlace) {
-    const Forest<3> forest = refined_at_sphere(8);
+    const Forest<3> forest = refined_at_sphere(7);
     const std::size_t before = allocated_bytes();
     const P4estGrid grid(forest.get());
     EXPECT_GE(grid.leaf_count(), 100000U);
     const auto nodes = forest.nodes();
-    const std::vector<double> values =
-        nodal_values(grid, *nodes, [](const Point& x) { return norm(x - Point{1, 1, 0}) - 0.6; });
+    const std::vector<double> values = nodal_values(grid, *nodes, [](const Point& x) {
+        return norm(x - Point{1, 1, 0}) - 0.6;
+    });
     const P4estNodalField field(grid, nodes.get(), values);
     EXPECT_LE(allocated_bytes() - before, values.size() * sizeof(double) + 4096);
 
@@ -426,8 +467,8 @@ TEST(P4estGrid, LargeForestsAreReadInPlace) {
     for (const double threshold : thresholds) {
         const auto one = isosurface(grid, field, 0, indicator, {.threshold = threshold});
         expect_closed(one.surface);
-        const auto two = isosurface(grid, field, 0, indicator, {.threshold = threshold},
-                                    ThreadExecutor(2));
+        const auto two =
+            isosurface(grid, field, 0, indicator, {.threshold = threshold}, ThreadExecutor(2));
         EXPECT_EQ(one.surface.vertices, two.surface.vertices);
         EXPECT_EQ(one.surface.simplices, two.surface.simplices);
     }
@@ -507,12 +548,13 @@ TEST(P4estGrid, RefusesWhatItCannotRead) {
               "the connectivity of the forest has no vertices; give a map of its trees");
     cube.connectivity().vertices = vertices;
     EXPECT_EQ(sentence([&] {
-                  P4estGrid grid(const_cast<const p8est_t*>(cube.get()),
-                                 [](std::size_t, const Point& r) { return Point{r[0], r[1], 0}; });
+                  P4estGrid grid(cube.get(), [](std::size_t, const Point& r) {
+                      return Point{r[0], r[1], 0};
+                  });
               }),
               "tree 0 is flat");
     EXPECT_NE(sentence([&] {
-                  P4estGrid grid(const_cast<const p8est_t*>(cube.get()),
+                  P4estGrid grid(cube.get(),
                                  [](std::size_t, const Point& r) { return std::sqrt(-1) * r; });
               }),
               "");
@@ -531,14 +573,13 @@ TEST(P4estFields, RefuseWhatDoesNotFit) {
     Forest<2> forest(p4est_connectivity_new_unitsquare());
     const auto foreign = forest.nodes();
     forest.refine([](const p4est_quadrant_t& q) { return q.level < 2; });
-    const P4estGrid grid(const_cast<const p4est_t*>(forest.get()));
+    const P4estGrid grid(forest.get());
     const auto nodes = forest.nodes();
     const auto quadratic = forest.nodes(2);
     const std::vector<double> values(25);
     const auto field = [&](const p4est_lnodes_t* of, std::size_t count) {
-        return sentence([&] {
-            P4estNodalField nodal(grid, of, std::span<const double>(values).first(count));
-        });
+        return sentence(
+            [&] { P4estNodalField nodal(grid, of, std::span<const double>(values).first(count)); });
     };
     EXPECT_EQ(field(nodes.get(), 25), "");
     EXPECT_EQ(field(nullptr, 25), "there are no lnodes");
@@ -547,6 +588,8 @@ TEST(P4estFields, RefuseWhatDoesNotFit) {
               "the lnodes belong to another forest: they number 1 elements, but there are 16 "
               "leaves");
     EXPECT_EQ(field(nodes.get(), 24), "there are 24 values, but the lnodes number 25 nodes");
+    EXPECT_EQ(sentence([&] { P4estBalancedGrid balanced(forest.get(), quadratic.get()); }),
+              "the lnodes have degree 2, not 1");
     EXPECT_EQ(sentence([&] { P4estCellValues cells(grid, values); }),
               "there are 25 values of cells, but 16 leaves");
 }
