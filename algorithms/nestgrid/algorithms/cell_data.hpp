@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Data in cells, as finite volume codes have it, as a nodal field: the value at a node is the plain
+// mean of the leaves that have it for a corner. A linear function is reproduced where those leaves
+// lie symmetrically around the node. Nodes that hang get such a mean too, but the traversal puts
+// the interpolant in its place.
+//
+// Invariant: the mean of equal values is that value, to the last bit, so that plateaus stay flat.
+// Memory: O(nodes), 48 to 96 bytes a node, and half as much again while it is built.
+#pragma once
+
+#include <concepts>
+
+#include <nestgrid/derive_hanging.hpp>
+
+namespace nestgrid {
+
+/// \tparam Grid with node keys of its own
+/// \tparam LeafValue callable as a number of LeafValue(const Element&) for every leaf
+template <class Grid, class LeafValue>
+class CellAverages {
+    static_assert(require_nested_grid<Grid>());
+    static_assert(may_offer<Grid>(Feature::own_keys),
+                  "CellAverages needs a grid with node keys of its own: 'corner_keys' and "
+                  "'new_keys'.");
+
+public:
+    using value_type = double;
+    using Element = ElementOf<Grid>;
+
+    /// Walks the whole hierarchy. The grid must outlive the field and stay as it is.
+    /// \throw InvalidInput where the grid has no node keys of its own
+    CellAverages(const Grid& grid, LeafValue leaf_value);
+
+    /// The value of the cell itself; only leaves have one.
+    double leaf_value(const Element& leaf) const { return static_cast<double>(leaf_value_(leaf)); }
+
+    /// \throw GridError where the grid has changed since the means were computed
+    NodeMask coarse_values(std::size_t i, std::span<double> out, Context<Grid>& context) const {
+        if (epoch(*grid_) != epoch_) {
+            throw GridError("the grid has changed since the means of its cells were computed");
+        }
+        const auto coarse = detail::call_coarse(*grid_, context, i);
+        std::array<NodeKey, max_corners> keys;
+        const std::size_t count = topology(coarse.shape).corners;
+        detail::call_corner_keys(*grid_, context, coarse.element,
+                                 std::span<NodeKey>(keys.data(), count));
+        return look_up(std::span<const NodeKey>(keys.data(), count), ~NodeMask{0}, out);
+    }
+    NodeMask new_values(const Element& e, NodeMask which, std::span<double> out,
+                        Context<Grid>& context) const {
+        std::array<NodeKey, max_new_nodes> keys;
+        const auto count =
+            static_cast<std::size_t>(detail::call_split(*grid_, context, e)->new_node_count());
+        detail::call_new_keys(*grid_, context, e, std::span<NodeKey>(keys.data(), count));
+        return look_up(std::span<const NodeKey>(keys.data(), count), which, out);
+    }
+
+    std::size_t memory_bytes() const { return means_.memory_bytes(); }
+
+private:
+    struct Running {
+        double mean;
+        std::uint32_t count;
+    };
+    template <class Walk>
+    struct Collect {
+        const Walk& walk;
+        const LeafValue& leaf_value;
+        KeyTable<NodeKey, Running> running{};
+
+        template <class State>
+        Decision inspect(const State&, const Split&) {
+            return {};
+        }
+        template <class State>
+        void extract(const State& s) {
+            const auto value = static_cast<double>(leaf_value(s.element));
+            std::array<NodeKey, max_corners> keys;
+            walk.keys(s, keys);
+            for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+                Running& r = *running.insert(keys[i], {value, 0}).first;
+                r.mean += (value - r.mean) / ++r.count;
+            }
+        }
+    };
+
+    NodeMask look_up(std::span<const NodeKey> keys, NodeMask which, std::span<double> out) const {
+        NodeMask missing = 0;
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            if ((which >> i & 1U) == 0) continue;
+            if (const double* mean = means_.find(keys[i])) {
+                out[i] = *mean;
+            } else {
+                missing |= NodeMask{1} << i;
+            }
+        }
+        return missing;
+    }
+
+    const Grid* grid_;
+    LeafValue leaf_value_;
+    std::uint64_t epoch_;
+    KeyTable<NodeKey, double> means_;
+};
+
+template <class Grid, class LeafValue>
+CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue leaf_value)
+    : grid_{&grid}, leaf_value_{std::move(leaf_value)}, epoch_{epoch(grid)} {
+    if (!offers(grid, Feature::own_keys)) {
+        throw InvalidInput("the means of cells need a grid with node keys of its own");
+    }
+    const ZeroField<Grid> zero;
+    const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
+    Collect<decltype(walk)> collect{walk, leaf_value_};
+    walk.run(collect);
+    means_.reserve(collect.running.size());
+    collect.running.for_each([&](NodeKey key, const Running& r) { means_.insert(key, r.mean); });
+}
+
+}  // namespace nestgrid
