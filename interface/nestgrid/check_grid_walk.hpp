@@ -130,8 +130,11 @@ void GridChecker<Grid, Field>::check_new_nodes(const State& s, const Rule& rule,
         const bool deviates = deviates_from_mean(stencil, nodes, c.value[0]);
         check_node(s, corners + n, c, mix(signature), (constrained >> n & 1U) != 0, deviates);
         place_of_derived_.insert(c.derived, c.place);
-        probe_.add_node(c.derived);
     }
+    std::vector<NodeKey> derived;
+    for (const Corner& c : nodes) derived.push_back(c.derived);
+    const std::span<const NodeKey> all(derived);
+    probe_.add_nodes(rule, all.first(corners), all.subspan(corners));
 }
 
 template <class Grid, class Field>
