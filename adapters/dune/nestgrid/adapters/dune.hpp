@@ -182,6 +182,7 @@ private:
 
     const Opened& open(const Element& e, Opened& opened) const {
         if (opened.known && opened.element == e) return opened;
+        opened.known = false;
         Traits::children(*grid_, e, opened.children);
         opened.rule = rules_.find(e, opened.children);
         if (opened.rule == nullptr) {

@@ -9,6 +9,7 @@
 // from, and by geometryInFather only where that is met for the first time.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include <nestgrid/adapters/dune_rules.hpp>
@@ -84,9 +85,9 @@ private:
                 return 8 + 8 * std::min(*a, *b) + std::max(*a, *b);
             }
             case side: {
-                const auto number = side_number(father, node);
-                if (!number) return std::nullopt;
-                return 128 + *number;
+                const auto place = place_of_side(father, node);
+                if (!place) return std::nullopt;
+                return 128 + *place;
             }
             case centre:
                 return 255;
@@ -103,17 +104,25 @@ private:
         return std::nullopt;
     }
 
-    /// The side in whose middle a node lies, made when this element or the one behind was refined.
-    static std::optional<std::uint64_t> side_number(const UGElement* father, const UGNode* node) {
+    /// The quadrilateral side in whose middle a node lies: by the node's place in the element if it
+    /// was made when that was refined, by the element behind the side if when that was. (UG's own
+    /// number of the side is no help, since geometryInFather changes it, not always for the
+    /// better.)
+    static std::optional<std::uint64_t> place_of_side(const UGElement* father, const UGNode* node) {
         const auto& vertex = node->myvertex->iv;
-        if (vertex.father == father) return vertex.control >> 3U & 7U;
-        std::optional<std::uint64_t> number;
+        std::uint64_t place = 0;
+        if (vertex.father == father) {
+            for (const double x : vertex.xi) {
+                place = 3 * place + static_cast<std::uint64_t>(std::lround(2 * x));
+            }
+            return place;
+        }
         for (int i = 0; i < UG::Sides_Of_Elem(father); ++i) {
             if (UG::NbElem(father, i) != vertex.father) continue;
-            if (number) return std::nullopt;
-            number = static_cast<std::uint64_t>(i);
+            if (place != 0) return std::nullopt;
+            place = 27 + static_cast<std::uint64_t>(i);
         }
-        return number;
+        return place == 0 ? std::nullopt : std::optional(place);
     }
 
     DuneRules<Element> rules_;
