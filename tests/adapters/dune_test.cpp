@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // YaspGrid as a nested grid; fields on grids of Dune; what is refused.
+#include <set>
+
+#include <dune/common/bigunsignedint.hh>
 #include <dune/common/parallel/mpihelper.hh>
 #include <dune/grid/common/mcmgmapper.hh>
 #include <dune/grid/yaspgrid.hh>
@@ -148,6 +151,16 @@ TEST(DuneGrid, RefusesDistributedGrids) {
               "distributed one");
 }
 
+/// A small id is the key itself; of others all bytes count, or what std::hash makes of them.
+TEST(DuneGrid, HashesIds) {
+    using nestgrid::detail::dune_id;
+    EXPECT_EQ(dune_id(7U), 7U);
+    std::set<std::uint64_t> keys;
+    for (int bit = 0; bit < 100; ++bit) keys.insert(dune_id(Dune::bigunsignedint<100>(1) << bit));
+    EXPECT_EQ(keys.size(), 100U);
+    EXPECT_NE(dune_id(std::string("one")), dune_id(std::string("two")));
+}
+
 TEST(DuneGrid, RefusesUnknownShapes) {
     EXPECT_EQ(
         refusal<InvalidInput>([] { nestgrid::detail::dune_shape(Dune::GeometryTypes::none(3)); }),
@@ -178,7 +191,11 @@ TEST(DuneGrid, NoticesThatItWasAdapted) {
     std::vector<double> values = noise(*solver);
     const DuneVertexField field(grid, values);
     const HierarchicalIndicator indicator(grid, field);
+    const auto vertices = std::to_string(values.size());
     refine_at_sphere(*solver, 2, 0.2);
+    EXPECT_EQ(refusal<InvalidInput>([&] { HierarchicalIndicator(DuneGrid(*solver), field); }),
+              "there are " + vertices + " values, but the leaf grid has " +
+                  std::to_string(solver->size(3)) + " vertices");
     values = noise(*solver);
     EXPECT_EQ(refusal<GridError>([&] { isosurface(grid, field, 0, indicator); }),
               "the grid has changed since its indicator was computed");

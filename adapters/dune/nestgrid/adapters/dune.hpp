@@ -6,12 +6,13 @@
 // Nothing of it is copied but one seed per coarse element and each refinement rule once.
 //
 // Invariants:
-//   - an element is Dune's own entity, children come in the order of the hierarchic
-//     iterator, and corners keep their numbers, since Dune numbers them as nestgrid does;
+//   - an element is Dune's own entity; children come in the order of the hierarchic iterator, and
+//     corners keep their numbers, since Dune numbers them as nestgrid does;
 //   - the rule of an element is found from where its children lie in it (geometryInFather);
 //   - a node's key is Dune's id of the vertex or, where leaf indices hold on all levels, its index;
 //   - positions are those of the vertices, so that parametrised boundaries are followed.
-// Hanging nodes are derived, except on grids that Dune says are conforming.
+// Hanging nodes are derived, except on grids that are known to have none.
+// With ids of more than 64 bits keys are hashes of them, with the odds of keys.hpp.
 #pragma once
 
 #include <thread>
@@ -48,6 +49,7 @@ public:
             Element element;
             const Rule* rule = nullptr;
             std::vector<Element> children;
+            std::vector<PlacedChild> placed;
         };
         Opened opened_;
         Opened below_;  // on the way to a leaf
@@ -64,10 +66,11 @@ public:
                                " processes; only grids on one process can be walked");
         }
         std::vector<Element> children;
+        std::vector<PlacedChild> placed;
         const auto add_rule = [&](const Element& e) {
             if (e.isLeaf()) return;
             Traits::children(grid, e, children);
-            rules_.add(e, children);
+            rules_.add(e, children, placed);
         };
         for (const Element& e : elements(grid.levelGridView(0))) {
             if (e.partitionType() != Dune::InteriorEntity) {
@@ -109,13 +112,13 @@ public:
     }
 
     void corner_keys(const Element& e, std::span<NodeKey> out) const {
-        for (std::size_t k = 0; k < out.size(); ++k) out[k] = key(e, k);
+        for (std::size_t k = 0; k < out.size(); ++k) out[k] = id(e, k);
     }
     void new_keys(const Element& e, std::span<NodeKey> out, Context& context) const {
         const auto& opened = open(e, context.opened_);
         for (std::size_t n = 0; n < out.size(); ++n) {
             const ChildCorner at = opened.rule->new_corner[n];
-            out[n] = key(opened.children[at.child], at.corner);
+            out[n] = id(opened.children[at.child], at.corner);
         }
     }
     std::size_t node_count() const requires(leaf_indices_on_branches) {
@@ -128,7 +131,7 @@ public:
                                 out[n] = detail::dune_point(child.geometry().corner(corner));
                             });
     }
-    bool conforming() const { return Dune::Capabilities::isLeafwiseConforming<DuneType>::v; }
+    bool conforming() const { return Traits::conforming; }
     /// From the number of elements and vertices: it does not notice that as many vanished as came.
     std::uint64_t epoch() const {
         NodeKey sum = static_cast<NodeKey>(grid_->maxLevel());
@@ -157,7 +160,7 @@ public:
     void for_each_new_corner(const Element& e, NodeMask which, Context& context,
                              Function&& f) const {
         const auto& opened = open(e, context.opened_);
-        for (std::size_t n = 0; which >> n != 0; ++n) {
+        for (std::size_t n = 0; n < opened.rule->new_nodes.size(); ++n) {
             if ((which >> n & 1U) == 0) continue;
             const ChildCorner at = opened.rule->new_corner[n];
             f(n, opened.children[at.child], static_cast<int>(at.corner));
@@ -184,7 +187,7 @@ private:
         if (opened.known && opened.element == e) return opened;
         opened.known = false;
         Traits::children(*grid_, e, opened.children);
-        opened.rule = rules_.find(e, opened.children);
+        opened.rule = rules_.find(e, opened.children, opened.placed);
         if (opened.rule == nullptr) {
             throw GridError("the Dune grid was adapted; its adapter must be made anew");
         }
@@ -211,7 +214,6 @@ private:
             return detail::dune_id(grid_->localIdSet().subId(e, i, dimension));
         }
     }
-    NodeKey key(const Element& e, std::size_t corner) const { return id(e, corner); }
 
     const DuneType* grid_;
     std::thread::id thread_;

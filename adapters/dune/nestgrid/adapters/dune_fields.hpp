@@ -48,15 +48,12 @@ public:
         : DuneVertexField(grid, values, grid.solver().leafIndexSet()) {}
     DuneVertexField(const Grid& grid, const Vector& values, const IndexSet& indices)
         : grid_{&grid}, values_{&values}, indices_{&indices} {
-        const auto vertices = static_cast<std::size_t>(grid.solver().size(Grid::dimension));
-        if (static_cast<std::size_t>(values.size()) != vertices) {
-            throw InvalidInput("there are " + std::to_string(values.size()) +
-                               " values, but the leaf grid has " + std::to_string(vertices) +
-                               " vertices");
-        }
+        check_length();
     }
 
+    /// \throw InvalidInput where the grid was adapted, but not the vector
     NodeMask coarse_values(std::size_t i, std::span<value_type> out, Context& context) const {
+        check_length();
         const Element e = grid_->coarse_entity(i);
         const std::size_t corners = out.size() / components;
         for (std::size_t k = 0; k < corners; ++k)
@@ -73,6 +70,15 @@ public:
     }
 
 private:
+    void check_length() const {
+        const auto vertices = static_cast<std::size_t>(grid_->solver().size(Grid::dimension));
+        if (static_cast<std::size_t>(values_->size()) != vertices) {
+            throw InvalidInput("there are " + std::to_string(values_->size()) +
+                               " values, but the leaf grid has " + std::to_string(vertices) +
+                               " vertices");
+        }
+    }
+
     void get(const Element& e, int corner, Context& context, value_type* out) const {
         const auto read = [&](const Element& from, int at) {
             const auto& entry = (*values_)[indices_->subIndex(from, at, Grid::dimension)];

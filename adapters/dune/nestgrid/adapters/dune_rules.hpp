@@ -60,25 +60,23 @@ std::uint64_t dune_id(const Id& id) {
 template <class Element>
 class DuneRules {
 public:
-    const Rule& add(const Element& e, std::span<const Element> children) {
-        std::array<PlacedChild, max_children> placed;
-        return table_.add(dune_shape(e.type()), place(children, placed));
+    /// \param placed room to work in
+    const Rule& add(const Element& e, std::span<const Element> children,
+                    std::vector<PlacedChild>& placed) {
+        place(children, placed);
+        return table_.add(dune_shape(e.type()), placed);
     }
     /// Null where there was no such rule.
-    const Rule* find(const Element& e, std::span<const Element> children) const {
-        std::array<PlacedChild, max_children> placed;
-        return table_.find(dune_shape(e.type()), place(children, placed));
+    const Rule* find(const Element& e, std::span<const Element> children,
+                     std::vector<PlacedChild>& placed) const {
+        place(children, placed);
+        return table_.find(dune_shape(e.type()), placed);
     }
     const RuleTable& table() const { return table_; }
 
 private:
-    static std::span<const PlacedChild> place(std::span<const Element> children,
-                                              std::span<PlacedChild> placed) {
-        if (children.size() > placed.size()) {
-            throw InvalidInput("an element of the Dune grid has " +
-                               std::to_string(children.size()) + " children, more than " +
-                               std::to_string(placed.size()));
-        }
+    static void place(std::span<const Element> children, std::vector<PlacedChild>& placed) {
+        placed.resize(children.size());
         for (std::size_t c = 0; c < children.size(); ++c) {
             placed[c].shape = dune_shape(children[c].type());
             const auto geometry = children[c].geometryInFather();
@@ -86,7 +84,6 @@ private:
                 placed[c].corners[static_cast<std::size_t>(i)] = dune_point(geometry.corner(i));
             }
         }
-        return placed.first(children.size());
     }
 
     RuleTable table_;
@@ -104,6 +101,8 @@ struct DuneDefaults {
     static constexpr int max_children = nestgrid::max_children;
     /// leafIndexSet().subIndex() is right at the corners of elements that are no leaves.
     static constexpr bool leaf_indices_on_branches = false;
+    /// No node hangs on a leaf, which then need not be found out.
+    static constexpr bool conforming = Dune::Capabilities::isLeafwiseConforming<DuneType>::v;
     /// Several threads may copy entities and ask them at a time.
     static constexpr bool several_threads = Dune::Capabilities::viewThreadSafe<DuneType>::v;
 
@@ -114,7 +113,8 @@ struct DuneDefaults {
     }
 };
 
-/// To be specialised for grids of which more is known.
+/// To be specialised for types of grids of which more is known; what is known of one grid alone,
+/// such as that it is conforming, goes into a class derived from this.
 template <class DuneType>
 struct DuneTraits : DuneDefaults<DuneType> {};
 

@@ -32,16 +32,18 @@ class UGRules {
 public:
     using Element = typename Dune::UGGrid<dim>::template Codim<0>::Entity;
 
-    void add(const Element& e, std::span<const Element> children) {
+    void add(const Element& e, std::span<const Element> children,
+             std::vector<PlacedChild>& placed) {
         const std::optional<NodeKey> made = origin(e, children);
         if (made && by_origin_.find(*made) != nullptr) return;
-        const Rule& rule = rules_.add(e, children);
+        const Rule& rule = rules_.add(e, children, placed);
         if (made) by_origin_.insert(*made, &rule);
     }
     /// Null where there was no such rule.
-    const Rule* find(const Element& e, std::span<const Element> children) const {
+    const Rule* find(const Element& e, std::span<const Element> children,
+                     std::vector<PlacedChild>& placed) const {
         const std::optional<NodeKey> made = origin(e, children);
-        if (!made) return rules_.find(e, children);
+        if (!made) return rules_.find(e, children, placed);
         const Rule* const* const rule = by_origin_.find(*made);
         return rule == nullptr ? nullptr : *rule;
     }
@@ -131,7 +133,7 @@ private:
 
 }  // namespace detail
 
-/// Entities are bare pointers, and asking them changes nothing.
+/// Entities are bare pointers, and what a walk asks of them changes nothing.
 template <int dim>
 struct DuneTraits<Dune::UGGrid<dim>> : DuneDefaults<Dune::UGGrid<dim>> {
     using DuneType = Dune::UGGrid<dim>;
