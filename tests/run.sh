@@ -11,7 +11,7 @@ need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@
 
 # What was installed must be found.
 demanded=()
-for component in CGAL DEALII OPENMESH TBB TETGEN VTK; do
+for component in CGAL DEALII DUNE OPENMESH P4EST TBB TETGEN VTK; do
     demanded+=(-D "NESTGRID_$component=ON")
 done
 log=$(mktemp)

@@ -102,8 +102,8 @@ private:
             child.orientation = detail::signed_reference_measure(from.shape, x) < 0 ? -1 : 1;
             children.push_back(child);
         }
-        return make_rule(std::string(t.name) + " into " + std::to_string(children.size()), parent,
-                         std::move(stencils), std::move(children));
+        const std::string name = std::string(t.name) + " into " + std::to_string(children.size());
+        return make_rule(name, parent, std::move(stencils), std::move(children));
     }
 
     std::deque<Rule> rules_;

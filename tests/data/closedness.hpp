@@ -18,6 +18,7 @@
 namespace nestgrid_test {
 
 using namespace nestgrid;
+using nestgrid::norm;  // ALBERTA has a global one
 
 /// No open edge inside the domain, a manifold, one orientation.
 template <class Element>

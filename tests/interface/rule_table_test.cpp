@@ -50,6 +50,8 @@ TEST(RuleTable, FindsTheStandardRules) {
         EXPECT_EQ(&table.add(rule->parent, children), &found);
         EXPECT_EQ(table.find(rule->parent, children), &found);
         ASSERT_EQ(found.new_node_count(), rule->new_node_count()) << rule->name;
+        EXPECT_EQ(found.name, std::string(topology(rule->parent).name) + " into " +
+                                  std::to_string(children.size()));
         const std::vector<Point> x = reference_nodes(*rule);
         const std::vector<Point> y = reference_nodes(found);
         for (std::size_t c = 0; c < rule->children.size(); ++c) {

@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Any grid of Dune (Bastian et al. 2008) whose elements are refined into nested children, as a
+// nested grid: UGGrid, AlbertaGrid, YaspGrid, and what else follows the interface of dune-grid.
+// Nothing of it is copied but one seed per coarse element and each refinement rule once.
+//
+// Invariants:
+//   - an element is Dune's own entity; children come in the order of the hierarchic iterator, and
+//     corners keep their numbers, since Dune numbers them as nestgrid does;
+//   - the rule of an element is found from where its children lie in it (geometryInFather);
+//   - a node's key is Dune's id of the vertex or, where leaf indices hold on all levels, its index;
+//   - positions are those of the vertices, so that parametrised boundaries are followed.
+// Hanging nodes are derived, except on grids that are known to have none.
+// With ids of more than 64 bits keys are hashes of them, with the odds of keys.hpp.
+#pragma once
+
+#include <thread>
+
+#include <nestgrid/adapters/dune_alberta.hpp>
+#include <nestgrid/adapters/dune_rules.hpp>
+#include <nestgrid/adapters/dune_ug.hpp>
+#include <nestgrid/operations.hpp>
+
+namespace nestgrid {
+
+/// The grid must outlive this object. After it was adapted, make a new one.
+/// \tparam DuneType of dimension 2 or 3, in a world of the same dimension
+template <class DuneType, class Traits = DuneTraits<DuneType>>
+class DuneGrid {
+    static_assert(DuneType::dimension == 2 || DuneType::dimension == 3,
+                  "A Dune grid must have dimension 2 or 3.");
+    static_assert(DuneType::dimension == DuneType::dimensionworld,
+                  "A Dune grid must be as high as the world it lies in.");
+
+public:
+    using Solver = DuneType;
+    using Element = typename DuneType::template Codim<0>::Entity;
+    static constexpr int dimension = DuneType::dimension;
+    static constexpr int max_corners = dimension == 2 ? 4 : 8;
+    static constexpr int max_children = Traits::max_children;
+    static constexpr bool leaf_indices_on_branches = Traits::leaf_indices_on_branches;
+
+    /// State of a task: what was found out about the element that was asked last.
+    class Context {
+        friend class DuneGrid;
+        struct Opened {
+            bool known = false;
+            Element element;
+            const Rule* rule = nullptr;
+            std::vector<Element> children;
+            std::vector<PlacedChild> placed;
+        };
+        Opened opened_;
+        Opened below_;  // on the way to a leaf
+    };
+
+    /// Walks the whole hierarchy for its rules.
+    /// \throw InvalidInput where the grid is distributed over several processes, has overlap or
+    ///        ghost elements or elements of an unknown shape, or where the children of an element
+    ///        do not tile it
+    explicit DuneGrid(const DuneType& grid) : grid_{&grid}, thread_{std::this_thread::get_id()} {
+        if (grid.comm().size() > 1) {
+            throw InvalidInput("the Dune grid is distributed over " +
+                               std::to_string(grid.comm().size()) +
+                               " processes; only grids on one process can be walked");
+        }
+        std::vector<Element> children;
+        std::vector<PlacedChild> placed;
+        const auto add_rule = [&](const Element& e) {
+            if (e.isLeaf()) return;
+            Traits::children(grid, e, children);
+            rules_.add(e, children, placed);
+        };
+        for (const Element& e : elements(grid.levelGridView(0))) {
+            if (e.partitionType() != Dune::InteriorEntity) {
+                throw InvalidInput(
+                    "the Dune grid has overlap or ghost elements: it is periodic or part of a "
+                    "distributed one");
+            }
+            detail::dune_shape(e.type());
+            coarse_.push_back(e.seed());
+            add_rule(e);
+            for (const Element& d : descendantElements(e, grid.maxLevel())) add_rule(d);
+        }
+        grid.leafIndexSet();
+    }
+
+    std::size_t coarse_count() const { return coarse_.size(); }
+    CoarseElement<Element> coarse(std::size_t i) const {
+        CoarseElement<Element> c;
+        c.element = coarse_entity(i);
+        c.shape = detail::dune_shape(c.element.type());
+        const std::size_t corners = topology(c.shape).corners;
+        const auto geometry = c.element.geometry();
+        for (std::size_t k = 0; k < corners; ++k) {
+            c.corners[k] = detail::dune_point(geometry.corner(static_cast<int>(k)));
+            c.ids[k] = id(c.element, k);
+        }
+        if (dimension == 3 && measure(c.shape, std::span(c.corners).first(corners)) < 0) {
+            c.orientation = -1;
+        }
+        return c;
+    }
+    /// \throw GridError where the grid was adapted since this object was made
+    const Rule* split(const Element& e, Context& context) const {
+        return e.isLeaf() ? nullptr : open(e, context.opened_).rule;
+    }
+    void children(const Element& e, std::span<Element> out, Context& context) const {
+        const auto& opened = open(e, context.opened_);
+        std::copy(opened.children.begin(), opened.children.end(), out.begin());
+    }
+
+    void corner_keys(const Element& e, std::span<NodeKey> out) const {
+        for (std::size_t k = 0; k < out.size(); ++k) out[k] = id(e, k);
+    }
+    void new_keys(const Element& e, std::span<NodeKey> out, Context& context) const {
+        const auto& opened = open(e, context.opened_);
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            const ChildCorner at = opened.rule->new_corner[n];
+            out[n] = id(opened.children[at.child], at.corner);
+        }
+    }
+    std::size_t node_count() const requires(leaf_indices_on_branches) {
+        return static_cast<std::size_t>(grid_->leafIndexSet().size(dimension));
+    }
+    void new_positions(const Element& e, NodeMask which, std::span<Point> out,
+                       Context& context) const {
+        for_each_new_corner(e, which, context,
+                            [&](std::size_t n, const Element& child, int corner) {
+                                out[n] = detail::dune_point(child.geometry().corner(corner));
+                            });
+    }
+    bool conforming() const { return Traits::conforming; }
+    /// From the number of elements and vertices: it does not notice that as many vanished as came.
+    std::uint64_t epoch() const {
+        NodeKey sum = static_cast<NodeKey>(grid_->maxLevel());
+        for (const int codimension : {0, dimension}) {
+            sum = detail::mix(sum + static_cast<NodeKey>(grid_->leafIndexSet().size(codimension)));
+        }
+        return static_cast<std::uint64_t>(sum);
+    }
+    /// \throw InvalidInput in another thread than that which made this object, where the Dune grid
+    ///        does not allow several
+    Context make_context() const {
+        if (!Traits::several_threads && std::this_thread::get_id() != thread_) {
+            throw InvalidInput(
+                "this Dune grid can only be walked by the thread that made its adapter");
+        }
+        return {};
+    }
+
+    // What fields need.
+    const DuneType& solver() const { return *grid_; }
+    Element coarse_entity(std::size_t i) const { return grid_->entity(coarse_[i]); }
+    const RuleTable& rules() const { return rules_.table(); }
+
+    /// Calls f(n, child, corner) for every new node n in `which`: a child and its corner there.
+    template <class Function>
+    void for_each_new_corner(const Element& e, NodeMask which, Context& context,
+                             Function&& f) const {
+        const auto& opened = open(e, context.opened_);
+        for (std::size_t n = 0; n < opened.rule->new_nodes.size(); ++n) {
+            if ((which >> n & 1U) == 0) continue;
+            const ChildCorner at = opened.rule->new_corner[n];
+            f(n, opened.children[at.child], static_cast<int>(at.corner));
+        }
+    }
+
+    /// Calls f(leaf, corner) with a leaf that has the given corner of e. O(depth) time.
+    template <class Function>
+    decltype(auto) at_leaf(const Element& e, int corner, Context& context, Function&& f) const {
+        Element leaf = e;
+        while (!leaf.isLeaf()) {
+            const auto& opened = open(leaf, context.below_);
+            const auto [child, at] = child_at_corner(*opened.rule, corner);
+            leaf = Element(opened.children[child]);
+            corner = at;
+        }
+        return f(leaf, corner);
+    }
+
+private:
+    using Opened = typename Context::Opened;
+
+    const Opened& open(const Element& e, Opened& opened) const {
+        if (opened.known && opened.element == e) return opened;
+        opened.known = false;
+        Traits::children(*grid_, e, opened.children);
+        opened.rule = rules_.find(e, opened.children, opened.placed);
+        if (opened.rule == nullptr) {
+            throw GridError("the Dune grid was adapted; its adapter must be made anew");
+        }
+        opened.element = e;
+        opened.known = true;
+        return opened;
+    }
+
+    static std::pair<std::size_t, int> child_at_corner(const Rule& rule, int corner) {
+        for (std::size_t c = 0;; ++c) {
+            const auto& corners = rule.children[c].corner;
+            const int count = topology(rule.children[c].shape).corners;
+            for (int i = 0; i < count; ++i) {
+                if (corners[static_cast<std::size_t>(i)] == corner) return {c, i};
+            }
+        }
+    }
+
+    std::uint64_t id(const Element& e, std::size_t corner) const {
+        const auto i = static_cast<int>(corner);
+        if constexpr (leaf_indices_on_branches) {
+            return static_cast<std::uint64_t>(grid_->leafIndexSet().subIndex(e, i, dimension));
+        } else {
+            return detail::dune_id(grid_->localIdSet().subId(e, i, dimension));
+        }
+    }
+
+    const DuneType* grid_;
+    std::thread::id thread_;
+    std::vector<typename DuneType::template Codim<0>::EntitySeed> coarse_;
+    typename Traits::Rules rules_;
+};
+
+template <class DuneType>
+DuneGrid(const DuneType&) -> DuneGrid<DuneType>;
+
+}  // namespace nestgrid

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The laws that every grid of Dune must obey through its adapter.
+#pragma once
+
+#include <nestgrid/adapters/dune_fields.hpp>
+
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/project.hpp>
+#include <nestgrid/check_grid.hpp>
+
+#include "closedness.hpp"
+
+namespace nestgrid_test {
+
+using namespace nestgrid;
+
+inline constexpr std::array<double, 6> thresholds{0, 0.01, 0.1, 0.3, 1, 10};
+
+/// Values of a function of places at the vertices of the leaf grid, in the order of its indices.
+template <class Solver>
+std::vector<double> at_vertices(const Solver& solver,
+                                const std::function<double(const Point&)>& f) {
+    std::vector<double> values(static_cast<std::size_t>(solver.size(Solver::dimension)));
+    for (const auto& v : vertices(solver.leafGridView())) {
+        const auto i = static_cast<std::size_t>(solver.leafIndexSet().index(v));
+        values[i] = f(nestgrid::detail::dune_point(v.geometry().corner(0)));
+    }
+    return values;
+}
+
+inline double linear(const Point& x) { return 0.25 + x[0] - 2 * x[1] + 0.5 * x[2]; }
+
+inline double ball(const Point& x) {
+    return 0.35 - norm(x - Point{0.51, 0.49, x[2] == 0 ? 0 : 0.5});
+}
+
+template <class Solver>
+std::vector<double> noise(const Solver& solver) {
+    std::mt19937 random(7);
+    return at_vertices(
+        solver, [&](const Point&) { return static_cast<double>(random()) / 4294967296.0 - 0.5; });
+}
+
+/// Nothing to complain about, the volume of the leaves is that of the domain, and linear functions
+/// stay what they are at any threshold.
+template <class Grid>
+void expect_sound(const Grid& grid, double volume) {
+    const auto& solver = grid.solver();
+    const std::vector<double> values = at_vertices(solver, linear);
+    const DuneVertexField field(grid, values);
+    const auto violation = check_grid(grid, field, {.hanging_values = true});
+    ASSERT_FALSE(violation) << violation->sentence;
+
+    const HierarchicalIndicator indicator(grid, field);
+    using Walk = Traversal<Grid, decltype(field), Needs{.keys = true, .positions = true}>;
+    const Walk walk(grid, field, indicator.hanging());
+    for (const double threshold : thresholds) {
+        double sum = 0;
+        double error = 0;
+        std::size_t count = 0;
+        project(walk, Threshold<HierarchicalIndicator>{&indicator, threshold}, [&](const auto& s) {
+            std::array<Point, max_corners> x;
+            walk.positions(s, x);
+            const std::size_t corners = topology(s.shape).corners;
+            const double size = measure(s.shape, std::span(x).first(corners));
+            EXPECT_GT(Grid::dimension == 3 ? s.orientation * size : size, 0);
+            sum += std::abs(size);
+            ++count;
+            for (std::size_t k = 0; k < corners; ++k) {
+                error = std::max(error, std::abs(s.value[k] - linear(x[k])));
+            }
+        });
+        EXPECT_NEAR(sum, volume, 1e-11 * volume);
+        EXPECT_LT(error, 1e-14);
+        if (threshold == 10) {
+            EXPECT_EQ(count, grid.coarse_count());
+        }
+    }
+}
+
+/// Level sets of the vector at any threshold; returns the triangles of the finest.
+template <class Grid>
+std::size_t expect_closed_at_all_thresholds(const Grid& grid, const std::vector<double>& values) {
+    const DuneVertexField field(grid, values);
+    const HierarchicalIndicator indicator(grid, field);
+    std::vector<std::size_t> triangles;
+    for (const double threshold : thresholds) {
+        IsosurfaceOptions options;
+        options.threshold = threshold;
+        options.verify = true;
+        const auto result = isosurface(grid, field, 0, indicator, options);
+        SCOPED_TRACE(threshold);
+        expect_closed(result.surface);
+        triangles.push_back(result.surface.simplices.size());
+    }
+    EXPECT_GT(triangles.front(), triangles.back());
+    return triangles.front();
+}
+
+/// All of it.
+template <class Solver>
+void expect_laws(const Solver& solver, double volume = 1) {
+    const DuneGrid grid(solver);
+    expect_sound(grid, volume);
+    EXPECT_GT(expect_closed_at_all_thresholds(grid, at_vertices(solver, ball)), 8U);
+    EXPECT_GT(expect_closed_at_all_thresholds(grid, noise(solver)), 8U);
+}
+
+/// The sentence with which something is refused.
+template <class Exception, class Function>
+std::string refusal(Function&& function) {
+    try {
+        function();
+    } catch (const Exception& e) {
+        return e.what();
+    }
+    return "nothing was thrown";
+}
+
+/// Marks what a sphere of radius 0.35 about the middle of the unit cube passes near, level by
+/// level. Green elements are judged by the width of their level, not by their own.
+template <class Solver>
+void refine_at_sphere(Solver& solver, int levels, double width) {
+    for (int level = 0; level < levels; ++level) {
+        for (const auto& e : elements(solver.leafGridView())) {
+            auto x = e.geometry().center();
+            x -= Dune::FieldVector<double, Solver::dimension>(0.5);
+            const bool near = std::abs(x.two_norm() - 0.35) < std::ldexp(width, -e.level());
+            if (near && e.level() <= level) solver.mark(1, e);
+        }
+        solver.preAdapt();
+        solver.adapt();
+        solver.postAdapt();
+    }
+}
+
+}  // namespace nestgrid_test
