@@ -21,7 +21,9 @@
 
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/vector.h>
 #include <deal.II/numerics/data_out.h>
@@ -41,6 +43,8 @@
 
 #include <nestgrid/adapters/dealii.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+
+#include "open_edges.hpp"
 
 namespace {
 
@@ -154,6 +158,34 @@ void build(Patches& out, const Problem& p) {
     out.build_patches();
 }
 
+/// The leaves as an unstructured grid, as they come from DataOut: every cell with corners of its
+/// own.
+vtkNew<vtkUnstructuredGrid> leaves_of(const Problem& p, int type) {
+    Patches out;
+    build(out, p);
+    const vtkNew<vtkPoints> points;
+    points->SetDataType(type);
+    const vtkNew<vtkDoubleArray> u;
+    const vtkNew<vtkCellArray> cells;
+    u->SetName("u");
+    for (const auto& patch : out.get_patches()) {
+        std::array<vtkIdType, 8> corner{};
+        // VTK goes around the lower and upper faces.
+        const std::array<unsigned, 8> order{0, 1, 3, 2, 4, 5, 7, 6};
+        for (unsigned k = 0; k < 8; ++k) {
+            const auto& x = patch.vertices[order[k]];
+            corner[k] = points->InsertNextPoint(x[0], x[1], x[2]);
+            u->InsertNextValue(patch.data(0, order[k]));
+        }
+        cells->InsertNextCell(8, corner.data());
+    }
+    vtkNew<vtkUnstructuredGrid> leaves;
+    leaves->SetPoints(points);
+    leaves->SetCells(VTK_HEXAHEDRON, cells);
+    leaves->GetPointData()->SetScalars(u);
+    return leaves;
+}
+
 /// The contour of leaves: by VTK's fast filter for linear cells.
 template <class Input>
 void contour(Input&& connect, Run& run, Clock::time_point start) {
@@ -175,29 +207,7 @@ void contour(Input&& connect, Run& run, Clock::time_point start) {
 Run in_memory(const Problem& p) {
     Run run;
     const auto start = Clock::now();
-    const vtkNew<vtkUnstructuredGrid> leaves;
-    {
-        Patches out;
-        build(out, p);
-        const vtkNew<vtkPoints> points;
-        const vtkNew<vtkDoubleArray> u;
-        const vtkNew<vtkCellArray> cells;
-        u->SetName("u");
-        for (const auto& patch : out.get_patches()) {
-            std::array<vtkIdType, 8> corner{};
-            // VTK goes around the lower and upper faces.
-            const std::array<unsigned, 8> order{0, 1, 3, 2, 4, 5, 7, 6};
-            for (unsigned k = 0; k < 8; ++k) {
-                const auto& x = patch.vertices[order[k]];
-                corner[k] = points->InsertNextPoint(x[0], x[1], x[2]);
-                u->InsertNextValue(patch.data(0, order[k]));
-            }
-            cells->InsertNextCell(8, corner.data());
-        }
-        leaves->SetPoints(points);
-        leaves->SetCells(VTK_HEXAHEDRON, cells);
-        leaves->GetPointData()->SetScalars(u);
-    }
+    const vtkNew<vtkUnstructuredGrid> leaves = leaves_of(p, VTK_FLOAT);
     contour([&](vtkContour3DLinearGrid* filter) { filter->SetInputData(leaves); }, run, start);
     return run;
 }
@@ -224,6 +234,58 @@ Run through_file(const Problem& p) {
 }
 
 void print(const std::string& name, double value) { std::printf("%s %g\n", name.c_str(), value); }
+
+/// Cracks where a level set crosses changes of size.
+void print_cracks(const Problem& p, double value) {
+    using nestgrid::count_edges;
+    using nestgrid::Point;
+    const nestgrid::DealiiGrid<3> grid(p.triangulation);
+    const auto surface =
+        nestgrid::isosurface(grid, nestgrid::DealiiField(grid, p.dofs, p.values), value).surface;
+    nestgrid::Triangles triangles;
+    for (const auto& t : surface.simplices) triangles.push_back({t[0], t[1], t[2]});
+    const auto ours = count_edges(surface.vertices, triangles);
+
+    const vtkNew<vtkContourFilter> filter;
+    filter->SetInputData(leaves_of(p, VTK_DOUBLE));
+    filter->SetValue(0, value);
+    filter->Update();
+    std::vector<Point> points;
+    triangles.clear();
+    for (vtkIdType v = 0; v < filter->GetOutput()->GetNumberOfPoints(); ++v) {
+        points.emplace_back();
+        filter->GetOutput()->GetPoint(v, points.back().data());
+    }
+    vtkIdType n = 0;
+    const vtkIdType* corner = nullptr;
+    for (vtkIdType t = 0; t < filter->GetOutput()->GetNumberOfCells(); ++t) {
+        filter->GetOutput()->GetCellPoints(t, n, corner);
+        if (n != 3) continue;
+        triangles.push_back(
+            {std::size_t(corner[0]), std::size_t(corner[1]), std::size_t(corner[2])});
+    }
+    nestgrid::merge(points, triangles);
+    const auto vtk = count_edges(points, triangles);
+
+    std::vector<dealii::Point<3>> vertices;
+    std::vector<dealii::CellData<2>> cells;
+    const dealii::MappingQ<3> mapping(1);
+    dealii::GridTools::MarchingCubeAlgorithm<3, Vector>(mapping, p.dofs.get_fe())
+        .process(p.dofs, p.values, value, vertices, cells);
+    points.clear();
+    triangles.clear();
+    for (const auto& x : vertices) points.push_back({x[0], x[1], x[2]});
+    for (const auto& c : cells) triangles.push_back({c.vertices[0], c.vertices[1], c.vertices[2]});
+    nestgrid::merge(points, triangles);
+    const auto dealii = count_edges(points, triangles);
+
+    print("cracks_ours_triangles", static_cast<double>(ours.triangles));
+    print("cracks_ours_open_edges", static_cast<double>(ours.open));
+    print("cracks_vtk_triangles", static_cast<double>(vtk.triangles));
+    print("cracks_vtk_open_edges", static_cast<double>(vtk.open));
+    print("cracks_marching_cubes_triangles", static_cast<double>(dealii.triangles));
+    print("cracks_marching_cubes_open_edges", static_cast<double>(dealii.open));
+}
 
 void print_run(const std::string& name, const Run& run) {
     print(name + "_seconds_first", run.first);
@@ -253,6 +315,7 @@ int main(int argc, char** argv) {
         print("dealii_time_ratio_first", memory.first / here.first);
         print("dealii_time_ratio_next", memory.next / here.next);
         print("dealii_file_time_ratio_first", file.first / here.first);
+        print_cracks(problem, 0.1);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "bench_solvers: %s\n", error.what());
         return 1;

@@ -37,6 +37,7 @@
 #include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
+#include "open_edges.hpp"
 #include "sample_grids.hpp"
 
 using namespace nestgrid;
@@ -101,58 +102,8 @@ struct Collect {
     }
 };
 
-struct Row {
-    std::size_t triangles = 0;
-    std::size_t open = 0;
-    std::size_t nonmanifold = 0;
-};
-
-using Triangles = std::vector<std::array<std::size_t, 3>>;
-
-/// Vertices within 1e-10 of each other are made one, for programs that do not number them.
-void merge(std::vector<Point>& vertices, Triangles& triangles) {
-    std::map<std::array<long long, 3>, std::size_t> vertex_of;
-    std::vector<Point> merged;
-    std::vector<std::size_t> number;
-    for (const Point& x : vertices) {
-        const std::array<long long, 3> at{std::llround(x[0] * 1e10), std::llround(x[1] * 1e10),
-                                          std::llround(x[2] * 1e10)};
-        const auto [found, is_new] = vertex_of.insert({at, merged.size()});
-        if (is_new) merged.push_back(x);
-        number.push_back(found->second);
-    }
-    for (auto& t : triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-    vertices = std::move(merged);
-}
-
-/// Edges by the numbers of their vertices; triangles that lost a vertex are left out.
-Row count(const std::vector<Point>& vertices, const Triangles& triangles) {
-    std::map<std::pair<std::size_t, std::size_t>, int> uses;
-    Row row;
-    for (const auto& v : triangles) {
-        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
-        ++row.triangles;
-        for (std::size_t i = 0; i < 3; ++i) ++uses[std::minmax(v[i], v[(i + 1) % 3])];
-    }
-    const auto on_boundary = [&](std::size_t a, std::size_t b) {
-        for (std::size_t d = 0; d < 3; ++d) {
-            for (const double side : {0.0, 1.0}) {
-                if (std::abs(vertices[a][d] - side) < 1e-9 &&
-                    std::abs(vertices[b][d] - side) < 1e-9) {
-                    return true;
-                }
-            }
-        }
-        return false;
-    };
-    for (const auto& [edge, n] : uses) {
-        row.open += n == 1 && !on_boundary(edge.first, edge.second) ? 1 : 0;
-        row.nonmanifold += n > 2 ? 1 : 0;
-    }
-    return row;
-}
-
-void print(const char* mesh, const char* field, const char* by, const Row& row, const Timed& t) {
+void print(const char* mesh, const char* field, const char* by, const EdgeCount& row,
+           const Timed& t) {
     std::printf("| %s | %s | %s | %zu | %zu | %zu | %.3f | %.3f |\n", mesh, field, by,
                 row.triangles, row.open, row.nonmanifold, t.preparation, t.seconds);
 }
@@ -171,7 +122,7 @@ void run_ours(const char* mesh, const char* name, const Grid& grid,
         Triangles triangles;
         for (const auto& t : surface.simplices) triangles.push_back({t[0], t[1], t[2]});
         print(mesh, name, threshold == 0 ? "nestgrid" : "nestgrid, 2 %",
-              count(surface.vertices, triangles), {preparation, seconds});
+              count_edges(surface.vertices, triangles), {preparation, seconds});
     }
 }
 
@@ -219,7 +170,7 @@ void run_vtk(const char* mesh, const char* name, const Leaves& leaves) {
         const auto id = [&](vtkIdType i) { return static_cast<std::size_t>(ids->GetId(i)); };
         triangles.push_back({id(0), id(1), id(2)});
     }
-    print(mesh, name, "VTK", count(vertices, triangles), {preparation, seconds});
+    print(mesh, name, "VTK", count_edges(vertices, triangles), {preparation, seconds});
 }
 
 #ifdef NESTGRID_WITH_DEAL_II
@@ -269,7 +220,7 @@ void run_deal_ii(const char* mesh, const char* name, const Leaves& leaves) {
         triangles.push_back({cell.vertices[0], cell.vertices[1], cell.vertices[2]});
     }
     merge(points, triangles);
-    print(mesh, name, "deal.II", count(points, triangles), {0, seconds});
+    print(mesh, name, "deal.II", count_edges(points, triangles), {0, seconds});
 }
 #endif
 
