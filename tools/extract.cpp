@@ -80,34 +80,31 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
     run.least = indicator.least();
     run.greatest = indicator.greatest();
     const nestgrid::TbbExecutor executor(request.threads);
-    const auto extract_with = [&](const auto& criterion_at) {
-        for (const std::uint64_t budget : request.budgets) {
-            run.surfaces.push_back(
-                extract_one(grid, field, criterion_at, indicator, 0, budget, executor, request));
-        }
-        for (const ThresholdText& t : request.thresholds) {
-            const double threshold =
-                t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
-            run.surfaces.push_back(
-                extract_one(grid, field, criterion_at, indicator, threshold, 0, executor, request));
-        }
-    };
+    // One kind of criterion, with a region that may be empty: each would be compiled for every grid.
+    nestgrid::Region region;
+    double inside = 0;
     if (request.box) {
         if (request.progress) request.progress("region");
         const FineBox& box = *request.box;
-        const nestgrid::Region region(grid, [&](const nestgrid::Point& x) {
+        inside = box.threshold;
+        region = nestgrid::Region(grid, [&](const nestgrid::Point& x) {
             for (std::size_t d = 0; d < Grid::dimension; ++d) {
                 if (x[d] < box.bounds[2 * d] || x[d] > box.bounds[2 * d + 1]) return false;
             }
             return true;
         });
-        extract_with([&](double threshold) {
-            return nestgrid::fine_inside(region, indicator, threshold, box.threshold);
-        });
-    } else {
-        extract_with([&](double threshold) {
-            return nestgrid::Threshold<nestgrid::HierarchicalIndicator>{&indicator, threshold};
-        });
+    }
+    const auto criterion_at = [&](double threshold) {
+        return nestgrid::fine_inside(region, indicator, threshold, inside);
+    };
+    for (const std::uint64_t budget : request.budgets) {
+        run.surfaces.push_back(
+            extract_one(grid, field, criterion_at, indicator, 0, budget, executor, request));
+    }
+    for (const ThresholdText& t : request.thresholds) {
+        const double threshold = t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
+        run.surfaces.push_back(
+            extract_one(grid, field, criterion_at, indicator, threshold, 0, executor, request));
     }
 }
 

@@ -260,7 +260,7 @@ struct OneCellField {
 
 /// Says that the level set may be anywhere.
 struct Everywhere {
-    double stop(NodeKey) const { return 0; }
+    double offset_bound(NodeKey) const { return 0; }
     double bound(std::span<const NodeKey>) const { return std::numeric_limits<double>::infinity(); }
     const HangingNodes* hanging() const { return nullptr; }
     std::uint64_t epoch() const { return epoch_; }

@@ -69,7 +69,10 @@ struct Both {
     static constexpr bool saturated = A::saturated && B::saturated;
     A a;
     B b;
-    NodeMask operator()(const NewNodes& nodes) const { return a(nodes) & b(nodes); }
+    NodeMask operator()(const NewNodes& nodes) const {
+        const NodeMask first = a(nodes);
+        return first == 0 ? first : first & b(nodes);
+    }
 };
 
 template <Criterion A, Criterion B>

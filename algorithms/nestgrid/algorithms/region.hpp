@@ -25,6 +25,8 @@ class Region {
 public:
     static constexpr bool saturated = true;
 
+    /// An empty region.
+    Region() = default;
     /// \param inside whether a point lies in the region: bool(const Point&)
     template <class Grid, class Inside>
     Region(const Grid& grid, Inside&& inside) : dense_(dense_key_count(grid), 0) {
