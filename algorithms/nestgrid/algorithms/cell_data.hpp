@@ -7,7 +7,7 @@
 // the interpolant in its place.
 //
 // Invariant: the mean of equal values is that value, to the last bit, so that plateaus stay flat.
-// Memory: O(nodes), 48 to 96 bytes a node, and half as much again while it is built.
+// Memory: O(nodes), 48 to 96 bytes a node, and 64 to 128 more while it is built.
 #pragma once
 
 #include <concepts>

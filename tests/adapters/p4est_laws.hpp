@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What every forest must be, whatever its connectivity, its balance and the data on it.
+#pragma once
+
+#include <nestgrid/algorithms/project.hpp>
+#include <nestgrid/any_grid.hpp>
+#include <nestgrid/check_grid.hpp>
+
+#include "p4est_samples.hpp"
+
+namespace nestgrid_test {
+
+class Mpi : public testing::Environment {
+public:
+    void SetUp() override {
+        MPI_Init(nullptr, nullptr);
+        sc_init(sc_MPI_COMM_WORLD, 0, 0, nullptr, SC_LP_SILENT);
+        p4est_init(nullptr, SC_LP_SILENT);
+    }
+    void TearDown() override { MPI_Finalize(); }
+};
+[[maybe_unused]] inline const auto* const mpi = testing::AddGlobalTestEnvironment(new Mpi);
+
+inline constexpr std::array<double, 6> thresholds{0, 0.01, 0.1, 0.3, 1, 10};
+
+/// Calls function(name, forest, map) for forests over all kinds of connectivities.
+template <int dim, class Function>
+void for_each_forest(bool balanced, Function&& function) {
+    const auto call = [&](const char* name, Forest<dim>&& forest, unsigned seed, int depth,
+                          const auto& map) {
+        SCOPED_TRACE(std::string(name) + (balanced ? ", balanced" : ", unbalanced"));
+        forest.refine_at_random(seed, depth);
+        if (balanced) forest.balance();
+        function(name, forest, map);
+    };
+    const P4estVertices straight;
+    if constexpr (dim == 2) {
+        call("square", Forest<2>(p4est_connectivity_new_unitsquare()), 1, 9, straight);
+        call("brick", Forest<2>(p4est_connectivity_new_brick(3, 2, 0, 0)), 2, 7, straight);
+        call("star", Forest<2>(p4est_connectivity_new_star()), 3, 5, straight);
+        call("cubed", Forest<2>(p4est_connectivity_new_cubed()), 4, 6, straight);
+        call("moebius", Forest<2>(p4est_connectivity_new_moebius()), 5, 6, straight);
+        // A ring of four trees, periodic in one direction, which the map closes.
+        call("ring", Forest<2>(p4est_connectivity_new_brick(4, 1, 1, 0)), 6, 6,
+             [](std::size_t tree, const Point& r) {
+                 const double angle = 0.5 * M_PI * (static_cast<double>(tree) + r[0]);
+                 return (1 + r[1]) * Point{std::cos(angle), std::sin(angle), 0};
+             });
+    } else {
+        call("cube", Forest<3>(p8est_connectivity_new_unitcube()), 8, 5, straight);
+        call("brick", Forest<3>(p8est_connectivity_new_brick(2, 2, 1, 0, 0, 0)), 2, 4, straight);
+        call("rotated cubes", Forest<3>(p8est_connectivity_new_rotcubes()), 3, 4, straight);
+        call("two trees", Forest<3>(p8est_connectivity_new_twotrees(1, 4, 3)), 4, 4, straight);
+        Forest<3> shell(p8est_connectivity_new_shell());
+        p8est_geometry_t* geometry = p8est_geometry_new_shell(&shell.connectivity(), 1, 0.55);
+        call("shell", std::move(shell), 5, 2, P4estGeometry{geometry});
+        p8est_geometry_destroy(geometry);
+    }
+}
+
+template <class Function>
+void for_each_forest(Function&& function) {
+    for (const bool balanced : {false, true}) {
+        for_each_forest<2>(balanced, function);
+        for_each_forest<3>(balanced, function);
+    }
+}
+
+inline std::vector<double> noise(std::size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<double> values(count);
+    for (double& v : values) v = static_cast<double>(random()) / 4294967296.0 - 0.5;
+    return values;
+}
+
+// The laws are asked through the function table, so that they are compiled once; the large forest
+// is walked without it.
+template <int dim, class Real>
+void expect_contract(const AnyGrid<dim>& grid, const AnyField<Real>& field,
+                     const CheckOptions& options = {}) {
+    const auto violation = check_grid(grid, field, options);
+    EXPECT_FALSE(violation) << violation->sentence;
+}
+
+template <class Grid, class Field>
+void expect_sound(const Grid& grid, const Field& field, const CheckOptions& options = {}) {
+    expect_contract(AnyGrid<Grid::dimension>(grid),
+                    AnyField<typename Field::value_type>(grid, field), options);
+}
+
+/// In two dimensions on a surface that cannot be oriented: every vertex ends two segments.
+template <class Element>
+void expect_lines(const Surface<2, Element>& lines) {
+    std::vector<int> ends(lines.vertices.size(), 0);
+    for (const auto& segment : lines.simplices) {
+        for (const auto v : segment) ++ends[v];
+    }
+    for (const auto& [v] : lines.boundary) ++ends[v];
+    for (const int n : ends) EXPECT_EQ(n, 2);
+}
+
+struct Expected {
+    bool orientable = true;
+    bool generic = true;  ///< no offset is exactly 0, so that nothing stops at threshold 0
+};
+
+template <int dim>
+void expect_closed_surfaces(const AnyGrid<dim>& grid, const AnyField<double>& field,
+                            const Expected& expected) {
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : thresholds) {
+        SCOPED_TRACE("threshold " + std::to_string(threshold));
+        const auto result =
+            isosurface(grid, field, 0, indicator, {.threshold = threshold, .verify = true});
+        if constexpr (dim == 2) {
+            if (expected.orientable) expect_closed(result.surface);
+            if (!expected.orientable) expect_lines(result.surface);
+        } else {
+            expect_closed(result.surface);
+        }
+        const bool crossed = indicator.least() < 0 && indicator.greatest() > 0;
+        EXPECT_TRUE(threshold > 0 || !crossed || !result.surface.simplices.empty());
+        auto context = grid.make_context();
+        for (const auto& e : result.surface.elements) {
+            EXPECT_TRUE(threshold > 0 || !expected.generic || grid.split(e, context) == nullptr);
+        }
+    }
+}
+
+template <class Grid, class Field>
+void expect_closed_at_all_thresholds(const Grid& grid, const Field& field,
+                                     const Expected& expected) {
+    expect_closed_surfaces(AnyGrid<Grid::dimension>(grid), AnyField<double>(grid, field), expected);
+}
+
+template <class Function>
+std::string sentence(Function&& function) {
+    try {
+        function();
+    } catch (const InvalidInput& error) {
+        return error.what();
+    }
+    return "";
+}
+
+inline void expect_part(const std::string& got, const std::string& part) {
+    EXPECT_NE(got.find(part), std::string::npos) << got;
+}
+
+}  // namespace nestgrid_test
