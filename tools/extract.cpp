@@ -80,7 +80,8 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
     run.least = indicator.least();
     run.greatest = indicator.greatest();
     const nestgrid::TbbExecutor executor(request.threads);
-    // One kind of criterion, with a region that may be empty: each would be compiled for every grid.
+    // One kind of criterion, with a region that may be empty: each would be compiled for every
+    // grid.
     nestgrid::Region region;
     double inside = 0;
     if (request.box) {
