@@ -61,7 +61,7 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
         std::array<NodeKey, max_corners> corner_key;
         keys(s, corner_key);
         const auto key = [&](std::uint8_t n) { return n < corners ? corner_key[n] : nodes.key[n]; };
-        std::array<Point, node_capacity_> own;
+        std::array<Point, node_capacity_> own{};
         const Point* position = own.data();
         if (own_positions_ || !State::carries_positions) {
             positions(s, std::span<Point>(own.data(), max_corners));
