@@ -3,6 +3,7 @@
 //
 // UGGrid as a nested grid: red-green tetrahedra, hexahedra with hanging nodes and with green
 // closures, prisms, the same in the plane, and a boundary that vertices are moved onto.
+#include <algorithm>
 #include <map>
 
 #include <dune/common/parallel/mpihelper.hh>
@@ -22,6 +23,22 @@ std::unique_ptr<UGGrid<3>> prisms() {
     }
     factory.insertElement(Dune::GeometryTypes::prism, {0, 1, 2, 4, 5, 6});
     factory.insertElement(Dune::GeometryTypes::prism, {1, 3, 2, 5, 7, 6});
+    return factory.createGrid();
+}
+
+/// Eight tetrahedra about a point, long and short and their corners in another order each, so that
+/// red refinement cuts their octahedra along each of the three diagonals.
+std::unique_ptr<UGGrid<3>> crooked_octahedron() {
+    Dune::GridFactory<UGGrid<3>> factory;
+    const std::array<Dune::FieldVector<double, 3>, 7> x{
+        {{0.1, 0.2, -0.1}, {1, 0, 0}, {-3, 0, 0}, {0, 2, 0}, {0, -1, 0.3}, {0, 0, 5}, {0, 0, -1}}};
+    for (const auto& v : x) factory.insertVertex(v);
+    for (unsigned i = 0; i < 8; ++i) {
+        std::vector<unsigned> corners{0, 1 + (i & 1U), 3 + (i >> 1U & 1U), 5 + (i >> 2U)};
+        std::rotate(corners.begin(), corners.begin() + i % 4, corners.end());
+        if (i % 3 == 0) std::swap(corners[1], corners[2]);
+        factory.insertElement(Dune::GeometryTypes::simplex(3), corners);
+    }
     return factory.createGrid();
 }
 
@@ -149,6 +166,10 @@ TEST(DuneUG, RulesAreThoseOfGeometryInFather) {
         expect_same_as_generic(*closed);
     }
     expect_same_as_generic(*hanging_cubes<3>(3, 3, 0.15));
+    const auto crooked = crooked_octahedron();
+    crooked->globalRefine(2);
+    EXPECT_EQ(DuneGrid(*crooked).rules().size(), 3U);
+    expect_same_as_generic(*crooked);
     const auto wedges = prisms();
     wedges->globalRefine(3);
     expect_same_as_generic(*wedges);

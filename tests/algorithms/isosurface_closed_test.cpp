@@ -122,6 +122,7 @@ public:
         });
     }
     double stop(NodeKey node) const { return offset_[static_cast<std::size_t>(node)]; }
+    double offset_bound(NodeKey node) const { return stop(node); }
     double bound(std::span<const NodeKey> nodes) const { return good_->bound(nodes); }
     const HangingNodes* hanging() const { return nullptr; }
     std::uint64_t epoch() const { return 0; }
