@@ -23,7 +23,7 @@ namespace nestgrid {
 /// InvalidateField(). Failures are reported as errors of the algorithm, with an empty output.
 class IsosurfaceSource : public vtkPolyDataAlgorithm {
 public:
-    vtkTypeMacro(IsosurfaceSource, vtkPolyDataAlgorithm);
+    vtkTypeMacro(IsosurfaceSource, vtkPolyDataAlgorithm)
     static IsosurfaceSource* New() { VTK_STANDARD_NEW_BODY(IsosurfaceSource); }
 
     /// Both must outlive the source.
