@@ -23,7 +23,7 @@ namespace nestgrid {
 /// InvalidateField(). Failures are reported as errors of the algorithm, with an empty output.
 class IsosurfaceSource : public vtkPolyDataAlgorithm {
 public:
-    vtkTypeMacro(IsosurfaceSource, vtkPolyDataAlgorithm)
+    using Superclass = vtkPolyDataAlgorithm;
     static IsosurfaceSource* New() { VTK_STANDARD_NEW_BODY(IsosurfaceSource); }
 
     /// Both must outlive the source.
@@ -84,6 +84,7 @@ public:
 protected:
     IsosurfaceSource() { SetNumberOfInputPorts(0); }
 
+    const char* GetClassNameInternal() const override { return "IsosurfaceSource"; }
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* out) override {
         vtkPolyData* output = vtkPolyData::GetData(out);
         if (!extract_) {
