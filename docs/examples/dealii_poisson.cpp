@@ -232,7 +232,11 @@ int main(int argc, char** argv) {
             const vtkNew<vtkXMLPolyDataWriter> writer;
             writer->SetInputData(nestgrid::make_poly_data(result.surface));
             writer->SetFileName((folder + "/surface-" + std::to_string(cycle) + ".vtp").c_str());
-            if (writer->Write() != 1) return 1;
+            writer->Write();
+            if (writer->GetErrorCode() != 0) {
+                std::fprintf(stderr, "a surface could not be written to %s\n", folder.c_str());
+                return 1;
+            }
         }
     }
     return 0;
