@@ -21,6 +21,7 @@
 // Memory: O(nodes), 4 bytes (plus 16 to 48 for a hash table where node keys are not dense).
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -273,9 +274,10 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
             detail::call_new_values(field, *s.context, s.element, rule.all(),
                                     std::span<Real>(given.data(), rule.new_nodes.size() * stride));
         if ((missing & which) != 0) {
-            throw GridError("the field has no value at a new node of an element on level " +
-                            std::to_string(s.level) + " below coarse element " +
-                            std::to_string(s.coarse));
+            throw GridError("the field has no value at new node " +
+                            std::to_string(std::countr_zero(missing & which)) +
+                            " of an element on level " + std::to_string(s.level) +
+                            " below coarse element " + std::to_string(s.coarse));
         }
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             const Stencil& stencil = rule.new_nodes[n];
