@@ -137,11 +137,11 @@ TEST(P4estCellValues, BecomeMeansAroundNodes) {
 TEST(P4estCellValues, PlateausStayFlat) {
     for_each_forest<3>(false, [](const char*, const auto& forest, const auto& map) {
         const P4estGrid grid(forest.get(), map);
-        const std::vector<float> values(grid.leaf_count(), 0.1F);
+        const std::vector<double> values(grid.leaf_count(), 0.1);
         const CellAverages field(grid, P4estCellValues(grid, values));
         const HierarchicalIndicator indicator(grid, field);
-        EXPECT_EQ(indicator.least(), static_cast<double>(0.1F));
-        EXPECT_EQ(indicator.greatest(), static_cast<double>(0.1F));
+        EXPECT_EQ(indicator.least(), 0.1);
+        EXPECT_EQ(indicator.greatest(), 0.1);
     });
 }
 

@@ -53,6 +53,10 @@ void for_each_forest(bool balanced, Function&& function) {
         call("brick", Forest<3>(p8est_connectivity_new_brick(2, 2, 1, 0, 0, 0)), 2, 4, straight);
         call("rotated cubes", Forest<3>(p8est_connectivity_new_rotcubes()), 3, 4, straight);
         call("two trees", Forest<3>(p8est_connectivity_new_twotrees(1, 4, 3)), 4, 4, straight);
+        Forest<3> mirrored(p8est_connectivity_new_brick(2, 1, 1, 0, 0, 0));
+        double* const x = mirrored.connectivity().vertices;
+        for (p4est_topidx_t v = 0; v < mirrored.connectivity().num_vertices; ++v) x[3 * v] *= -1;
+        call("mirrored", std::move(mirrored), 6, 4, straight);
         Forest<3> shell(p8est_connectivity_new_shell());
         p8est_geometry_t* geometry = p8est_geometry_new_shell(&shell.connectivity(), 1, 0.55);
         call("shell", std::move(shell), 5, 2, P4estGeometry{geometry});

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Forests of p4est and p8est: the laws of a nested grid, closed surfaces, refusals.
+#include <map>
 #include <set>
 
 #include "p4est_laws.hpp"
@@ -68,6 +69,75 @@ TEST(P4estGrid, LeavesFillTheTrees) {
             EXPECT_NEAR(volume / trees, 1, 1e-12);
         }
     });
+}
+
+/// Squares or cubes at lattice points, connected in all their corners, edges and faces.
+template <int dim>
+Forest<dim> lattice_forest(const std::vector<std::array<int, 3>>& trees) {
+    const auto count = static_cast<p4est_topidx_t>(trees.size());
+    std::map<std::array<int, 3>, p4est_topidx_t> vertices;
+    std::vector<p4est_topidx_t> tree_to_vertex;
+    for (const auto& tree : trees) {
+        for (int c = 0; c < 1 << dim; ++c) {
+            const std::array<int, 3> at{tree[0] + (c & 1), tree[1] + (c >> 1 & 1),
+                                        tree[2] + (c >> 2)};
+            const auto next = static_cast<p4est_topidx_t>(vertices.size());
+            tree_to_vertex.push_back(vertices.try_emplace(at, next).first->second);
+        }
+    }
+    typename P4estTypes<dim>::Connectivity* connectivity = nullptr;
+    if constexpr (dim == 2) {
+        connectivity =
+            p4est_connectivity_new(static_cast<p4est_topidx_t>(vertices.size()), count, 0, 0);
+    } else {
+        connectivity =
+            p8est_connectivity_new(static_cast<p4est_topidx_t>(vertices.size()), count, 0, 0, 0, 0);
+    }
+    for (const auto& [at, v] : vertices) {
+        for (std::size_t d = 0; d < 3; ++d) {
+            connectivity->vertices[3 * static_cast<std::size_t>(v) + d] = at[d];
+        }
+    }
+    std::copy(tree_to_vertex.begin(), tree_to_vertex.end(), connectivity->tree_to_vertex);
+    for (p4est_topidx_t t = 0; t < count; ++t) {
+        for (int f = 0; f < 2 * dim; ++f) {
+            connectivity->tree_to_tree[2 * dim * t + f] = t;
+            connectivity->tree_to_face[2 * dim * t + f] = static_cast<int8_t>(f);
+        }
+    }
+    if constexpr (dim == 2) p4est_connectivity_complete(connectivity);
+    if constexpr (dim == 3) p8est_connectivity_complete(connectivity);
+    return Forest<dim>(connectivity);
+}
+
+template <int dim>
+void check_touching(const std::vector<std::array<int, 3>>& trees) {
+    Forest<dim> forest = lattice_forest<dim>(trees);
+    forest.refine_at_random(3, 4);
+    const P4estGrid grid(static_cast<const typename P4estTypes<dim>::Forest*>(forest.get()));
+    std::map<Point, NodeKey> key_of;
+    KeyTable<NodeKey, Point> place_of;
+    for_each_leaf(grid, [&](const auto& s, const auto& walk) {
+        std::array<NodeKey, max_corners> keys;
+        std::array<Point, max_corners> x;
+        walk.keys(s, keys);
+        walk.positions(s, x);
+        for (std::size_t c = 0; c < std::size_t(s.corner_count()); ++c) {
+            EXPECT_EQ(key_of.try_emplace(x[c], keys[c]).first->second, keys[c]);
+            EXPECT_EQ(*place_of.insert(keys[c], x[c]).first, x[c]);
+        }
+    });
+    const ZeroField<std::decay_t<decltype(grid)>> zero;
+    expect_sound(grid, zero);
+}
+
+TEST(P4estGrid, TreesMayTouchInAnEdgeOrACorner) {
+    check_touching<2>({{0, 0, 0}, {1, 1, 0}});
+    check_touching<2>({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}});
+    check_touching<3>({{0, 0, 0}, {1, 1, 0}});
+    check_touching<3>({{0, 0, 0}, {0, 1, 1}, {1, 0, 1}});
+    check_touching<3>({{0, 0, 0}, {1, 1, 1}});
+    check_touching<3>({{0, 0, 0}, {1, 1, 0}, {0, 0, 2}, {1, 1, 1}});
 }
 
 /// Whatever the faces through which two trees meet and the turn between them; p4est 2.2 has no
