@@ -4,13 +4,14 @@
 
 #include <malloc.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
 namespace {
 
-std::size_t allocations = 0;
-std::size_t bytes = 0;
+std::atomic<std::size_t> allocations = 0;
+std::atomic<std::size_t> bytes = 0;
 
 void release(void* block) {
     if (block != nullptr) bytes -= malloc_usable_size(block);
