@@ -32,8 +32,8 @@ struct FineBox {
 struct ExtractionRequest {
     double isovalue = 0;
     std::vector<ThresholdText> thresholds{};
-    std::vector<std::uint64_t>
-        budgets{};  ///< triangles at most, beside which there are no thresholds
+    /// Triangles at most, beside which there are no thresholds.
+    std::vector<std::uint64_t> budgets{};
     std::optional<FineBox> box{};
     int threads = 0;  ///< 0: all
     bool cap = false;

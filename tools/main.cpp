@@ -91,8 +91,7 @@ FineBox fine_box(const Options& o) {
     for (std::size_t d = 0; d < 3; ++d) {
         if (!(box.bounds[2 * d] <= box.bounds[2 * d + 1])) {
             throw nestgrid::InvalidInput(
-                "--box is empty: its bounds are x,x,y,y,z,z in ascending "
-                "order");
+                "--box is empty: its bounds are x,x,y,y,z,z in ascending order");
         }
     }
     if (!(box.threshold >= 0)) {

@@ -11,7 +11,7 @@
 // Costs O(nodes) memory while it runs, and keeps the keys of hanging nodes.
 #pragma once
 
-#include <nestgrid/traversal.hpp>
+#include <nestgrid/levels.hpp>
 
 namespace nestgrid {
 
@@ -137,38 +137,6 @@ private:
     HangingNodes hanging_;
 };
 
-template <class Walk>
-struct CollectNodes {
-    const Walk& walk;
-    HangingProbe& probe;
-    template <class State>
-    Decision inspect(const State& s, const Split& split) {
-        if (split.rule == nullptr) return {};
-        std::array<NodeKey, max_corners> keys;
-        walk.keys(s, keys);
-        probe.add_nodes(*split.rule, keys, split.keys);
-        return {};
-    }
-    template <class State>
-    void extract(const State&) {}
-};
-
-template <class Walk>
-struct ProbeLeaves {
-    const Walk& walk;
-    HangingProbe& probe;
-    template <class State>
-    Decision inspect(const State&, const Split&) {
-        return {};
-    }
-    template <class State>
-    void extract(const State& s) {
-        std::array<NodeKey, max_corners> keys;
-        walk.keys(s, keys);
-        probe.probe_leaf(s.shape, std::span<const NodeKey>(keys.data(), max_corners));
-    }
-};
-
 }  // namespace detail
 
 /// The hanging nodes of a grid.
@@ -177,10 +145,17 @@ HangingNodes derive_hanging_nodes(const Grid& grid) {
     const ZeroField<Grid> zero;
     const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
     detail::HangingProbe probe;
-    detail::CollectNodes<decltype(walk)> collect{walk, probe};
-    walk.run(collect);
-    detail::ProbeLeaves<decltype(walk)> leaves{walk, probe};
-    walk.run(leaves);
+    std::array<NodeKey, max_corners> keys;
+    for_each_element<true>(walk, [&](const auto& s, const Split& split) {
+        if (split.rule == nullptr) return;
+        walk.keys(s, keys);
+        probe.add_nodes(*split.rule, keys, split.keys);
+    });
+    for_each_element(walk, [&](const auto& s, const Split& split) {
+        if (split.rule != nullptr) return;
+        walk.keys(s, keys);
+        probe.probe_leaf(s.shape, keys);
+    });
     return probe.take();
 }
 

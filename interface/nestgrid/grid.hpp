@@ -5,15 +5,14 @@
 // on it. Everything else is derived by the library.
 //
 // A grid is a class with
-//     using Element = ...;                         a value: copied without heap,
-//     default-constructible static constexpr int dimension = 2;          of the elements: 1, 2 or 3
+//     using Element = ...;                         a value, copied without heap
+//     static constexpr int dimension = 2;          of the elements: 1, 2 or 3
 //     std::size_t coarse_count() const;
 //     CoarseElement<Element> coarse(std::size_t i) const;
-//     const Rule* split(const Element& e) const;   nullptr on a leaf; rules live as long as the
-//     grid void children(const Element& e, std::span<Element> out) const;
-//                                                  out has one place per child of the rule, in
-//                                                  order
-// and a field on it one with
+//     const Rule* split(const Element& e) const;   nullptr on a leaf
+//     void children(const Element& e, std::span<Element> out) const;
+// An Element can be default-constructed. Rules live as long as the grid; `out` has one place for
+// each child of the rule, in its order. A field on it is one with
 //     using value_type = float or double;
 //     static constexpr int components = 1;         optional
 //     NodeMask coarse_values(std::size_t i, std::span<value_type> out) const;

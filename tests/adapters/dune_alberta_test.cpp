@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include <dune/common/parallel/mpihelper.hh>
 #include <dune/grid/albertagrid.hh>
 #include <dune/grid/albertagrid/gridfactory.hh>
 
 #include "dune_laws.hpp"
-#include "thread_executor.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -75,19 +73,7 @@ TEST(DuneAlberta, ManyElements) {
 
 TEST(DuneAlberta, RefusesOtherThreads) {
     const auto solver = bisected(dim, dim, 0.3);
-    const DuneGrid grid(*solver);
-    const std::vector<double> values = noise(*solver);
-    const DuneVertexField field(grid, values);
-    const HierarchicalIndicator indicator(grid, field);
-    EXPECT_EQ(refusal<InvalidInput>(
-                  [&] { isosurface(grid, field, 0, indicator, {}, ThreadExecutor(2)); }),
-              "this Dune grid can only be walked by the thread that made its adapter");
+    expect_one_thread_only(DuneGrid(*solver));
 }
 
 }  // namespace
-
-int main(int count, char** arguments) {
-    Dune::MPIHelper::instance(count, arguments);
-    testing::InitGoogleTest(&count, arguments);
-    return RUN_ALL_TESTS();
-}

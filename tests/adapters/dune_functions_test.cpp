@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Vectors of dune-istl and functions of dune-functions on nested grids of Dune.
-#include <dune/common/parallel/mpihelper.hh>
 #include <dune/functions/functionspacebases/interpolate.hh>
 #include <dune/functions/functionspacebases/lagrangebasis.hh>
 #include <dune/functions/gridfunctions/discreteglobalbasisfunction.hh>
@@ -56,9 +55,3 @@ TEST(DuneFunctions, LagrangeOfFirstOrder) { expect_function_is_seen<1>(); }
 TEST(DuneFunctions, LagrangeOfSecondOrderAtVertices) { expect_function_is_seen<2>(); }
 
 }  // namespace
-
-int main(int count, char** arguments) {
-    Dune::MPIHelper::instance(count, arguments);
-    testing::InitGoogleTest(&count, arguments);
-    return RUN_ALL_TESTS();
-}

@@ -18,12 +18,12 @@
 #include <nestgrid/check_grid.hpp>
 
 #include "closedness.hpp"
+#include "refusal.hpp"
+#include "thread_executor.hpp"
 
 namespace nestgrid_test {
 
 using namespace nestgrid;
-
-inline constexpr std::array<double, 6> thresholds{0, 0.01, 0.1, 0.3, 1, 10};
 
 /// Values of a function of places at the vertices of the leaf grid, in the order of its indices.
 template <class Solver>
@@ -46,8 +46,7 @@ inline double ball(const Point& x) {
 template <class Solver>
 std::vector<double> noise(const Solver& solver) {
     std::mt19937 random(7);
-    return at_vertices(
-        solver, [&](const Point&) { return static_cast<double>(random()) / 4294967296.0 - 0.5; });
+    return at_vertices(solver, [&](const Point&) { return uniform(random) - 0.5; });
 }
 
 /// Nothing to complain about, the volume of the leaves is that of the domain, and linear functions
@@ -63,7 +62,7 @@ void expect_sound(const Grid& grid, double volume) {
     const HierarchicalIndicator indicator(grid, field);
     using Walk = Traversal<Grid, decltype(field), Needs{.keys = true, .positions = true}>;
     const Walk walk(grid, field, indicator.hanging());
-    for (const double threshold : thresholds) {
+    for (const double threshold : six_thresholds) {
         double sum = 0;
         double error = 0;
         std::size_t count = 0;
@@ -93,7 +92,7 @@ std::size_t expect_closed_at_all_thresholds(const Grid& grid, const std::vector<
     const DuneVertexField field(grid, values);
     const HierarchicalIndicator indicator(grid, field);
     std::vector<std::size_t> triangles;
-    for (const double threshold : thresholds) {
+    for (const double threshold : six_thresholds) {
         IsosurfaceOptions options;
         options.threshold = threshold;
         options.verify = true;
@@ -115,15 +114,14 @@ void expect_laws(const Solver& solver, double volume = 1) {
     EXPECT_GT(expect_closed_at_all_thresholds(grid, noise(solver)), 8U);
 }
 
-/// The sentence with which something is refused.
-template <class Exception, class Function>
-std::string refusal(Function&& function) {
-    try {
-        function();
-    } catch (const Exception& e) {
-        return e.what();
-    }
-    return "nothing was thrown";
+/// A grid that does not allow several threads.
+template <class Grid>
+void expect_one_thread_only(const Grid& grid) {
+    const std::vector<double> values = noise(grid.solver());
+    const DuneVertexField field(grid, values);
+    const HierarchicalIndicator indicator(grid, field);
+    EXPECT_EQ(refusal([&] { isosurface(grid, field, 0, indicator, {}, ThreadExecutor(2)); }),
+              "this Dune grid can only be walked by the thread that made its adapter");
 }
 
 /// Marks what a sphere of radius 0.35 about the middle of the unit cube passes near, level by

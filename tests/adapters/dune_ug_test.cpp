@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include <dune/common/parallel/mpihelper.hh>
-
 #include "dune_ug_grids.hpp"
-#include "thread_executor.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -247,9 +244,3 @@ TEST(DuneUG, ThreadsDrawTheSame) {
 }
 
 }  // namespace
-
-int main(int count, char** arguments) {
-    Dune::MPIHelper::instance(count, arguments);
-    testing::InitGoogleTest(&count, arguments);
-    return RUN_ALL_TESTS();
-}

@@ -13,6 +13,7 @@
 #include <nestgrid/check_grid.hpp>
 
 #include "counting_allocator.hpp"
+#include "refusal.hpp"
 #include "sample_grids.hpp"
 
 using namespace nestgrid;
@@ -207,13 +208,10 @@ TEST(LinearOctree, WalksUnbalancedTreesInPlace) {
 }
 
 std::string sentence(const std::vector<Octant>& leaves, int levels = depth) {
-    try {
+    return refusal([&] {
         const std::vector<std::span<const Octant>> tree{leaves};
         const LinearOctree<3, Octant> grid(hexahedra(1), tree, levels);
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "";
+    });
 }
 
 TEST(LinearOctree, RefusesWrongArrays) {

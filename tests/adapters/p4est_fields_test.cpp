@@ -216,7 +216,7 @@ TEST(P4estFields, LargeForestsAreReadInPlace) {
 
     const HierarchicalIndicator indicator(grid, field);
     EXPECT_LE(indicator.hanging_violation(), 0);
-    for (const double threshold : thresholds) {
+    for (const double threshold : six_thresholds) {
         const auto one = isosurface(grid, field, 0, indicator, {.threshold = threshold});
         expect_closed(one.surface);
         const auto two =
@@ -266,7 +266,7 @@ TEST(P4estFields, RefuseWhatDoesNotFit) {
     const auto quadratic = forest.nodes(2);
     const std::vector<double> values(25);
     const auto field = [&](const p4est_lnodes_t* of, std::size_t count) {
-        return sentence(
+        return refusal(
             [&] { P4estNodalField nodal(grid, of, std::span<const double>(values).first(count)); });
     };
     EXPECT_EQ(field(nodes.get(), 25), "");
@@ -276,9 +276,9 @@ TEST(P4estFields, RefuseWhatDoesNotFit) {
               "the lnodes belong to another forest: they number 1 elements, but there are 16 "
               "leaves");
     EXPECT_EQ(field(nodes.get(), 24), "there are 24 values, but the lnodes number 25 nodes");
-    EXPECT_EQ(sentence([&] { P4estBalancedGrid balanced(forest.get(), quadratic.get()); }),
+    EXPECT_EQ(refusal([&] { P4estBalancedGrid balanced(forest.get(), quadratic.get()); }),
               "the lnodes have degree 2, not 1");
-    EXPECT_EQ(sentence([&] { P4estCellValues cells(grid, values); }),
+    EXPECT_EQ(refusal([&] { P4estCellValues cells(grid, values); }),
               "there are 25 values of cells, but 16 leaves");
 }
 

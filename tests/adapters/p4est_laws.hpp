@@ -9,6 +9,8 @@
 #include <nestgrid/check_grid.hpp>
 
 #include "p4est_samples.hpp"
+#include "refusal.hpp"
+#include "solver_laws.hpp"
 
 namespace nestgrid_test {
 
@@ -22,8 +24,6 @@ public:
     void TearDown() override { MPI_Finalize(); }
 };
 [[maybe_unused]] inline const auto* const mpi = testing::AddGlobalTestEnvironment(new Mpi);
-
-inline constexpr std::array<double, 6> thresholds{0, 0.01, 0.1, 0.3, 1, 10};
 
 /// Calls function(name, forest, map) for forests over all kinds of connectivities.
 template <int dim, class Function>
@@ -75,7 +75,7 @@ void for_each_forest(Function&& function) {
 inline std::vector<double> noise(std::size_t count, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<double> values(count);
-    for (double& v : values) v = static_cast<double>(random()) / 4294967296.0 - 0.5;
+    for (double& v : values) v = uniform(random) - 0.5;
     return values;
 }
 
@@ -114,7 +114,7 @@ template <int dim>
 void expect_closed_surfaces(const AnyGrid<dim>& grid, const AnyField<double>& field,
                             const Expected& expected) {
     const HierarchicalIndicator indicator(grid, field);
-    for (const double threshold : thresholds) {
+    for (const double threshold : six_thresholds) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
         const auto result =
             isosurface(grid, field, 0, indicator, {.threshold = threshold, .verify = true});
@@ -137,20 +137,6 @@ template <class Grid, class Field>
 void expect_closed_at_all_thresholds(const Grid& grid, const Field& field,
                                      const Expected& expected) {
     expect_closed_surfaces(AnyGrid<Grid::dimension>(grid), AnyField<double>(grid, field), expected);
-}
-
-template <class Function>
-std::string sentence(Function&& function) {
-    try {
-        function();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "";
-}
-
-inline void expect_part(const std::string& got, const std::string& part) {
-    EXPECT_NE(got.find(part), std::string::npos) << got;
 }
 
 }  // namespace nestgrid_test

@@ -15,6 +15,7 @@
 #include <p8est_geometry.h>
 
 #include <nestgrid/adapters/p4est.hpp>
+#include <nestgrid/algorithms/project.hpp>
 
 #include "closedness.hpp"
 
@@ -111,13 +112,7 @@ void for_each_leaf(const Grid& grid, Function&& function) {
     using Walk = Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}>;
     const ZeroField<Grid> zero;
     const Walk walk(grid, zero);
-    struct Visitor {
-        const Walk& walk;
-        Function& function;
-        Decision inspect(const typename Walk::State&, const Split&) { return {}; }
-        void extract(const typename Walk::State& s) { function(s, walk); }
-    } visitor{walk, function};
-    walk.run(visitor);
+    project(walk, Exact{}, [&](const auto& s) { function(s, walk); });
 }
 
 /// The nodes of all leaves: places by key, scaled into the unit cube.

@@ -11,6 +11,7 @@
 #include <nestgrid/check_grid.hpp>
 
 #include "families.hpp"
+#include "refusal.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -81,16 +82,6 @@ TYPED_TEST(StoredFiles, ComeBackAsTheyWere) {
     std::filesystem::remove(path);
 }
 
-template <class Function>
-std::string sentence(Function&& function) {
-    try {
-        function();
-    } catch (const IoError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 void set_checksums(std::vector<char>& bytes) {
     boost::crc_32_type body;
     body.process_bytes(bytes.data() + 56, bytes.size() - 56);
@@ -110,29 +101,30 @@ TEST(StoredFile, RefusesEveryDamage) {
     const std::vector<char> sound = bytes_of(path);
     const auto read = [&] { read_hierarchy<Octree<2>>(path); };
 
-    EXPECT_NE(sentence([&] { read_hierarchy<Octree<2>>(temporary("none")); }).find("opened"),
-              std::string::npos);
-    EXPECT_NE(sentence([&] { read_hierarchy<Octree<3>>(path); }).find("dimension 2"),
+    EXPECT_NE(
+        refusal<IoError>([&] { read_hierarchy<Octree<2>>(temporary("none")); }).find("opened"),
+        std::string::npos);
+    EXPECT_NE(refusal<IoError>([&] { read_hierarchy<Octree<3>>(path); }).find("dimension 2"),
               std::string::npos);
     for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{55},
                                      std::size_t{56}, sound.size() / 2, sound.size() - 1}) {
         write_bytes(path, {sound.begin(), sound.begin() + static_cast<std::ptrdiff_t>(length)});
-        EXPECT_NE(sentence(read), "") << length;
+        EXPECT_NE(refusal<IoError>(read), "") << length;
     }
     auto longer = sound;
     longer.push_back(0);
     write_bytes(path, longer);
-    EXPECT_NE(sentence(read).find("bytes long"), std::string::npos);
+    EXPECT_NE(refusal<IoError>(read).find("bytes long"), std::string::npos);
     for (std::size_t i = 0; i < sound.size(); ++i) {  // one bit anywhere
         auto bytes = sound;
         bytes[i] = static_cast<char>(bytes[i] ^ 1 << i % 8);
         write_bytes(path, bytes);
-        EXPECT_NE(sentence(read), "") << "byte " << i;
+        EXPECT_NE(refusal<IoError>(read), "") << "byte " << i;
     }
     auto later = sound;
     later[8] = 2;
     write_bytes(path, later);
-    EXPECT_NE(sentence(read).find("version 2"), std::string::npos);
+    EXPECT_NE(refusal<IoError>(read).find("version 2"), std::string::npos);
     std::filesystem::remove(path);
 }
 

@@ -15,7 +15,7 @@ using namespace nestgrid_test;
 
 namespace {
 
-const std::vector<double> epsilons{0, 0.01, 0.1, 0.3, 1, 10};
+const std::vector<double> epsilons(six_thresholds.begin(), six_thresholds.end());
 
 template <class Grid>
 void expect_closed_at(const Grid& grid, const NodalSamples& samples,
@@ -108,7 +108,7 @@ TYPED_TEST(ClosedLevelSets, OnSmallRandomGridsWithRandomValues) {
         NodalSamples samples{"case " + std::to_string(i), {}, false};
         const auto kind = random() % 3;
         for (std::size_t n = 0; n < grid.node_positions().size(); ++n) {
-            const double r = static_cast<double>(random()) / 4294967296.0;
+            const double r = uniform(random);
             samples.values.push_back(kind == 0   ? r - 0.5
                                      : kind == 1 ? std::floor(5 * r) - 2
                                                  : (std::floor(9 * r) - 4) * 0x1p-51);

@@ -5,6 +5,7 @@
 // the only one that notices some omission. A sphere alone proves nothing.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -19,6 +20,12 @@ namespace nestgrid_test {
 
 using namespace nestgrid;
 using nestgrid::norm;  // ALBERTA has a global one
+
+/// From everything to hardly anything, for fields of the order of 1.
+inline constexpr std::array<double, 6> six_thresholds{0, 0.01, 0.1, 0.3, 1, 10};
+
+/// In [0, 1), the same with every library.
+inline double uniform(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
 
 /// No open edge inside the domain, a manifold, one orientation.
 template <class Element>
@@ -56,7 +63,6 @@ struct NodalSamples {
 /// Values at nodes in the unit cube, to be cut at 0.
 inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes, unsigned seed) {
     std::mt19937 random(seed);
-    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
     std::vector<NodalSamples> fields;
     const auto add = [&](const char* name, bool generic, auto&& f) {
         NodalSamples samples{name, {}, generic};
@@ -71,7 +77,7 @@ inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes
         return std::sin(a) * std::cos(b) + std::sin(b) * std::cos(c) + std::sin(c) * std::cos(a) +
                1e-3;
     });
-    add("noise", true, [&](const Point&) { return uniform() - 0.5; });
+    add("noise", true, [&](const Point&) { return uniform(random) - 0.5; });
     add("plane through nodes and edges", false, [](const Point& x) { return x[0] + x[1] - 1; });
     add("plateau at the isovalue", false, [](const Point& x) {
         return std::max(0.0, norm(x - Point{0.5, 0.5, 0.5}) - 0.3);
@@ -79,12 +85,13 @@ inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes
     add("integers", false, [&](const Point&) { return static_cast<double>(random() % 3) - 1; });
     add("saddle", true, [&](const Point& x) {
         return (x[0] - 0.51) * (x[1] - 0.47) + 0.3 * (x[2] - 0.5) * (x[0] - 0.4) +
-               1e-3 * (uniform() - 0.5);
+               1e-3 * (uniform(random) - 0.5);
     });
     add("5 units in the last place", false,
         [&](const Point&) { return (static_cast<double>(random() % 11) - 5) * 0x1p-52; });
-    add("tiny", false,
-        [&](const Point&) { return (random() % 2 == 0 ? -1 : 1) * std::pow(10, -18 * uniform()); });
+    add("tiny", false, [&](const Point&) {
+        return (random() % 2 == 0 ? -1 : 1) * std::pow(10, -18 * uniform(random));
+    });
     add("checkerboard of every level", true, [&](const Point& x) {
         int sum = 0;  // of the coordinates on the coarsest lattice that has the node
         for (const double at : x) {
@@ -92,7 +99,7 @@ inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes
             while (q != std::floor(q) && q < 4096) q *= 2;
             sum += static_cast<int>(q);
         }
-        return (sum % 2 == 0 ? -1 : 1) * (0.1 + uniform());
+        return (sum % 2 == 0 ? -1 : 1) * (0.1 + uniform(random));
     });
     return fields;
 }

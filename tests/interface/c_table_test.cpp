@@ -12,22 +12,13 @@
 
 #include "archetype.hpp"
 #include "curved.hpp"
+#include "refusal.hpp"
 #include "table_in_c.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
 
 namespace {
-
-template <class Error, class Function>
-std::string refusal(Function&& function) {
-    try {
-        function();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "";
-}
 
 class CTable : public ::testing::Test {
 protected:

@@ -12,10 +12,9 @@
 //     linear and meets it in one arc, and the sections of a pyramid along its axis meet the levels
 //     of one bilinear function in falling or in rising order;
 //   - in a hexahedron two regions of one sign, apart on its surface, may be joined inside. A
-//   section
-//     has no component without a corner of its own, so they are joined if and only if in some
-//     section across an axis opposite corners are joined whose regions differ (after Chernyaev
-//     1995).
+//     section has no component without a corner of its own, so they are joined if and only if in
+//     some section across an axis opposite corners are joined whose regions differ (after
+//     Chernyaev 1995).
 #pragma once
 
 #include <cmath>

@@ -64,28 +64,6 @@ private:
         double mean;
         std::uint32_t count;
     };
-    template <class Walk>
-    struct Collect {
-        const Walk& walk;
-        const LeafValue& leaf_value;
-        KeyTable<NodeKey, Running> running{};
-
-        template <class State>
-        Decision inspect(const State&, const Split&) {
-            return {};
-        }
-        template <class State>
-        void extract(const State& s) {
-            const auto value = static_cast<double>(leaf_value(s.element));
-            std::array<NodeKey, max_corners> keys;
-            walk.keys(s, keys);
-            for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-                Running& r = *running.insert(keys[i], {value, 0}).first;
-                r.mean += (value - r.mean) / ++r.count;
-            }
-        }
-    };
-
     NodeMask look_up(std::span<const NodeKey> keys, NodeMask which, std::span<double> out) const {
         NodeMask missing = 0;
         for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -113,10 +91,19 @@ CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue leaf_val
     }
     const ZeroField<Grid> zero;
     const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
-    Collect<decltype(walk)> collect{walk, leaf_value_};
-    walk.run(collect);
-    means_.reserve(collect.running.size());
-    collect.running.for_each([&](NodeKey key, const Running& r) { means_.insert(key, r.mean); });
+    KeyTable<NodeKey, Running> running;
+    for_each_element(walk, [&](const auto& s, const Split& split) {
+        if (split.rule != nullptr) return;
+        const double value = this->leaf_value(s.element);
+        std::array<NodeKey, max_corners> keys;
+        walk.keys(s, keys);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+            Running& r = *running.insert(keys[i], {value, 0}).first;
+            r.mean += (value - r.mean) / ++r.count;
+        }
+    });
+    means_.reserve(running.size());
+    running.for_each([&](NodeKey key, const Running& r) { means_.insert(key, r.mean); });
 }
 
 }  // namespace nestgrid

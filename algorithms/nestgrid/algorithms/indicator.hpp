@@ -39,16 +39,14 @@ public:
     /// Walks the whole hierarchy; component 0 of the field counts.
     /// \throw InvalidInput where a value is not a number, infinite, or beyond a quarter of the
     ///        range of its type
-    template <class Grid, class Field>
-    HierarchicalIndicator(const Grid& grid, const Field& field);
-
-    /// The same with the errors of leaves, such as a Kelly or residual estimate, in the place of
-    /// offsets; then thresholds have their unit.
-    /// \param leaf_error called as double(const Element&) for every leaf; not negative
+    /// \param leaf_error errors of leaves in the place of offsets, such as a Kelly or residual
+    ///        estimate; then thresholds have their unit. Called as double(const Element&) for every
+    ///        leaf; not negative
     /// \throw InvalidInput also where an error is negative or not a number
-    template <class Grid, class Field, class LeafError>
-        requires std::is_invocable_r_v < double, const LeafError&, const ElementOf<Grid>
-    & > HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error);
+    template <class Grid, class Field, class LeafError = detail::Nothing>
+        requires(std::is_same_v<LeafError, detail::Nothing> ||
+                 std::is_invocable_r_v<double, const LeafError&, const ElementOf<Grid>&>)
+    HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error = {});
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
     double stop(NodeKey node) const {
@@ -153,29 +151,20 @@ float offset_above(const Stencil& stencil, const Real* value, Real at_node) {
 
 }  // namespace detail
 
-template <class Grid, class Field>
-HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& field)
-    : epoch_{nestgrid::epoch(grid)} {
+template <class Grid, class Field, class LeafError>
+    requires(std::is_same_v<LeafError, detail::Nothing> ||
+             std::is_invocable_r_v<double, const LeafError&, const ElementOf<Grid>&>)
+HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& field,
+                                             const LeafError& leaf_error)
+    : epoch_{nestgrid::epoch(grid)}, own_errors_{!std::is_same_v<LeafError, detail::Nothing>} {
     static_assert(require_nested_grid<Grid>());
     static_assert(require_nodal_field<Field, Grid>());
     if (hanging_nodes_unknown(grid)) hanging_ = derive_hanging_nodes(grid);
-    if constexpr (detail::KnowsStars<Grid, Field>) {
+    if constexpr (detail::KnowsStars<Grid, Field> && std::is_same_v<LeafError, detail::Nothing>) {
         sweep_stars(grid, field);
     } else {
-        sweep_levels(grid, field, detail::Nothing{});
+        sweep_levels(grid, field, leaf_error);
     }
-}
-
-template <class Grid, class Field, class LeafError>
-    requires std::is_invocable_r_v < double, const LeafError&, const ElementOf<Grid>
-& > HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& field,
-                                                 const LeafError& leaf_error)
-    : epoch_{nestgrid::epoch(grid)},
-own_errors_{true} {
-    static_assert(require_nested_grid<Grid>());
-    static_assert(require_nodal_field<Field, Grid>());
-    if (hanging_nodes_unknown(grid)) hanging_ = derive_hanging_nodes(grid);
-    sweep_levels(grid, field, leaf_error);
 }
 
 template <class Grid, class Field>

@@ -119,12 +119,13 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
                           executor);
 }
 
-template <class Grid, class Field, class Indicator, Executor E>
-    requires requires(const Indicator& i) { i.stop(NodeKey{}); }
-Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
-                                                        double isovalue, const Indicator& indicator,
-                                                        const IsosurfaceOptions& options,
-                                                        const E& executor) {
+/// S from options.threshold or options.max_triangles.
+/// \throw InvalidInput where the threshold is negative or not a number, and where even the coarsest
+///        surface has more triangles than asked for
+template <class Grid, class Field, class Indicator, Executor E = SequentialExecutor>
+Threshold<Indicator> criterion_for(const Grid& grid, const Field& field, double isovalue,
+                                   const Indicator& indicator, const IsosurfaceOptions& options,
+                                   const E& executor = {}) {
     if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
     Threshold<Indicator> criterion{&indicator, options.threshold};
     if (options.max_triangles > 0) {
@@ -136,7 +137,18 @@ Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const 
             throw InvalidInput("a budget of triangles needs an indicator that knows its range");
         }
     }
-    return isosurface(grid, field, isovalue, criterion, indicator, options, executor);
+    return criterion;
+}
+
+template <class Grid, class Field, class Indicator, Executor E>
+    requires requires(const Indicator& i) { i.stop(NodeKey{}); }
+Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
+                                                        double isovalue, const Indicator& indicator,
+                                                        const IsosurfaceOptions& options,
+                                                        const E& executor) {
+    return isosurface(grid, field, isovalue,
+                      criterion_for(grid, field, isovalue, indicator, options, executor), indicator,
+                      options, executor);
 }
 
 }  // namespace nestgrid

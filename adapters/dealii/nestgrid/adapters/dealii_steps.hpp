@@ -128,7 +128,6 @@ template <int dim, int spacedim>
 void DealiiGrid<dim, spacedim>::update() {
     hangs_.assign(triangulation_->n_vertices(), false);
     only_simplex_rule_ = nullptr;
-    std::size_t simplex_rules = 0;
     std::vector<std::uint8_t> finest(triangulation_->n_vertices(), 0);  // level around a vertex
     for (const auto& c : triangulation_->cell_iterators()) {
         if (!c->has_children()) {
@@ -138,13 +137,12 @@ void DealiiGrid<dim, spacedim>::update() {
             }
         } else if (c->n_vertices() != unsigned{max_corners}) {
             only_simplex_rule_ = &simplex_rules_.add(shape(c), simplex_children(c));
-            simplex_rules = simplex_rules_.size();
         } else if (c->n_children() != unsigned{max_children}) {
             throw InvalidInput("cell " + c->id().to_string() +
                                " is refined in some directions only");
         }
     }
-    if (simplex_rules > 1) only_simplex_rule_ = nullptr;
+    if (simplex_rules_.size() > 1) only_simplex_rule_ = nullptr;
     for (const auto& c : triangulation_->active_cell_iterators()) {
         // Where an edge is refined on another side, so is a cell at its ends.
         const auto is_finer = [&](unsigned k) { return finest[c->vertex_index(k)] > c->level(); };

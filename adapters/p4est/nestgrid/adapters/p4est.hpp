@@ -140,8 +140,6 @@ public:
         }
         return e;
     }
-    /// The child a new node is a corner of, and which one.
-    ChildCorner place_of_new_node(std::size_t k) const { return rule_->new_corner[k]; }
 
 private:
     using Trees = P4estTrees<dim>;

@@ -136,11 +136,12 @@ public:
         return 0;
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
+        const Rule& rule = *grid_->split(e);
         std::array<Element, corners_> children;
         grid_->children(e, children);
         for (std::size_t k = 0; k < Grid::max_new_nodes; ++k) {
             if ((which >> k & 1U) == 0) continue;
-            const auto [child, corner] = grid_->place_of_new_node(k);
+            const auto [child, corner] = rule.new_corner[k];
             out[k] = corner_value(children[child], corner);
         }
         return 0;

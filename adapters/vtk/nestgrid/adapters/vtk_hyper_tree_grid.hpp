@@ -87,8 +87,7 @@ public:
         c.element = {trees_[i], 0, 0, {at[0], at[1], at[2]}};
         c.shape = rule_->parent;
         for (std::size_t k = 0; k < max_corners; ++k) {
-            Place corner = c.element.place;
-            for (std::size_t a = 0; a < dim; ++a) corner[axis_[a]] += k >> a & 1U;
+            const Place corner = step(c.element.place, k);
             std::uint64_t id = 0;
             for (std::size_t d = 3; d-- > 0;) {
                 c.corners[k][d] = coordinates_[d][corner[d]];
@@ -106,7 +105,7 @@ public:
         for (std::size_t c = 0; c < out.size(); ++c) {
             out[c] = {e.tree, first + static_cast<vtkIdType>(c), e.level + 1, e.place};
             for (std::uint32_t& x : out[c].place) x *= 2;
-            for (std::size_t a = 0; a < dim; ++a) out[c].place[axis_[a]] += c >> a & 1U;
+            out[c].place = step(out[c].place, c);
         }
     }
 
@@ -126,11 +125,14 @@ public:
     vtkIdType index(const Element& e) const { return e.tree->GetGlobalIndexFromLocal(e.vertex); }
 
 private:
+    /// A step in the directions in which corner, or child, k lies from the first one.
+    Place step(Place from, std::size_t k) const {
+        for (std::size_t a = 0; a < dim; ++a) from[axis_[a]] += k >> a & 1U;
+        return from;
+    }
     NodeKey corner_key(const Element& e, std::size_t k) const {
-        Place at = e.place;
-        for (std::size_t a = 0; a < dim; ++a) at[axis_[a]] += k >> a & 1U;
         NodeKey key = 0;
-        for (const std::uint32_t x : at)
+        for (const std::uint32_t x : step(e.place, k))
             key = detail::mix(key + (NodeKey{x} << (depth_ - e.level)));
         return key;
     }

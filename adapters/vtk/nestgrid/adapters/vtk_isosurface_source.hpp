@@ -38,16 +38,11 @@ public:
             if (!*indicator || (*indicator)->epoch() != epoch(grid)) {
                 indicator->emplace(grid, field);
             }
-            double threshold = threshold_;
-            if (max_triangles_ > 0) {
-                threshold =
-                    find_threshold(grid, field, isovalue_, **indicator, max_triangles_).threshold;
-            }
             PolyDataSink<dimension> sink(attributes);
             extract_isosurfaces(grid, field, std::span<const double>(&isovalue_, 1),
                                 std::vector{sink},
-                                nestgrid::Threshold<HierarchicalIndicator>{&**indicator, threshold},
-                                **indicator, {.normals = normals_});
+                                criterion_for(grid, field, isovalue_, **indicator, options_),
+                                **indicator, options_);
             return vtkSmartPointer<vtkPolyData>(sink.data());
         };
         Modified();
@@ -56,13 +51,13 @@ public:
     void SetIsovalue(double isovalue) { set(isovalue_, isovalue); }
     double GetIsovalue() const { return isovalue_; }
     /// epsilon, in the units of the data; not used beside a maximum number of triangles.
-    void SetThreshold(double threshold) { set(threshold_, threshold); }
-    double GetThreshold() const { return threshold_; }
+    void SetThreshold(double threshold) { set(options_.threshold, threshold); }
+    double GetThreshold() const { return options_.threshold; }
     /// The least threshold that keeps within so many triangles is found; 0 asks for none.
-    void SetMaxTriangles(std::uint64_t count) { set(max_triangles_, count); }
-    std::uint64_t GetMaxTriangles() const { return max_triangles_; }
-    void SetNormals(bool on) { set(normals_, on); }
-    bool GetNormals() const { return normals_; }
+    void SetMaxTriangles(std::uint64_t count) { set(options_.max_triangles, count); }
+    std::uint64_t GetMaxTriangles() const { return options_.max_triangles; }
+    void SetNormals(bool on) { set(options_.normals, on); }
+    bool GetNormals() const { return options_.normals; }
 
     void InvalidateField() {
         if (invalidate_) invalidate_();
@@ -113,9 +108,7 @@ private:
     std::function<std::uint64_t()> epoch_;
     std::uint64_t drawn_epoch_ = 0;
     double isovalue_ = 0;
-    double threshold_ = 0;
-    std::uint64_t max_triangles_ = 0;
-    bool normals_ = false;
+    IsosurfaceOptions options_;
 };
 
 }  // namespace nestgrid
