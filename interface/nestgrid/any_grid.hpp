@@ -164,6 +164,21 @@ public:
               "corner_gradients");
     }
 
+    /// Whether bisections below elements of this grid can be walked on the other side of the
+    /// tables.
+    template <int dim>
+    bool bisects(const AnyGrid<dim>& grid) const {
+        return table_.library_bisect != nullptr &&
+               table_.library_bisect(table_.self, &grid.table(), nullptr, nullptr, 0, 0, nullptr) ==
+                   0;
+    }
+    /// Where it says so, does it.
+    template <int dim>
+    void bisect(const AnyGrid<dim>& grid, const nestgrid_element& e, const Real* value, int level,
+                int orientation, detail::ErasedBisectionVisitor<Real>& visitor) const {
+        table_.library_bisect(table_.self, &grid.table(), &e, value, level, orientation, &visitor);
+    }
+
 private:
     static void check(int code, const char* operation) {
         detail::check_code(code, "field", operation);

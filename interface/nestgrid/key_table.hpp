@@ -64,6 +64,12 @@ public:
         if (capacity > slots_.size()) rehash(capacity);
     }
 
+    /// Forgets everything but its memory.
+    void clear() {
+        for (Slot& slot : slots_) slot.used = false;
+        size_ = 0;
+    }
+
     std::size_t size() const { return size_; }
     std::size_t memory_bytes() const { return slots_.capacity() * sizeof(Slot); }
 

@@ -127,6 +127,10 @@ typedef struct nestgrid_field {
     /* Optional. */
     int (*corner_gradients)(const void* self, void* context, const nestgrid_element* e,
                             size_t count, double (*out)[3]);
+
+    /* Of the library's own tables, NULL in all others: C++ on both sides. */
+    int (*library_bisect)(const void* self, const nestgrid_grid* grid, const nestgrid_element* e,
+                          const void* values, int level, int orientation, void* visitor);
 } nestgrid_field;
 
 #ifdef __cplusplus

@@ -25,29 +25,34 @@
 //     unsigned boundary_faces(e)
 //         faces on the boundary of the domain, one bit each, any of them for an element that
 //         reaches across it; default: derived from coarse ids
-//     void for_each_star(f)
-//         calls f(Star) for every new node, fine to coarse, each node once; default: sweeps
+//     void for_each_star_row(f)
+//         calls f(StarRow) fine to coarse, each node in one row; default: sweeps
 //     Point node_position(NodeKey)
-//         random access, with for_each_star
+//         random access, with for_each_star_row
 //     std::uint64_t epoch()
 //         changes with the grid: tells stale prerolls
 // and a field
 //     void corner_gradients(e, std::span<Point> out)   gradients at the corners, per unit length
-//     value_type value(NodeKey)                        random access, with for_each_star
+//     value_type value(NodeKey)                        random access, with for_each_star_row
 #pragma once
 
 #include <nestgrid/grid.hpp>
+#include <nestgrid/inlining.hpp>
 #include <nestgrid/keys.hpp>
 
 namespace nestgrid {
 
-/// A new node, the parents of its stencil, and all corners of all elements that create it.
-/// Its stencil is a plain mean.
-struct Star {
-    NodeKey node{};
-    std::span<const NodeKey> parents;
-    std::span<const NodeKey> corners;
-    bool outside = false;  ///< as the operation `outside`
+/// Nodes first, first + stride, ... of a grid with dense keys, each the midpoint of two parents and
+/// with finer nodes around it, at the same distances in key from each. A maximum over those and, of
+/// each of them, over its own, is one over all nodes that are made in elements with this corner.
+struct StarRow {
+    std::size_t first = 0;
+    std::size_t stride = 1;
+    std::size_t count = 0;
+    bool has_parents = true;  ///< false on the coarse grid
+    std::array<std::ptrdiff_t, 2> parent{};
+    std::span<const std::ptrdiff_t> finer;  ///< nodes of earlier rows
+    std::size_t outside = 0;  ///< of the last ones: how many are as the operation `outside` says
 };
 
 enum class Feature : unsigned {

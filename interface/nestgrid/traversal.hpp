@@ -90,6 +90,7 @@ constexpr bool by_heart(Feature feature) {
 template <class Grid, class Field, Needs needs>
 struct ElementState {
     using Real = typename Field::value_type;
+    using Element = ElementOf<Grid>;
     static constexpr std::size_t components =
         static_cast<std::size_t>(detail::components_of<Field>());
     static constexpr std::size_t capacity = detail::corner_capacity<Grid>();
@@ -98,7 +99,7 @@ struct ElementState {
         needs.positions && !detail::by_heart<Grid>(Feature::own_positions);
     using Closed = ClosedParts<Real, components, capacity>;
 
-    ElementOf<Grid> element;
+    Element element;
     Context<Grid>* context;      ///< of the task that walks
     std::size_t coarse;          ///< number of the coarse element it descends from
     const ElementState* father;  ///< nullptr for a coarse element
@@ -130,6 +131,9 @@ struct ElementState {
 ///     void extract(const State&);              called for elements where it said stop, and leaves
 ///     bool passes_over_leaves() const;         optional: whether leaves around which nothing is
 ///                                              closed may be left out, unless coarse
+///     void walk_bisections(const State&)       optional: takes the element and all below it in a
+///                                              walk of its own (known_bisection.hpp), where
+///     bool walks_bisections() const;           says so
 /// Elements whose split creates no node (copies) are looked through: never shown to the visitor.
 template <class Grid, class Field, Needs needs = Needs{}>
 class Traversal {
@@ -169,8 +173,17 @@ public:
         for (std::size_t i = first; i < last; ++i) {
             State state;
             state.context = &context;
-            if (make_coarse(i, state)) inspect(state, visitor);
+            if (make_coarse(i, state)) walk_below(state, visitor);
         }
+    }
+
+    /// Visits an element and what lies below it.
+    template <class Visitor>
+    void walk_below(const State& s, Visitor& visitor) const {
+        if constexpr (requires { visitor.walk_bisections(s); }) {
+            if (visitor.walks_bisections()) return visitor.walk_bisections(s);
+        }
+        inspect(s, visitor);
     }
 
     /// Keys of the corners.

@@ -198,14 +198,14 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
     std::array<Element, detail::child_capacity<Grid>()> elements;
     detail::call_children(*grid_, *s.context, s.element,
                           std::span<Element>(elements.data(), rule.children.size()));
+    const bool any_interpolated = s.interpolated != 0 || nodes.interpolated != 0;
     bool passes_over_leaves = false;
     if constexpr (requires { visitor.passes_over_leaves(); }) {
         passes_over_leaves = parts == nullptr && visitor.passes_over_leaves();
     }
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         const Child& child = rule.children[c];
-        if (passes_over_leaves &&
-            detail::call_split(*grid_, *s.context, elements[c]) == nullptr) {
+        if (passes_over_leaves && detail::call_split(*grid_, *s.context, elements[c]) == nullptr) {
             continue;
         }
         if constexpr (may_offer<Grid>(Feature::masked)) {
@@ -233,13 +233,17 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
                 k.boundary |= static_cast<std::uint8_t>(1U << f);
             }
         }
-        for (std::size_t i = 0; i < static_cast<std::size_t>(k.corner_count()); ++i) {
+        const auto child_corners = static_cast<std::size_t>(k.corner_count());
+        for (std::size_t i = 0; i < child_corners; ++i) {
             const std::size_t n = child.corner[i];
             for (std::size_t q = 0; q < c_count; ++q) {
                 k.value[i * c_count + q] = nodes.value[n * c_count + q];
             }
             if constexpr (State::carries_keys) k.key[i] = nodes.key[n];
             if constexpr (State::carries_positions) k.position[i] = nodes.position[n];
+        }
+        for (std::size_t i = 0; any_interpolated && i < child_corners; ++i) {
+            const std::size_t n = child.corner[i];
             const NodeMask flag = (n < corners ? NodeMask{s.interpolated} >> n
                                                : nodes.interpolated >> (n - corners)) &
                                   1U;

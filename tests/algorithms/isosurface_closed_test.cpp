@@ -86,7 +86,7 @@ struct StopAsBound {
     double offset_bound(NodeKey node) const { return good.offset_bound(node); }
     double bound(std::span<const NodeKey> nodes) const {
         double largest = 0;
-        for (const NodeKey node : nodes) largest = std::max(largest, good.stop(node));
+        for (const NodeKey node : nodes) largest = std::max<double>(largest, good.stop(node));
         return largest;
     }
     const HangingNodes* hanging() const { return good.hanging(); }
@@ -115,10 +115,15 @@ public:
                 const LatticeField<LatticeBisection<3>, float>& field,
                 const HierarchicalIndicator& good)
         : good_{&good}, offset_(grid.node_count(), 0.0) {
-        grid.for_each_star([&](const Star& star) {
-            offset_[static_cast<std::size_t>(star.node)] =
-                std::abs(double(field.value(star.node)) -
-                         (double(field.value(star.parents[0])) + field.value(star.parents[1])) / 2);
+        grid.for_each_star_row([&](const StarRow& row) {
+            for (std::size_t i = 0; row.has_parents && i < row.count; ++i) {
+                const std::size_t node = row.first + i * row.stride;
+                const auto value = [&](std::ptrdiff_t offset) {
+                    return double(field.value(node + static_cast<std::size_t>(offset)));
+                };
+                offset_[node] =
+                    std::abs(value(0) - (value(row.parent[0]) + value(row.parent[1])) / 2);
+            }
         });
     }
     double stop(NodeKey node) const { return offset_[static_cast<std::size_t>(node)]; }

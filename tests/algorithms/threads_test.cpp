@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What several threads extract is what one does: to the last bit, in the same order.
-#include <cstring>
-
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection.hpp>
@@ -11,6 +9,7 @@
 
 #include "closedness.hpp"
 #include "families.hpp"
+#include "same_surface.hpp"
 #include "sample_fields.hpp"
 #include "thread_executor.hpp"
 
@@ -18,45 +17,21 @@ using namespace nestgrid_test;
 
 namespace {
 
-template <class T>
-void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b, const char* what) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    ASSERT_EQ(a.size(), b.size()) << what;
-    EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0) << what;
-}
-
-template <int dimension, class Element>
-void expect_same(const Isosurface<dimension, Element>& a, const Isosurface<dimension, Element>& b) {
-    expect_same_bits(a.surface.vertices, b.surface.vertices, "vertices");
-    expect_same_bits(a.surface.normals, b.surface.normals, "normals");
-    expect_same_bits(a.surface.attributes, b.surface.attributes, "attributes");
-    expect_same_bits(a.surface.simplices, b.surface.simplices, "simplices");
-    expect_same_bits(a.surface.element_of, b.surface.element_of, "element_of");
-    expect_same_bits(a.surface.reference, b.surface.reference, "reference");
-    EXPECT_EQ(a.surface.elements.size(), b.surface.elements.size());
-    expect_same_bits(a.surface.shape_of, b.surface.shape_of, "shape_of");
-    expect_same_bits(a.surface.level_of, b.surface.level_of, "level_of");
-    expect_same_bits(a.surface.boundary, b.surface.boundary, "boundary");
-    EXPECT_EQ(a.counts.calls, b.counts.calls);
-    EXPECT_EQ(a.counts.visited, b.counts.visited);
-    EXPECT_EQ(a.counts.extracted, b.counts.extracted);
-    EXPECT_EQ(a.error_bound, b.error_bound);
-    EXPECT_EQ(a.stack_bytes, b.stack_bytes);
-}
-
 template <class Grid, class Field>
 void expect_same_from_threads(const Grid& grid, const Field& field,
                               const std::vector<double>& isovalues, double threshold) {
     const HierarchicalIndicator indicator(grid, field);
     const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
-    const IsosurfaceOptions options{
+    const IsosurfaceOptions everything{
         .normals = Grid::dimension == 3, .cap = true, .reference = true, .verify = true};
-    const auto alone = isosurfaces(grid, field, isovalues, criterion, indicator, options);
-    for (const std::size_t threads : {2U, 3U}) {
-        const auto together = isosurfaces(grid, field, isovalues, criterion, indicator, options,
-                                          ThreadExecutor(threads));
-        ASSERT_EQ(together.size(), alone.size());
-        for (std::size_t i = 0; i < alone.size(); ++i) expect_same(alone[i], together[i]);
+    for (const IsosurfaceOptions& options : {everything, IsosurfaceOptions{}}) {
+        const auto alone = isosurfaces(grid, field, isovalues, criterion, indicator, options);
+        for (const std::size_t threads : {2U, 3U}) {
+            const auto together = isosurfaces(grid, field, isovalues, criterion, indicator, options,
+                                              ThreadExecutor(threads));
+            ASSERT_EQ(together.size(), alone.size());
+            for (std::size_t i = 0; i < alone.size(); ++i) expect_same(alone[i], together[i]);
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/project.hpp>
+#include <nestgrid/algorithms/region.hpp>
 
 #include "forest.hpp"
 
@@ -207,21 +208,33 @@ TEST(Weights, OfAThirdAreClampedAndKeyedApart) {
 TEST(Indicator, OfStarsIsThatOfLevels) {
     struct Plain : LatticeBisection<3> {
         using LatticeBisection<3>::LatticeBisection;
-        void for_each_star() const = delete;
+        void for_each_star_row() const = delete;
     };
-    for (const int n : {9, 17}) {
+    for (const std::array<int, 3>& n :
+         {std::array{9, 9, 9}, std::array{17, 17, 17}, std::array{11, 6, 20}}) {
         std::mt19937 random(7);
-        std::vector<float> values(static_cast<std::size_t>(n * n * n));
+        std::vector<float> values(static_cast<std::size_t>(n[0] * n[1] * n[2]));
         for (float& v : values) v = static_cast<float>(random() % 1000) / 7;
-        const LatticeBisection<3> grid({.samples = {n, n, n}, .block_levels = 3});
-        const Plain plain({.samples = {n, n, n}, .block_levels = 3});
+        const LatticeBisection<3> grid({.samples = n, .block_levels = 3});
+        const Plain plain({.samples = n, .block_levels = 3});
         const LatticeField field(grid, std::span<const float>(values));
         const HierarchicalIndicator stars(grid, field);
         const HierarchicalIndicator levels(plain, field);
-        for (std::size_t i = 0; i < grid.node_count(); ++i) {
-            ASSERT_EQ(stars.stop(i), levels.stop(i)) << i;
-            ASSERT_EQ(stars.bound(i), levels.bound(i)) << i;
-        }
+        const auto inside = [&](const Point& x) { return x[0] < 3 && x[2] > 4; };
+        const Region star_region(grid, inside);
+        const Region level_region(plain, inside);
+        std::size_t compared = 0;
+        for_each_element(
+            Traversal<LatticeBisection<3>, decltype(field), Needs{.keys = true}>(grid, field),
+            [&](const auto&, const Split& split) {
+                for (const NodeKey node : split.keys) {
+                    ASSERT_EQ(stars.stop(node), levels.stop(node)) << node;
+                    ASSERT_EQ(stars.bound(node), levels.bound(node)) << node;
+                    ASSERT_EQ(star_region.contains(node), level_region.contains(node));
+                    ++compared;
+                }
+            });
+        EXPECT_GT(compared, 1000U);
     }
 }
 

@@ -15,6 +15,11 @@
 
 namespace nestgrid {
 
+/// Whether the diagonal from a to c is no longer than that from b to d.
+inline bool shorter(const Point& a, const Point& c, const Point& b, const Point& d) {
+    return dot(c - a, c - a) <= dot(d - b, d - b);
+}
+
 /// A Cell knows the vertices of one element under numbers of its own:
 ///     Number vertex(edge)                     on a cut edge
 ///     std::span<const Number> chain(edge)     what replaces the segment that follows this edge in
@@ -100,7 +105,8 @@ private:
         };
         if (n == 3) return add_places(0, 1, 2);
         if (loop.any_diagonal) {  // the shorter one; both lie inside, so neighbours do not care
-            const std::size_t a = distance(v[0], v[2]) <= distance(v[1], v[3]) ? 0 : 1;
+            const auto x = [&](std::size_t i) { return cell_->position(v[i]); };
+            const std::size_t a = shorter(x(0), x(2), x(1), x(3)) ? 0 : 1;
             add_places(a, a + 1, a + 2);
             add_places(a + 2, (a + 3) % 4, a);
             return;

@@ -19,6 +19,7 @@
 #include <bit>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -100,6 +101,13 @@ public:
         return contours_[first_[pattern] + choice];
     }
 
+    /// The contour of a pattern of which nothing depends on values: no signs alternate, every loop
+    /// is a segment or filled with triangles between its own vertices, and there is no tunnel. Else
+    /// null.
+    const Contour* plain(unsigned pattern) const {
+        return plain_[pattern] ? &contours_[first_[pattern]] : nullptr;
+    }
+
 private:
     explicit ContourTable(Shape shape);
     Contour make_contour(unsigned pattern, unsigned joined) const;
@@ -116,6 +124,7 @@ private:
     const Topology* topology_;
     std::vector<std::uint8_t> alternating_;
     std::vector<std::uint32_t> first_;
+    std::vector<std::uint8_t> plain_;
     std::vector<Contour> contours_;
 };
 

@@ -67,6 +67,13 @@ inline ContourTable::ContourTable(Shape shape) : topology_{&topology(shape)} {
             }
             contours_.push_back(make_contour(pattern, joined));
         }
+        const Contour& contour = contours_[first_.back()];
+        const std::span<const ContourLoop> loops(contour.loop.data(), contour.loop_count);
+        const bool tunnel = shape == Shape::hexahedron && loops.size() > 1;
+        plain_.push_back(alternating == 0 && !tunnel && !loops.empty() &&
+                         std::ranges::all_of(loops, [](const ContourLoop& loop) {
+                             return loop.count <= 3 || loop.any_diagonal || loop.triangle_count > 0;
+                         }));
     }
 }
 

@@ -4,7 +4,7 @@
 // Projection criteria S (paper, sections 2, 4 and 5.1): values that compose.
 //
 // A criterion answers, for the new nodes of one split, at which of them S holds:
-//     NodeMask operator()(const NewNodes& nodes) const;
+//     NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const;
 //     static constexpr bool saturated = ...;
 // Conjunctions and disjunctions of saturated criteria are saturated: where both hold at a corner,
 // both hold at the new nodes, and likewise where one of them does.
@@ -36,7 +36,7 @@ struct Threshold {
     const Indicator* indicator;
     double epsilon;
 
-    NodeMask operator()(const NewNodes& nodes) const {
+    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const {
         NodeMask mask = 0;
         for (std::size_t i = 0; i < nodes.keys.size(); ++i) {
             if (indicator->stop(nodes.keys[i]) <= epsilon) mask |= NodeMask{1} << i;
@@ -53,7 +53,7 @@ struct DeepestLevel {
 
     int deepest;
 
-    NodeMask operator()(const NewNodes& nodes) const {
+    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const {
         return nodes.level > deepest ? nodes.rule.all() & ~nodes.outside : NodeMask{0};
     }
 };
@@ -61,7 +61,7 @@ struct DeepestLevel {
 /// S false everywhere: the projection is the identity.
 struct Exact {
     static constexpr bool saturated = true;
-    NodeMask operator()(const NewNodes&) const { return 0; }
+    NESTGRID_INLINE NodeMask operator()(const NewNodes&) const { return 0; }
 };
 
 template <Criterion A, Criterion B>
@@ -69,7 +69,7 @@ struct Both {
     static constexpr bool saturated = A::saturated && B::saturated;
     A a;
     B b;
-    NodeMask operator()(const NewNodes& nodes) const {
+    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const {
         const NodeMask first = a(nodes);
         return first == 0 ? first : first & b(nodes);
     }
@@ -80,7 +80,7 @@ struct Either {
     static constexpr bool saturated = A::saturated && B::saturated;
     A a;
     B b;
-    NodeMask operator()(const NewNodes& nodes) const { return a(nodes) | b(nodes); }
+    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const { return a(nodes) | b(nodes); }
 };
 
 template <Criterion A, Criterion B>

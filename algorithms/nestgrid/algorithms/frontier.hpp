@@ -55,7 +55,7 @@ public:
     template <class Walk, class Visitor>
     void run(const Walk& walk, std::size_t first, std::size_t last, Visitor& visitor) const {
         if (first >= last) return;
-        Part<Visitor> part{this, &visitor, first, last, item_of_coarse(first)};
+        Part<Walk, Visitor> part{this, &walk, &visitor, first, last, item_of_coarse(first)};
         walk.run(part, items_[part.item].coarse, items_[item_of_coarse(last - 1)].coarse + 1);
     }
 
@@ -80,8 +80,6 @@ private:
         }
         return level;
     }
-
-    static constexpr int never = std::numeric_limits<int>::max();
 
     template <class Visitor>
     struct Enumeration {
@@ -115,19 +113,17 @@ private:
         void extract(const State&) {}
     };
 
-    template <class Visitor>
+    template <class Walk, class Visitor>
     struct Part {
         const Frontier* frontier;
+        const Walk* walk;
         Visitor* visitor;
         std::size_t first;
         std::size_t last;
-        std::size_t item;         ///< the next one to be met
-        int entry_level = never;  ///< of the entry that is being visited
+        std::size_t item;  ///< the next one to be met
 
         template <class State>
         Decision inspect(const State& s, const Split& split) {
-            if (head(s) > entry_level) return visitor->inspect(s, split);
-            entry_level = never;
             const auto& items = frontier->items_;
             const Item& here = items[item];
             const std::size_t end =
@@ -138,13 +134,11 @@ private:
             }
             ++item;
             if (!here.entry) return visitor->look(s, split);
-            entry_level = s.level;
-            return visitor->inspect(s, split);
+            walk->walk_below(s, *visitor);
+            return {Visit::skip, 0};
         }
         template <class State>
-        void extract(const State& s) {
-            visitor->extract(s);
-        }
+        void extract(const State&) {}
     };
 
     /// The coarse element above an entry.

@@ -24,6 +24,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
@@ -49,23 +50,23 @@ public:
     HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error = {});
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
-    double stop(NodeKey node) const {
+    NESTGRID_INLINE float stop(NodeKey node) const {
         const Entry* e = entry(node);
-        return e == nullptr ? 0.0 : bfloat16_value(e->stop);
+        return e == nullptr ? 0.0F : bfloat16_value(e->stop);
     }
 
     /// U and P_S U differ by at most this at a node of the finest level that is interpolated.
     double offset_bound(NodeKey node) const { return own_errors_ ? bound(node) : stop(node); }
 
     /// The bound of a node, for the intersection test.
-    double bound(NodeKey node) const {
+    NESTGRID_INLINE float bound(NodeKey node) const {
         const Entry* e = entry(node);
-        return e == nullptr ? 0.0 : bfloat16_value(e->bound);
+        return e == nullptr ? 0.0F : bfloat16_value(e->bound);
     }
 
     /// The largest bound of some nodes, eta_H(E) for the new nodes of an element E.
-    double bound(std::span<const NodeKey> nodes) const {
-        double largest = 0;
+    NESTGRID_INLINE float bound(std::span<const NodeKey> nodes) const {
+        float largest = 0;
         for (const NodeKey node : nodes) largest = std::max(largest, bound(node));
         return largest;
     }
@@ -88,7 +89,8 @@ public:
     std::uint64_t epoch() const { return epoch_; }  ///< of the grid this was computed on
 
     std::size_t memory_bytes() const {
-        return dense_.capacity() * sizeof(Entry) + sparse_.memory_bytes() + hanging_.memory_bytes();
+        return (dense_ == nullptr ? 0 : node_count_ * sizeof(Entry)) + sparse_.memory_bytes() +
+               hanging_.memory_bytes();
     }
 
 private:
@@ -102,8 +104,8 @@ private:
         float finer = 0;   // largest bound of finer nodes
     };
 
-    const Entry* entry(NodeKey node) const {
-        if (!dense_.empty()) return &dense_[static_cast<std::size_t>(node)];
+    NESTGRID_INLINE const Entry* entry(NodeKey node) const {
+        if (dense_ != nullptr) return &dense_[static_cast<std::size_t>(node)];
         return sparse_.find(node);
     }
 
@@ -121,7 +123,7 @@ private:
     template <class Grid, class Field, class LeafError>
     void sweep_levels(const Grid& grid, const Field& field, const LeafError& leaf_error);
 
-    std::vector<Entry> dense_;
+    std::unique_ptr<Entry[]> dense_;  // by node, where keys are dense; else null
     KeyTable<NodeKey, Entry> sparse_;
     HangingNodes hanging_;
     double least_ = std::numeric_limits<double>::infinity();
@@ -137,17 +139,15 @@ namespace detail {
 
 template <class Grid, class Field>
 concept KnowsStars = requires(const Grid& g, const Field& f) {
-    g.for_each_star([](const Star&) {});
+    g.for_each_star_row([](const StarRow&) {});
     f.value(NodeKey{});
 };
 
-/// |U - sum omega U| at new node n of an element, rounded up; `value` holds the true values of the
-/// corners and behind them those of the new nodes.
-template <class Real>
-float offset_above(const Stencil& stencil, const Real* value, Real at_node) {
-    const Real mean = interpolate(stencil, value, 1);
-    return float_above(distance_above(at_node, mean));
+/// |U - sum omega U| at a new node, rounded up.
+inline float offset_above(double value, double mean) {
+    return float_above(distance_above(value, mean));
 }
+inline float offset_above(float value, float mean) { return distance_above(value, mean); }
 
 }  // namespace detail
 
@@ -173,32 +173,37 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     constexpr double limit = std::numeric_limits<Real>::max() / 8;
     node_count_ = grid.node_count();
     largest_split_ = detail::new_node_capacity<Grid>();
-    dense_.assign(node_count_, {});
-    std::vector<float> bound(node_count_, 0.0F);  // of finer nodes at first, then the node's own
-    for (std::size_t i = 0; i < node_count_; ++i)
+    dense_ = std::make_unique<Entry[]>(node_count_);
+    std::vector<float> bound(node_count_, 0.0F);
+    for (std::size_t i = 0; i < node_count_; ++i) {
         add_value(field.value(static_cast<NodeKey>(i)), limit);
-    grid.for_each_star([&](const Star& star) {
-        std::array<Real, max_corners> parent;
-        Stencil stencil;
-        for (const NodeKey key : star.parents) {
-            stencil.parent[stencil.count] = stencil.count;
-            parent[stencil.count++] = field.value(key);
-        }
-        stencil.weight.fill(1.0 / stencil.count);
-        stencil.mean = stencil.count == 2 ? Mean::midpoint : Mean::weighted;
-        const float offset =
-            detail::offset_above(stencil, parent.data(), static_cast<Real>(field.value(star.node)));
-        const auto node = static_cast<std::size_t>(star.node);
-        std::uint16_t& stop = dense_[node].stop;
-        stop = std::max(stop, star.outside ? bfloat16_infinity : bfloat16_above(offset));
-        bound[node] = sum_above(offset, bound[node]);
-        for (const NodeKey corner : star.corners) {
-            const auto c = static_cast<std::size_t>(corner);
-            dense_[c].stop = std::max(dense_[c].stop, stop);
-            bound[c] = std::max(bound[c], bound[node]);
+    }
+    grid.for_each_star_row([&](const StarRow& row) {
+        const auto value = [&](std::size_t i) {
+            return static_cast<Real>(field.value(static_cast<NodeKey>(i)));
+        };
+        for (std::size_t i = 0; i < row.count; ++i) {
+            const std::size_t node = row.first + i * row.stride;
+            const auto at = [&](std::ptrdiff_t offset) {
+                return node + static_cast<std::size_t>(offset);
+            };
+            std::uint16_t stop = 0;
+            float finer = 0;
+            for (const std::ptrdiff_t offset : row.finer) {
+                stop = std::max(stop, dense_[at(offset)].stop);
+                finer = std::max(finer, bound[at(offset)]);
+            }
+            if (row.has_parents) {
+                const Real mean = midpoint(value(at(row.parent[0])), value(at(row.parent[1])));
+                const float own = detail::offset_above(value(node), mean);
+                stop = std::max(stop, bfloat16_above(own));
+                finer = sum_above(own, finer);
+            }
+            if (i + row.outside >= row.count) stop = bfloat16_infinity;
+            dense_[node] = {stop, bfloat16_above(finer)};
+            bound[node] = finer;
         }
     });
-    for (std::size_t i = 0; i < node_count_; ++i) dense_[i].bound = bfloat16_above(bound[i]);
 }
 
 template <class Grid, class Field, class LeafError>
@@ -285,8 +290,10 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
             } else {
                 value[corners + n] = given[n * stride];
                 add_value(given[n * stride], limit);
-                node.offset = std::max(
-                    node.offset, detail::offset_above(stencil, value.data(), value[corners + n]));
+                node.offset =
+                    std::max(node.offset,
+                             detail::offset_above(value[corners + n],
+                                                  detail::interpolate(stencil, value.data(), 1)));
             }
             const std::uint16_t own = (split.outside >> n & 1U) != 0 ? bfloat16_infinity
                                       : of_leaves                    ? std::uint16_t{0}
@@ -338,8 +345,8 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     }
     node_count_ = nodes.size();
     if (dense) {
-        dense_.reserve(nodes.size());
-        for (const Node& node : nodes) dense_.push_back(node.entry);
+        dense_ = std::make_unique<Entry[]>(nodes.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) dense_[i] = nodes[i].entry;
     } else {
         sparse_.reserve(slots.size());
         slots.for_each([&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });

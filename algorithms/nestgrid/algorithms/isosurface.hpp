@@ -24,9 +24,12 @@
 #include <nestgrid/algorithms/frontier.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/node_gradients.hpp>
+#include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/algorithms/surface_log.hpp>
 #include <nestgrid/algorithms/transition_contours.hpp>
+#include <nestgrid/algorithms/vertex_numbers.hpp>
+#include <nestgrid/table.hpp>
 #include <nestgrid/shape_functions.hpp>
 
 namespace nestgrid {
@@ -101,6 +104,14 @@ public:
     static constexpr bool indexed = IndexedSink<Sink>;
     using Walk = Traversal<Grid, Field, needs>;
     using State = typename Walk::State;
+    using Real = typename State::Real;
+    using Bisected = BisectedElement<Grid, Real>;
+    static constexpr Shape simplex_shape = dimension == 2 ? Shape::triangle : Shape::tetrahedron;
+    static constexpr bool knows_bisections =
+        KnowsBisections<Grid, Field> && State::components == 1;
+    static constexpr bool is_erased = requires(const Grid& grid, const Field& field) {
+        field.bisects(grid);
+    };
     static constexpr std::size_t attribute_count = State::components - 1;
     using Number = std::uint32_t;
     using Cut = SurfaceCut<attribute_count>;
@@ -119,6 +130,9 @@ public:
                       const S& criterion, const Indicator& indicator,
                       const IsosurfaceOptions& options);
 
+    /// Makes it as new for other isovalues, as many as before, and keeps its memory.
+    void begin_again(std::span<const double> isovalues, std::vector<Sink>& sinks);
+
     /// Ends the traversal with OverLimit when there are more simplices than that.
     void limit(std::uint64_t simplices) { limit_ = simplices; }
 
@@ -131,6 +145,20 @@ public:
     void extract(const State& s);
     /// Where nothing is closed around a leaf it records nothing, and is only counted for a limit.
     bool passes_over_leaves() const { return recording_ && !limited(); }
+
+    // isosurface_bisections.hpp: simplices that conform, and nothing but triangles asked for.
+    bool walks_bisections() const;
+    void walk_bisections(const State& s);
+    struct Glance {
+        Visit visit;
+        Real bound;
+    };
+    Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside);
+    bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
+    void extract(const Bisected& s);
+    template <class Load, class Boundary>
+    void draw_bisected(const Bisected& s, const Load& load, const Boundary& boundary);
+    void tick(std::uint64_t calls, std::uint64_t visited) const;
 
     // What a Frontier asks for.
     Decision look(const State& s, const Split& split);
@@ -158,7 +186,9 @@ private:
         Point around{0, 0, 0};  // area vectors of the triangles at it
     };
     struct Layer : Level {
-        KeyTable<KeyPair, Number> vertex_of;
+        Real least_inside;  // of the numbers that values can be
+        Real greatest_outside;
+        VertexNumbers number_of;
         Transitions transitions;
         const Transitions* drawn_below = nullptr;  // that of all tasks
         std::vector<Where> where;
@@ -168,10 +198,11 @@ private:
     static constexpr Number none = std::numeric_limits<Number>::max();
 
     // isosurface_steps.hpp
+    void set_isovalues();
     bool limited() const { return limit_ != std::numeric_limits<std::uint64_t>::max(); }
-    static bool inside(double value, const Layer& layer) { return value >= layer.isovalue; }
-    unsigned pattern(const State& s, const Layer& layer) const;
-    bool of_interest(const State& s, double bound) const;
+    unsigned pattern(const Real* value, std::size_t corners, const Layer& layer) const;
+    bool of_interest(Real lo, Real hi, Real bound, bool also_below) const;
+    Real bound_of(std::span<const NodeKey> nodes) const;
     bool joined(const State& s, const FaceTopology& face) const;
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s);
@@ -184,6 +215,12 @@ private:
                unsigned signs, bool& is_joined);
     void fill_gaps(Layer& layer);
     void set_normals(Layer& layer);
+
+    // isosurface_plain.hpp
+    const Contour* plain_contour(Shape shape, unsigned bits);
+    template <class AnyState, class Boundary>
+    void draw_plainly(const AnyState& s, Shape shape, Layer& layer, const Contour* contour,
+                      unsigned bits, const Boundary& boundary_faces);
 
     // isosurface_cap.hpp
     struct CapPoint {  // a corner of a polygon: corner `from` of the face, or its cut side `from`
@@ -246,13 +283,14 @@ private:
     const Indicator* indicator_;
     const IsosurfaceOptions* options_;
     std::vector<double> isovalues_;
+    bool plainly_ = false;  // nothing but vertices and triangles is asked for
     std::array<const ContourTable*, shape_count> table_{};
     std::vector<Layer> layers_;
     TraversalCounts counts_;
     bool recording_ = false;
     std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t drawn_ = 0;   // simplices; elements while recording, which draw one at least
-    double element_bound_ = 0;  // of the element inspected last
+    Real element_bound_ = 0;    // of the element inspected last
     int deepest_ = 0;
     NodeGradients gradients_;
     std::vector<std::pair<Number, CornerGradient>> gradient_log_;  // of a task

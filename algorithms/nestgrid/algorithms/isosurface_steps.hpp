@@ -18,10 +18,48 @@ IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
     const S& criterion, const Indicator& indicator, const IsosurfaceOptions& options)
     : walk_{&walk}, criterion_{&criterion}, indicator_{&indicator}, options_{&options},
       isovalues_{isovalues.begin(), isovalues.end()} {
-    for (std::size_t i = 0; i < isovalues.size(); ++i) {
-        layers_.push_back({{isovalues[i], std::move(sinks[i])}, {}, {}, {}, {}, 0});
+    const std::size_t keys = dense_key_count(walk.grid());
+    const bool small_keys = keys > 0 && keys <= (std::uint64_t{1} << 32U);
+    for (Sink& sink : sinks) {
+        layers_.push_back(
+            {{0, std::move(sink)}, 0, 0, VertexNumbers(small_keys), {}, nullptr, {}, 0});
     }
-    for (Layer& layer : layers_) layer.drawn_below = &layer.transitions;
+    set_isovalues();
+}
+
+NESTGRID_VISITOR::set_isovalues() -> void {
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        Layer& layer = layers_[i];
+        layer.isovalue = isovalues_[i];
+        auto least_inside = static_cast<Real>(layer.isovalue);
+        if (static_cast<double>(least_inside) < layer.isovalue) {
+            least_inside = std::nextafter(least_inside, std::numeric_limits<Real>::infinity());
+        }
+        layer.least_inside = least_inside;
+        layer.greatest_outside =
+            std::nextafter(least_inside, -std::numeric_limits<Real>::infinity());
+        layer.drawn_below = &layer.transitions;
+    }
+    plainly_ = attribute_count == 0 && !options_->cap && !options_->normals && !options_->reference;
+}
+
+NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sink>& sinks) -> void {
+    restart();
+    recording_ = false;  // where the last one was cancelled
+    deepest_ = 0;
+    gradients_.clear();
+    isovalues_.assign(isovalues.begin(), isovalues.end());
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        Layer& layer = layers_[i];
+        layer.sink = std::move(sinks[i]);
+        layer.extracted = 0;
+        layer.error_bound = 0;
+        layer.number_of.clear();
+        layer.transitions.clear();
+        layer.where.clear();
+        layer.vertex_count = 0;
+    }
+    set_isovalues();
 }
 
 NESTGRID_VISITOR::must_record() const -> bool {
@@ -62,67 +100,94 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& exe
 NESTGRID_VISITOR::table_bytes() const -> std::size_t {
     std::size_t bytes = gradients_.memory_bytes();
     for (const Layer& layer : layers_) {
-        bytes += layer.vertex_of.memory_bytes() + layer.transitions.memory_bytes() +
+        bytes += layer.number_of.memory_bytes() + layer.transitions.memory_bytes() +
                  layer.where.capacity() * sizeof(Where);
     }
     return bytes;
 }
 
-NESTGRID_VISITOR::pattern(const State& s, const Layer& layer) const -> unsigned {
+NESTGRID_VISITOR::pattern(const Real* value, std::size_t corners, const Layer& layer) const
+    -> unsigned {
     unsigned bits = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-        bits |= unsigned{inside(s.value[i * State::components], layer)} << i;
+    for (std::size_t i = 0; i < corners; ++i) {
+        bits |= unsigned{value[i * State::components] >= layer.least_inside} << i;
     }
     return bits;
 }
 
-NESTGRID_VISITOR::of_interest(const State& s, double bound) const -> bool {
-    auto lo = static_cast<double>(s.value[0]);
-    auto hi = lo;
-    for (std::size_t i = 1; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-        const double v = s.value[i * State::components];
-        lo = std::min(lo, v);
-        hi = std::max(hi, v);
-    }
-    // Rounding is monotone: a difference within the bound is never rounded beyond it.
-    for (const double c : isovalues_) {
-        const bool reaches_up = hi >= c || (bound > 0 && c - hi <= bound);
-        const bool reaches_down = lo < c || (bound > 0 && lo - c <= bound);
-        if (reaches_up && (reaches_down || (options_->cap && walk_->boundary(s) != 0))) return true;
+/// Whether a level may pass through an element on which U is within `bound` of corner values,
+/// themselves in lo ... hi. Rounding is monotone: a difference within the bound is never rounded
+/// beyond it.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+NESTGRID_INLINE bool IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::of_interest(
+    Real lo, Real hi, Real bound, bool also_below) const {
+    for (const Layer& layer : layers_) {
+        if (layer.least_inside - hi <= bound &&
+            (also_below || lo - layer.greatest_outside <= bound)) {
+            return true;
+        }
     }
     return false;
 }
 
 NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
     ++counts_.calls;
-    if ((counts_.calls & 0xFFFFU) == 0 && options_->progress && !options_->progress(counts_)) {
-        throw Cancelled{};
-    }
+    if ((counts_.calls & 0xFFFFU) == 0) tick(0, 0);
     const Decision decision = look(s, split);
     counts_.visited += decision.visit != Visit::skip;
     return decision;
 }
 
+/// Reports the counts so far, and these.
+NESTGRID_VISITOR::tick(std::uint64_t calls, std::uint64_t visited) const -> void {
+    if (!options_->progress) return;
+    TraversalCounts counts = counts_;
+    counts.calls += calls;
+    counts.visited += visited;
+    if (!options_->progress(counts)) throw Cancelled{};
+}
+
 /// What to do with an element.
 NESTGRID_VISITOR::look(const State& s, const Split& split) -> Decision {
-    element_bound_ = split.rule == nullptr ? 0.0 : indicator_->bound(split.keys);
-    if (!of_interest(s, element_bound_)) return {Visit::skip, 0};
+    Real lo = s.value[0];
+    Real hi = lo;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+        const Real v = s.value[i * State::components];
+        lo = std::min(lo, v);
+        hi = std::max(hi, v);
+    }
+    element_bound_ = split.rule == nullptr ? Real(0) : bound_of(split.keys);
+    const bool capped = options_->cap && walk_->boundary(s) != 0;
+    if (!of_interest(lo, hi, element_bound_, capped)) return {Visit::skip, 0};
     if (split.rule == nullptr) return {Visit::stop, 0};
     const NodeMask interpolated =
         (*criterion_)(NewNodes{*split.rule, split.keys, s.level + 1, split.outside});
     return {interpolated == split.rule->all() ? Visit::stop : Visit::descend, interpolated};
 }
 
+/// Not below the indicator's.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::bound_of(
+    std::span<const NodeKey> nodes) const -> Real {
+    const auto bound = indicator_->bound(nodes);
+    if constexpr (sizeof(bound) <= sizeof(Real)) {
+        return bound;
+    } else {
+        return float_above(bound);
+    }
+}
+
 NESTGRID_VISITOR::extract(const State& s) -> void {
     if (recording_ && !s.closed.any && !limited()) return;
-    const unsigned all = (1U << s.corner_count()) - 1;
+    const auto corners = static_cast<std::size_t>(s.corner_count());
+    const unsigned all = (1U << corners) - 1;
     const unsigned boundary = options_->cap ? walk_->boundary(s) : 0U;
     loaded_ = false;
     for (Layer& layer : layers_) {
-        const unsigned bits = pattern(s, layer);
+        const unsigned bits = pattern(s.value.data(), corners, layer);
         if (bits == 0 || (bits == all && boundary == 0)) continue;
         load(s);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+        for (std::size_t i = 0; i < corners; ++i) {
             u_[i] = static_cast<double>(s.value[i * State::components]) - layer.isovalue;
         }
         state_ = &s;
@@ -133,6 +198,13 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
             if (bits != all) record(s, layer, bits);
             if (boundary != 0) record_cap(s, layer, bits);
             continue;
+        }
+        if (plainly_ && !s.closed.any && layer.drawn_below->empty()) {
+            if (const Contour* contour = plain_contour(s.shape, bits)) {
+                draw_plainly(s, s.shape, layer, contour, bits, [&] { return walk_->boundary(s); });
+                add_error(s, layer);
+                continue;
+            }
         }
         begun_ = false;
         local_.clear();
@@ -170,7 +242,8 @@ NESTGRID_VISITOR::add_error(const State& s, Layer& layer) const -> void {
         corners == static_cast<std::size_t>(dimension) + 1
             ? 0.0
             : 2 * affine_residual(std::span(x_).first(corners), std::span(u_).first(corners));
-    layer.error_bound = std::max(layer.error_bound, element_bound_ + corner + chord);
+    layer.error_bound = std::max(
+        layer.error_bound, static_cast<double>(element_bound_) + corner + chord);
 }
 
 /// Whether the corners with U >= C are joined across a face whose signs alternate.
@@ -383,3 +456,5 @@ NESTGRID_VISITOR::set_normals(Layer& layer) -> void {
 #include <nestgrid/algorithms/isosurface_cap.hpp>
 #include <nestgrid/algorithms/isosurface_tasks.hpp>
 #include <nestgrid/algorithms/isosurface_vertices.hpp>
+#include <nestgrid/algorithms/isosurface_plain.hpp>
+#include <nestgrid/algorithms/isosurface_bisections.hpp>

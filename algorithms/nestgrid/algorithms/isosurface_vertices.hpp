@@ -12,6 +12,12 @@
 
 namespace nestgrid::detail {
 
+/// Where an edge is cut, seen from its lower end.
+inline double cut_fraction(double isovalue, double low, double high) {
+    constexpr double least = 0x1p-20;
+    return std::min(std::max((isovalue - low) / (high - low), least), 1 - least);
+}
+
 NESTGRID_VISITOR::edge_between(const State& s, std::uint8_t a, std::uint8_t b) const
     -> std::uint8_t {
     const Topology& t = topology(s.shape);
@@ -54,14 +60,12 @@ NESTGRID_VISITOR::make_cut(const State& s, const Layer& layer, std::uint8_t edge
             }
         }
     }
-    if (inside(value[0][0], layer)) {
+    if (value[0][0] >= layer.isovalue) {
         std::swap(x[0], x[1]);
         std::swap(value[0], value[1]);
         std::swap(cut.node[0], cut.node[1]);
     }
-    constexpr double least = 0x1p-20;
-    cut.fraction = std::clamp((layer.isovalue - value[0][0]) / (value[1][0] - value[0][0]), least,
-                              1 - least);
+    cut.fraction = cut_fraction(layer.isovalue, value[0][0], value[1][0]);
     cut.x = x[0] + cut.fraction * (x[1] - x[0]);
     for (std::size_t i = 1; i < stride; ++i) {
         cut.attributes[i - 1] = value[0][i] + cut.fraction * (value[1][i] - value[0][i]);
@@ -80,14 +84,13 @@ NESTGRID_VISITOR::make_node(const State& s, std::size_t corner) const -> Cut {
 /// The vertex with a name; make() says where it lies, where that is not known yet.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Make>
-auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(const KeyPair& name, Make&& make)
-    -> Vertex {
+NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(const KeyPair& name,
+                                                                            Make&& make) -> Vertex {
     if constexpr (!indexed) {
         return make().x;
     } else {
         if (layer_->vertex_count == none) throw GridError("the surface has 2^32 vertices or more");
-        const auto [at, is_new] = layer_->vertex_of.insert(name, layer_->vertex_count);
-        const Number number = *at;
+        const auto [number, is_new] = layer_->number_of.insert(name, layer_->vertex_count);
         if (is_new) {
             const Cut cut = make();
             ++layer_->vertex_count;

@@ -70,6 +70,11 @@ public:
         return keys;
     }
 
+    void clear() {
+        slot_of_.clear();
+        entries_.clear();
+    }
+
     std::size_t memory_bytes() const {
         return slot_of_.memory_bytes() + entries_.capacity() * sizeof(CornerGradient);
     }

@@ -31,7 +31,7 @@ public:
     template <class Grid, class Inside>
     Region(const Grid& grid, Inside&& inside) : dense_(dense_key_count(grid), 0) {
         if constexpr (requires {
-                          grid.for_each_star([](const Star&) {});
+                          grid.for_each_star_row([](const StarRow&) {});
                           grid.node_position(NodeKey{});
                       }) {
             sweep_stars(grid, inside);
@@ -57,9 +57,13 @@ private:
             const auto node = static_cast<NodeKey>(i);
             if (inside(grid.node_position(node))) add(node);
         }
-        grid.for_each_star([&](const Star& star) {
-            if (!contains(star.node)) return;
-            for (const NodeKey corner : star.corners) add(corner);
+        grid.for_each_star_row([&](const StarRow& row) {
+            for (std::size_t i = 0; i < row.count; ++i) {
+                const std::size_t node = row.first + i * row.stride;
+                for (const std::ptrdiff_t offset : row.finer) {
+                    dense_[node] |= dense_[node + static_cast<std::size_t>(offset)];
+                }
+            }
         });
     }
 

@@ -32,12 +32,25 @@ inline double distance_above(double a, double b) {
                : std::nextafter(std::abs(d), std::numeric_limits<double>::infinity());
 }
 
-/// a + b for a, b >= 0, not below the exact sum.
+/// The next float above x >= 0 where `raise` is set.
+inline float raised(float x, bool raise) {
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + (raise ? 1U : 0U));
+}
+
+/// The least float that is not below |a - b|.
+inline float distance_above(float a, float b) {
+    const float d = a - b;
+    const float b_part = a - d;
+    const float error = (a - (d + b_part)) + (b_part - b);
+    return raised(std::abs(d), d < 0 ? error < 0 : error > 0);
+}
+
+/// The least float that is not below a + b, for a, b >= 0.
 inline float sum_above(float a, float b) {
-    const double s = static_cast<double>(a) + static_cast<double>(b);
-    if (s == std::numeric_limits<double>::infinity()) return static_cast<float>(s);
-    return float_above(
-        sum_error(a, b, s) > 0 ? std::nextafter(s, std::numeric_limits<double>::infinity()) : s);
+    const float s = a + b;
+    const float b_part = s - a;
+    const float error = (a - (s - b_part)) + (b - b_part);
+    return raised(s, error > 0);
 }
 
 inline constexpr std::uint16_t bfloat16_infinity = 0x7F80;

@@ -47,6 +47,20 @@ struct Surface {
     std::vector<std::uint16_t> level_of;    ///< level of each of them
     std::vector<Ridge> boundary;            ///< edges (points) on the boundary of the domain
 
+    /// Forgets everything but its memory.
+    void clear() {
+        vertices.clear();
+        normals.clear();
+        attributes.clear();
+        simplices.clear();
+        element_of.clear();
+        reference.clear();
+        elements.clear();
+        shape_of.clear();
+        level_of.clear();
+        boundary.clear();
+    }
+
     std::size_t memory_bytes() const {
         const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
         return bytes(vertices) + bytes(normals) + bytes(attributes) + bytes(simplices) +

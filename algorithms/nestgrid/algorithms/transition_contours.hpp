@@ -103,6 +103,15 @@ public:
         return false;
     }
 
+    void clear() {
+        segments_.clear();
+        gaps_.clear();
+        split_of_.clear();
+        conflicts_.clear();
+        cuts_.clear();
+        vertex_of_.clear();
+    }
+
     std::size_t memory_bytes() const {
         return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Cut) +
                vertex_of_.memory_bytes();

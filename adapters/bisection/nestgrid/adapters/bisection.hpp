@@ -18,6 +18,7 @@
 #pragma once
 
 #include <nestgrid/adapters/lattice.hpp>
+#include <nestgrid/known_bisection.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {
@@ -43,6 +44,7 @@ public:
     using Lattice<dim>::node;
     using Lattice<dim>::position;
 
+    using Node = Place;
     struct Element {
         std::array<Place, corners_> corner;
         std::uint8_t tag;
@@ -72,6 +74,19 @@ public:
     }
 
     // Optional operations.
+    static constexpr auto bisections = maubach_bisections<dim>();
+    std::size_t bisection(const Element& e) const { return e.tag - 1U; }
+    std::array<Node, corners_> nodes(const Element& e) const { return e.corner; }
+    NESTGRID_INLINE Element element(std::size_t number,
+                                    const std::array<Node, corners_>& nodes) const {
+        return {nodes, static_cast<std::uint8_t>(number + 1)};
+    }
+    NESTGRID_INLINE const Rule& rule(std::size_t number) const { return *rules_[number + 1]; }
+    NESTGRID_INLINE bool halved(Node a, Node b) const { return ((a ^ b) & unit_) == 0; }
+    NESTGRID_INLINE Node middle(Node a, Node b) const { return (a + b) >> 1U; }
+    NESTGRID_INLINE NodeKey key(Node n) const { return node(n); }
+    using Lattice<dim>::whole;
+
     bool conforming() const { return true; }
 
     void corner_keys(const Element& e, std::span<NodeKey> out) const {
@@ -83,8 +98,8 @@ public:
         for (std::size_t i = 0; i < corners_; ++i) out[i] = position(e.corner[i]);
     }
 
-    bool masked(const Element& e) const {
-        if (!padded_) return false;
+    NESTGRID_INLINE bool masked(const Element& e) const { return padded_ && lies_beyond(e); }
+    bool lies_beyond(const Element& e) const {
         for (std::size_t d = 0; d < size_; ++d) {
             bool beyond = true;
             for (const Place p : e.corner) beyond = beyond && at(p, d) >= cells_[d];
@@ -93,12 +108,14 @@ public:
         return false;
     }
 
-    NodeMask outside(const Element& e) const {
+    NESTGRID_INLINE NodeMask outside(const Element& e) const {
         return padded_ && (this->beyond(e.corner[0]) || this->beyond(e.corner[e.tag])) ? 1U : 0U;
     }
 
     /// Face i lies opposite to corner i. All of them for an element across the boundary.
     unsigned boundary_faces(const Element& e) const {
+        // A face has at least one of any two corners.
+        if (!padded_ && inner(e.corner[0]) && inner(e.corner[1])) return 0;
         unsigned faces = 0;
         for (std::size_t d = 0; d < size_; ++d) {
             if (padded_ &&
@@ -106,7 +123,6 @@ public:
                 return (1U << corners_) - 1U;
             }
             for (const std::uint32_t plane : {0U, cells_[d]}) {
-                // A face has at least one of any two corners.
                 if (at(e.corner[0], d) != plane && at(e.corner[1], d) != plane) continue;
                 unsigned off = 0;
                 for (std::size_t i = 0; i < corners_; ++i) {
@@ -118,36 +134,33 @@ public:
         return faces;
     }
 
-    /// Every node created below the coarse grid, fine to coarse, each once.
     template <class Function>
-    void for_each_star(Function&& function) const;
+    void for_each_star_row(Function&& function) const;
 
     // What fields need.
-    Place middle(const Element& e) const { return (e.corner[0] + e.corner[e.tag]) >> 1U; }
+    Place middle(const Element& e) const { return middle(e.corner[0], e.corner[e.tag]); }
     Place corner_place(const Element& e, std::size_t k) const { return e.corner[k]; }
     Place new_place(const Element& e, std::size_t) const { return middle(e); }
 
 private:
     static constexpr std::size_t permutations_ = dim == 2 ? 2 : 6;
-
-    struct Move {
-        std::size_t offset = 0;
-        unsigned up = 0;  ///< directions, one bit each
-        unsigned down = 0;
-    };
+    static constexpr Place unit_ = Place{1} | Place{1} << bits_ |  // odd coordinates
+                                   (dim == 3 ? Place{1} << 2 * bits_ : Place{0});
 
     /// Whether no edge can be halved: the refinement edge has lattice steps of 1.
-    bool is_unit(const Element& e) const {
-        const Place sum = e.corner[0] ^ e.corner[e.tag];
-        constexpr Place ones = dim == 2 ? (Place{1} | Place{1} << bits_)
-                                        : (Place{1} | Place{1} << bits_ | Place{1} << 2 * bits_);
-        return (sum & ones) != 0;
+    bool is_unit(const Element& e) const { return !halved(e.corner[0], e.corner[e.tag]); }
+    /// Whether no coordinate is the first or the last. Subtracting 1 from each clears the bit above
+    /// it, which is free, where it is 0.
+    bool inner(Place p) const {
+        constexpr Place above = unit_ << (bits_ - 1);
+        const auto nonzero = [](Place q) { return ((q | above) - unit_) & above; };
+        return (nonzero(p) & nonzero(p ^ last_)) == above;
     }
-    std::vector<Move> star_moves(std::uint32_t step, unsigned odd) const;
     template <class Function>
-    void stars_of_step(std::uint32_t step, unsigned odd, Function& function) const;
+    void star_rows_of_step(std::uint32_t step, unsigned odd, Function& function) const;
 
     std::array<const Rule*, corners_> rules_{};  // by tag
+    Place last_ = 0;                             // of the domain
 };
 
 }  // namespace nestgrid

@@ -15,6 +15,7 @@ LatticeBisection<dim>::LatticeBisection(const LatticeGeometry<dim>& geometry)
         rules_[static_cast<std::size_t>(tag)] =
             &bisection_rule(dim == 2 ? Shape::triangle : Shape::tetrahedron, tag);
     }
+    for (std::size_t d = 0; d < size_; ++d) last_ |= Place{cells_[d]} << (bits_ * d);
 }
 
 template <int dim>
@@ -54,93 +55,106 @@ auto LatticeBisection<dim>::coarse(std::size_t i) const -> CoarseElement<Element
     return result;
 }
 
-/// Where the corners of a star lie, seen from its node: a step away in every odd direction, or in
-/// at least one even direction, at the centres of what the refinement edge or face bounds.
-template <int dim>
-auto LatticeBisection<dim>::star_moves(std::uint32_t step, unsigned odd) const
-    -> std::vector<Move> {
-    std::vector<Move> moves;
-    const unsigned even = ~odd & ((1U << size_) - 1U);
-    const auto add = [&](unsigned directions) {
-        for (unsigned up = directions;; up = (up - 1U) & directions) {
-            Move move;
-            for (std::size_t d = 0; d < size_; ++d) {
-                if ((directions >> d & 1U) == 0) continue;
-                const bool positive = (up >> d & 1U) != 0;
-                (positive ? move.up : move.down) |= 1U << d;
-                const std::size_t stride = node_stride_[d] * step;
-                move.offset += positive ? stride : std::size_t{0} - stride;
-            }
-            moves.push_back(move);
-            if (up == 0) break;
-        }
-    };
-    add(odd);
-    for (unsigned moved = even; moved != 0; moved = (moved - 1U) & even) add(moved);
-    return moves;
-}
-
 /// Nodes whose coordinates are odd multiples of `step` in the directions `odd`, even ones in the
-/// others: centres of edges, faces or cells of the lattice with twice that step.
+/// others: centres of edges, faces or cells of the lattice with twice that step. Where no direction
+/// is odd, all multiples: the nodes of the coarse grid. Around a node lie: centres of finer cells,
+/// half a step away in every direction; where two directions are odd or three, the centres of its
+/// edges or faces, a step away in one of those. Those of the edges of a cell are covered through
+/// its faces', all in a cell through its centre.
 template <int dim>
 template <class Function>
-void LatticeBisection<dim>::stars_of_step(std::uint32_t step, unsigned odd,
-                                          Function& function) const {
-    std::array<std::uint32_t, 3> first{0, 0, 0};
-    std::array<std::uint32_t, 3> last{0, 0, 0};
-    for (std::size_t d = 0; d < size_; ++d) {
-        first[d] = (odd >> d & 1U) != 0 ? step : 0;
-        last[d] = padded_cells_[d];
-    }
-    const std::vector<Move> moves = star_moves(step, odd);
-    std::array<std::uint32_t, 3> x{};
-    std::array<NodeKey, 16> corners;
-    const auto visit = [&] {
-        std::size_t index = 0;
-        std::size_t half = 0;  // from the node to the end of the refinement edge
-        unsigned at_first = 0;
-        unsigned at_last = 0;
-        bool across = false;
-        for (std::size_t d = 0; d < size_; ++d) {
-            const bool is_odd = (odd >> d & 1U) != 0;
-            // Elements reach one step to each side; where all lie beyond, all are masked.
-            if (x[d] >= cells_[d] + step) return;
-            index += x[d] * node_stride_[d];
-            across = across || x[d] + (is_odd ? step : 0U) > cells_[d];
-            at_first |= unsigned{x[d] == 0} << d;
-            at_last |= unsigned{x[d] == last[d]} << d;
-            // The diagonal starts at the multiple of four steps.
-            const std::size_t stride = node_stride_[d] * step;
-            if (is_odd) half += x[d] % (4 * step) == step ? stride : std::size_t{0} - stride;
-        }
-        std::size_t count = 0;
-        for (const Move& move : moves) {
-            if (((move.up & at_last) | (move.down & at_first)) != 0) continue;
-            corners[count++] = static_cast<NodeKey>(index + move.offset);
-        }
-        const std::array<NodeKey, 2> parents{static_cast<NodeKey>(index - half),
-                                             static_cast<NodeKey>(index + half)};
-        function(Star{static_cast<NodeKey>(index), parents,
-                      std::span<const NodeKey>(corners.data(), count), padded_ && across});
+void LatticeBisection<dim>::star_rows_of_step(std::uint32_t step, unsigned odd,
+                                              Function& function) const {
+    const auto is_odd = [&](std::size_t d) { return (odd >> d & 1U) != 0; };
+    const auto key_step = [&](std::size_t d, std::uint32_t steps) {
+        return static_cast<std::ptrdiff_t>(node_stride_[d] * steps);
     };
-    for (x[2] = first[2]; x[2] <= last[2]; x[2] += 2 * step) {
-        for (x[1] = first[1]; x[1] <= last[1]; x[1] += 2 * step) {
-            for (x[0] = first[0]; x[0] <= last[0]; x[0] += 2 * step) visit();
+    const std::uint32_t spacing = odd == 0 ? step : 2 * step;
+    std::array<std::uint32_t, 3> x{};
+    std::array<std::ptrdiff_t, 14> finer;
+    // Rows are cut so that all nodes of one have around them what there is around x: where x[0] is
+    // odd by its remainder modulo four steps, and else at the first and at the last.
+    const auto give_row = [&](std::uint32_t apart, std::size_t count, std::size_t outside) {
+        StarRow row;
+        row.stride = node_stride_[0] * apart;
+        row.count = count;
+        row.outside = outside;
+        row.has_parents = odd != 0;
+        std::size_t found = 0;
+        for (unsigned up = 0; step > 1 && up < 1U << size_; ++up) {
+            std::ptrdiff_t offset = 0;
+            bool within = true;
+            for (std::size_t d = 0; d < size_; ++d) {
+                const bool upwards = (up >> d & 1U) != 0;
+                offset += (upwards ? 1 : -1) * key_step(d, step / 2);
+                within = within && x[d] != (upwards ? padded_cells_[d] : 0U);
+            }
+            if (within) finer[found++] = offset;
         }
+        std::ptrdiff_t half = 0;  // from a node to the end of its refinement edge
+        for (std::size_t d = 0; d < size_; ++d) {
+            row.first += x[d] * node_stride_[d];
+            if (!is_odd(d)) continue;
+            // The diagonal starts at the multiple of four steps.
+            half += (x[d] % (4 * step) == step ? 1 : -1) * key_step(d, step);
+            if (std::popcount(odd) < 2) continue;
+            finer[found++] = -key_step(d, step);
+            finer[found++] = key_step(d, step);
+        }
+        row.parent = {-half, half};
+        row.finer = std::span<const std::ptrdiff_t>(finer.data(), found);
+        function(static_cast<const StarRow&>(row));
+    };
+    // Elements reach one step to each side; where all lie beyond, all are masked.
+    const auto beyond_all = [&](std::size_t d, std::uint32_t c) { return c >= cells_[d] + step; };
+    const auto across = [&](std::size_t d, std::uint32_t c) {
+        return padded_ && c + (is_odd(d) ? step : 0U) > cells_[d];
+    };
+    const auto line = [&] {
+        bool all_across = false;
+        for (std::size_t d = 1; d < size_; ++d) {
+            if (odd != 0 && beyond_all(d, x[d])) return;
+            all_across = all_across || across(d, x[d]);
+        }
+        const std::uint32_t last = padded_cells_[0];
+        const auto run = [&](std::uint32_t first, std::uint32_t end, std::uint32_t by) {
+            std::size_t count = 0;
+            std::size_t outside = 0;
+            for (std::uint32_t c = first; c < end && (odd == 0 || !beyond_all(0, c)); c += by) {
+                ++count;
+                outside += odd != 0 && (all_across || across(0, c)) ? 1U : 0U;
+            }
+            x[0] = first;
+            if (count > 0) give_row(by, count, outside);
+        };
+        if (is_odd(0)) {
+            run(step, last, 4 * step);
+            run(3 * step, last, 4 * step);
+        } else {
+            run(0, 1, spacing);
+            run(spacing, last, spacing);
+            run(last, last + 1, spacing);
+        }
+    };
+    const auto from = [&](std::size_t d) { return is_odd(d) ? step : 0U; };
+    const std::uint32_t last_z = dim == 3 ? padded_cells_[size_ - 1] : 0;
+    for (x[2] = from(2); x[2] <= last_z; x[2] += spacing) {
+        for (x[1] = from(1); x[1] <= padded_cells_[1]; x[1] += spacing) line();
     }
 }
 
 template <int dim>
 template <class Function>
-void LatticeBisection<dim>::for_each_star(Function&& function) const {
-    for (int level = 0; level < levels_; ++level) {
-        const std::uint32_t step = 1U << static_cast<unsigned>(level);
+void LatticeBisection<dim>::for_each_star_row(Function&& function) const {
+    std::uint32_t step = 1;
+    for (int level = 0; level < levels_; ++level, step *= 2) {
         for (int directions = 1; directions <= dim; ++directions) {
             for (unsigned odd = 1; odd < 1U << size_; ++odd) {
-                if (std::popcount(odd) == directions) stars_of_step(step, odd, function);
+                if (std::popcount(odd) == directions) star_rows_of_step(step, odd, function);
             }
         }
     }
+    star_rows_of_step(step, 0, function);
 }
 
 }  // namespace nestgrid

@@ -14,6 +14,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include <nestgrid/error.hpp>
 #include <nestgrid/operations.hpp>
@@ -47,16 +48,17 @@ public:
     explicit Lattice(const LatticeGeometry<dim>& geometry);
 
     std::size_t node_count() const { return node_total_; }
-    std::uint32_t at(Place p, std::size_t d) const {
+    NESTGRID_INLINE std::uint32_t at(Place p, std::size_t d) const {
         return static_cast<std::uint32_t>(p >> (bits_ * d)) & ((1U << bits_) - 1U);
     }
-    NodeKey node(Place p) const {
+    NESTGRID_INLINE NodeKey node(Place p) const {
         std::size_t index = 0;
         for (std::size_t d = 0; d < size_; ++d) index += at(p, d) * node_stride_[d];
         return static_cast<NodeKey>(index);
     }
     /// Index of the sample at a place of the lattice; padding continues the last samples.
-    std::size_t sample(Place p) const {
+    NESTGRID_INLINE std::size_t sample(Place p) const {
+        if (!padded_) return static_cast<std::size_t>(node(p));
         std::size_t index = 0;
         for (std::size_t d = 0; d < size_; ++d) {
             index += std::min(at(p, d), cells_[d]) * sample_stride_[d];
@@ -74,6 +76,10 @@ public:
     }
     Point position(Place p) const {
         Point x = geometry_.origin;
+        if (aligned_) {
+            for (std::size_t d = 0; d < size_; ++d) x[d] = along_[d][at(p, d)];
+            return x;
+        }
         for (std::size_t d = 0; d < size_; ++d) {
             const double step = geometry_.spacing[d] * at(p, d);
             for (std::size_t r = 0; r < 3; ++r) x[r] += geometry_.direction[r][d] * step;
@@ -86,6 +92,8 @@ public:
     std::size_t samples(std::size_t d) const { return cells_[d] + 1U; }
     std::size_t sample_stride(std::size_t d) const { return sample_stride_[d]; }
     int block_levels() const { return levels_; }
+    /// Whether nothing is padded: then nodes and samples are the same.
+    bool whole() const { return !padded_; }
 
 protected:
     static constexpr std::size_t size_ = static_cast<std::size_t>(dim);
@@ -109,6 +117,8 @@ protected:
     std::size_t node_total_ = 0;
     int levels_ = 0;
     bool padded_ = false;
+    bool aligned_ = false;                          // the axes are those of space, and
+    std::array<std::vector<double>, size_> along_;  // these the coordinates along them
     std::int8_t handedness_ = 1;
 
 private:
@@ -145,7 +155,13 @@ public:
         }
         return 0;
     }
-    value_type value(NodeKey node) const { return at(grid_->place(node)); }
+    template <bool whole>
+    NESTGRID_INLINE value_type value_at(typename Grid::Place p, NodeKey node) const {
+        return whole ? sample(node) : at(p);
+    }
+    value_type value(NodeKey node) const {
+        return grid_->whole() ? sample(node) : at(grid_->place(node));
+    }
 
     /// Central differences of the samples, one-sided at the boundary.
     void corner_gradients(const Element& e, std::span<Point> out) const {
@@ -155,7 +171,10 @@ public:
 private:
     static constexpr std::size_t corners_ = static_cast<std::size_t>(Grid::max_corners);
 
-    value_type at(typename Grid::Place p) const {
+    NESTGRID_INLINE value_type sample(NodeKey node) const {
+        return static_cast<value_type>(samples_[static_cast<std::size_t>(node)]);
+    }
+    NESTGRID_INLINE value_type at(typename Grid::Place p) const {
         return static_cast<value_type>(samples_[grid_->sample(p)]);
     }
     Point gradient(typename Grid::Place p) const;
@@ -189,6 +208,7 @@ Lattice<dim>::Lattice(const LatticeGeometry<dim>& geometry) : geometry_{geometry
         throw InvalidInput("spacing, direction or origin of the lattice is flat or not finite");
     }
     handedness_ = static_cast<std::int8_t>(volume < 0 ? -1 : 1);
+    aligned_ = geometry.direction == LatticeGeometry<dim>{}.direction;
     choose_blocks();
     node_total_ = block_total_ = 1;
     for (std::size_t d = 0; d < size_; ++d) {
@@ -197,6 +217,9 @@ Lattice<dim>::Lattice(const LatticeGeometry<dim>& geometry) : geometry_{geometry
         node_stride_[d] = node_total_;
         node_total_ *= padded_cells_[d] + std::size_t{1};
         padded_ = padded_ || padded_cells_[d] != cells_[d];
+        for (std::uint32_t i = 0; aligned_ && i <= padded_cells_[d]; ++i) {
+            along_[d].push_back(geometry.origin[d] + geometry.spacing[d] * i);
+        }
     }
 }
 

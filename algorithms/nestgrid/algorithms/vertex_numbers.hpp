@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The numbers of a surface's vertices by the two nodes they lie between.
+//
+// A flat hash table of 16 bytes a slot, at most five eighths full. A slot holds one word made of
+// the two keys: the keys themselves where both are below 2^32, else a mix of them, which two pairs
+// share as rarely as two nodes share a derived key (keys.hpp).
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <nestgrid/inlining.hpp>
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid {
+
+class VertexNumbers {
+public:
+    using Number = std::uint32_t;
+
+    /// \param small_keys all keys are below 2^32
+    explicit VertexNumbers(bool small_keys = false) : small_keys_{small_keys} {}
+
+    /// The number of the vertex between two nodes, and whether it is new; then it is `number`.
+    NESTGRID_INLINE std::pair<Number, bool> insert(const KeyPair& nodes, Number number) {
+        if (8 * size_ >= 5 * slots_.size()) grow();
+        const NodeKey word = small_keys_ ? (nodes.low << 32U | nodes.high)
+                                         : detail::mix(detail::mix(nodes.low) + nodes.high);
+        Slot* slot = place(word);
+        if (slot->round == round_) return {slot->number, false};
+        *slot = {word, number, round_};
+        ++size_;
+        return {number, true};
+    }
+
+    /// Forgets everything but its memory.
+    void clear() {
+        size_ = 0;
+        if (++round_ != 0) return;
+        for (Slot& slot : slots_) slot.round = 0;
+        round_ = 1;
+    }
+
+    std::size_t memory_bytes() const { return slots_.capacity() * sizeof(Slot); }
+
+private:
+    struct Slot {
+        NodeKey word = 0;
+        Number number = 0;
+        std::uint32_t round = 0;  // in which it was used; what is older counts as empty
+    };
+
+    NESTGRID_INLINE Slot* place(NodeKey word) {
+        auto bits = static_cast<std::uint64_t>(word);
+        bits = (bits ^ bits >> 32U) * 0x9e3779b97f4a7c15ULL;
+        Slot* const slots = slots_.data();
+        std::size_t at = (bits ^ bits >> 32U) & mask_;
+        while (slots[at].round == round_ && slots[at].word != word) at = (at + 1) & mask_;
+        return slots + at;
+    }
+
+    NESTGRID_NOINLINE void grow() {
+        // Twice the memory of a small table costs nothing, and moving its slots less often does.
+        const std::size_t factor = slots_.size() < (std::size_t{1} << 16U) ? 8 : 2;
+        std::vector<Slot> old(slots_.empty() ? std::size_t{1024} : factor * slots_.size());
+        old.swap(slots_);
+        mask_ = slots_.size() - 1;
+        for (const Slot& slot : old) {
+            if (slot.round == round_) *place(slot.word) = slot;
+        }
+    }
+
+    std::vector<Slot> slots_;
+    std::size_t mask_ = 0;
+    std::size_t size_ = 0;
+    std::uint32_t round_ = 1;
+    bool small_keys_;
+};
+
+}  // namespace nestgrid

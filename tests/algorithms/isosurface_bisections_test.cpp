@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where bisections are known at compile time, behind tables too, surfaces are those of the plain
+// traversal.
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/any_grid.hpp>
+
+#include "same_surface.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid;
+using namespace nestgrid_test;
+
+namespace {
+
+/// The same grid, of which nothing is known at compile time.
+template <int dim>
+struct Unknown : LatticeBisection<dim> {
+    using LatticeBisection<dim>::LatticeBisection;
+    struct Nothing {};
+    static constexpr Nothing bisections{};
+};
+static_assert(KnowsBisections<LatticeBisection<3>, LatticeField<LatticeBisection<3>, float>>);
+static_assert(!KnowsBisections<Unknown<3>, LatticeField<Unknown<3>, float>>);
+
+template <int dim, class Sample>
+void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vector<Sample>& samples,
+                          const std::vector<double>& isovalues, double range) {
+    const LatticeBisection<dim> known(geometry);
+    const Unknown<dim> unknown(geometry);
+    const LatticeField known_field(known, std::span<const Sample>(samples));
+    const LatticeField unknown_field(unknown, std::span<const Sample>(samples));
+    const AnyGrid<dim> any(known);
+    const AnyField<typename decltype(known_field)::value_type> any_field(known, known_field);
+    EXPECT_TRUE(any_field.bisects(any));
+    EXPECT_FALSE(any_field.bisects(AnyGrid<dim>(unknown)));
+    const HierarchicalIndicator indicator(known, known_field);
+    for (const double threshold : {0.0, 0.01, 0.1, 10.0}) {
+        SCOPED_TRACE("threshold " + std::to_string(threshold));
+        const auto draw = [&](const auto& grid, const auto& field, const auto& criterion) {
+            return isosurfaces(grid, field, isovalues, criterion, indicator);
+        };
+        const Threshold<HierarchicalIndicator> by_offset{&indicator, threshold * range};
+        const auto check = [&](const auto& criterion) {
+            const auto a = draw(known, known_field, criterion);
+            const auto b = draw(unknown, unknown_field, criterion);
+            const auto c = draw(any, any_field, criterion);
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                expect_same(a[i], b[i]);
+                expect_same(a[i], c[i]);
+            }
+        };
+        check(by_offset);
+        check(by_offset || DeepestLevel{7});
+    }
+}
+
+std::vector<float> slice(const std::vector<float>& values, const Samples& n) {
+    return {values.begin(), values.begin() + n[0] * n[1]};
+}
+
+TEST(KnownBisections, DrawWhatThePlainTraversalDraws) {
+    for (const Samples& n : {Samples{17, 17, 17}, Samples{20, 9, 13}}) {
+        const std::array<Point, 3> turned{{{0, -1, 0}, {1, 0, 0.25}, {0, 0, -1}}};
+        for (const SampledField& data : sampled_fields(n)) {
+            SCOPED_TRACE(data.name);
+            const double c = data.isovalue;
+            const std::vector<double> doubles(data.values.begin(), data.values.end());
+            expect_same_surfaces<3>({.samples = n}, data.values, {c}, data.range);
+            expect_same_surfaces<3>({.samples = n, .spacing = {0.5, 2, 0.3}, .direction = turned},
+                                    doubles, {c, 0.9 * c, c}, data.range);
+            expect_same_surfaces<2>({.samples = {n[0], n[1]}}, slice(data.values, n), {c, 1.1 * c},
+                                    data.range);
+        }
+    }
+}
+
+/// Isovalues between two numbers of the values' type, and at one.
+TEST(KnownBisections, TellInsideFromOutsideInTheirOwnType) {
+    const Samples n{9, 9, 9};
+    std::vector<float> values = sampled_fields(n)[0].values;
+    const float exact = values[200];
+    for (const double c :
+         {double{exact}, std::nextafter(double{exact}, 2.0), std::nextafter(double{exact}, -2.0)}) {
+        expect_same_surfaces<3>({.samples = n}, values, {c}, 1);
+    }
+}
+
+TEST(KnownBisections, ReportProgressAndStop) {
+    const Samples n{65, 65, 65};
+    const SampledField data = sampled_fields(n)[1];
+    const LatticeBisection<3> grid({.samples = n});
+    const LatticeField field(grid, std::span<const float>(data.values));
+    std::uint64_t last = 0;
+    const auto grows = [&](const TraversalCounts& counts) {
+        EXPECT_GT(counts.calls, last);
+        EXPECT_GT(counts.calls, counts.visited);
+        last = counts.calls;
+        return true;
+    };
+    const auto whole = isosurface(grid, field, data.isovalue, {.progress = grows});
+    EXPECT_GT(last, 0U);
+    EXPECT_GT(whole.counts.calls, last);
+    const auto part =
+        isosurface(grid, field, data.isovalue, {.progress = [](const auto&) { return false; }});
+    EXPECT_TRUE(part.cancelled);
+    EXPECT_LT(part.surface.simplices.size(), whole.surface.simplices.size());
+}
+
+}  // namespace

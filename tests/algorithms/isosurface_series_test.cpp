@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Surfaces drawn one after the other are those drawn alone, and cost no allocation.
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/adapters/lattice_octree.hpp>
+#include <nestgrid/algorithms/isosurface_series.hpp>
+
+#include "counting_allocator.hpp"
+#include "refusal.hpp"
+#include "same_surface.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid;
+using namespace nestgrid_test;
+
+namespace {
+
+template <class Grid>
+class SeriesOn : public testing::Test {};
+using Grids =
+    testing::Types<LatticeBisection<2>, LatticeBisection<3>, LatticeOctree<2>, LatticeOctree<3>>;
+TYPED_TEST_SUITE(SeriesOn, Grids);
+
+template <class Grid>
+struct Case {
+    static constexpr int dim = Grid::dimension;
+    SampledField data = sampled_fields({21, 17, 19})[1];  // a gyroid
+    Grid grid = make_grid();
+    std::vector<float> samples{
+        data.values.begin(),
+        data.values.begin() + static_cast<std::ptrdiff_t>(grid.sample_count())};
+    LatticeField<Grid, float> field{grid, std::span<const float>(samples)};
+
+    static Grid make_grid() {
+        if constexpr (dim == 2) {
+            return Grid({.samples = {21, 17}});
+        } else {
+            return Grid({.samples = {21, 17, 19}});
+        }
+    }
+};
+
+TYPED_TEST(SeriesOn, DrawsWhatIsDrawnAlone) {
+    const Case<TypeParam> c;
+    IsosurfaceSeries series(c.grid, c.field);
+    std::vector<IsosurfaceOptions> frames(6);
+    frames[1].threshold = 0.05 * c.data.range;
+    frames[2].cap = true;
+    frames[2].normals = true;
+    frames[3].max_triangles = 3000;
+    frames[4].reference = true;
+    frames[4].elements = false;
+    frames[5].progress = [](const TraversalCounts&) { return true; };
+    for (int round = 0; round < 2; ++round) {
+        for (const IsosurfaceOptions& options : frames) {
+            for (const double offset : {0.0, 0.02, -0.05}) {
+                const double isovalue = c.data.isovalue + offset * c.data.range;
+                const auto alone =
+                    isosurface(c.grid, c.field, isovalue, series.indicator(), options);
+                expect_same(series.draw(isovalue, options), alone);
+            }
+        }
+    }
+}
+
+TYPED_TEST(SeriesOn, AllocatesNothingTheSecondTime) {
+    const Case<TypeParam> c;
+    IsosurfaceSeries series(c.grid, c.field);
+    const std::vector<double> isovalues{c.data.isovalue, 0.9 * c.data.isovalue,
+                                        1.1 * c.data.isovalue};
+    for (const double isovalue : isovalues) series.draw(isovalue);
+    const std::size_t before = allocation_count();
+    std::size_t simplices = 0;
+    for (const double isovalue : isovalues) {
+        simplices += series.draw(isovalue).surface.simplices.size();
+    }
+    EXPECT_EQ(allocation_count(), before);
+    EXPECT_GT(simplices, 100U);
+}
+
+TEST(Series, RefusesWhatIsosurfaceRefuses) {
+    const Case<LatticeBisection<3>> c;
+    IsosurfaceSeries series(c.grid, c.field);
+    expect_refused([&] { series.draw(std::nan("")); }, "isovalue");
+    expect_refused([&] { series.draw(0, {.threshold = -1}); }, "threshold");
+    EXPECT_GT(series.draw(c.data.isovalue).surface.simplices.size(), 0U);
+}
+
+}  // namespace

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the interface costs: triangles of the bucky ball into a buffer, by the concept, by a
+// type-erased grid, and by a recursion written by hand for this one grid. Where valgrind is
+// installed its instructions per element are counted first; more than 105 fail the run, for then it
+// would be a bad measure. One "name value" line per figure; --quick takes 33^3 samples instead of
+// 129^3.
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+
+#include <nestgrid/any_grid.hpp>
+
+#include "bucky_samples.hpp"
+
+namespace {
+
+constexpr double most_instructions = 105;
+
+/// What --handwritten runs under valgrind.
+constexpr int counted = 65;
+
+/// Instructions of a run of this program with one argument, counted by callgrind; 0 where it
+/// cannot.
+double instructions(const std::string& program, const std::string& argument) {
+    const std::string out = "callgrind." + argument + ".txt";
+    const std::string command = "valgrind --tool=callgrind --callgrind-out-file=/dev/null '" +
+                                program + "' " + argument + " >" + out + " 2>&1";
+    double result = 0;
+    if (std::system(command.c_str()) == 0) {
+        std::ifstream lines(out);
+        for (std::string word; lines >> word;) {
+            if (word == "Collected") lines >> word >> result;
+        }
+    }
+    std::remove(out.c_str());
+    return result;
+}
+
+template <int n>
+void compare(std::size_t rounds) {
+    Bucky<n> bucky;
+    const nestgrid::AnyGrid<3> any(bucky.grid);
+    const nestgrid::AnyField<float> any_field(bucky.grid, bucky.field);
+    for (const float threshold : bucky_thresholds) {
+        Contest contest(rounds);
+        nestgrid::TraversalCounts counts;
+        std::size_t triangles = 0;
+        contest.add("handwritten", [&] { bucky.handwritten(threshold); });
+        contest.add("concept", [&] {
+            triangles = bucky.draw_soup(bucky.grid, bucky.field, threshold, &counts);
+        });
+        contest.add("anygrid", [&] { bucky.draw_soup(any, any_field, threshold); });
+        contest.run();
+        const auto print = [&](const char* name, double value) {
+            Contest::print_figure(at_threshold(name, threshold), value);
+        };
+        const auto handwritten = bucky.handwritten(threshold);
+        if (handwritten.calls() != counts.calls || handwritten.visited() != counts.visited) {
+            std::cerr << "the recursion by hand looks at other elements\n";
+            std::exit(1);
+        }
+        print("triangles", static_cast<double>(triangles));
+        print("calls", static_cast<double>(counts.calls));
+        print("handwritten_ms", contest.time("handwritten"));
+        print("concept_over_handwritten", contest.time("concept") / contest.time("handwritten"));
+        print("anygrid_over_handwritten", contest.time("anygrid") / contest.time("handwritten"));
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::string argument = argc > 1 ? argv[1] : "";
+    if (argument == "--handwritten" || argument == "--nothing") {
+        Bucky<counted> bucky;
+        if (argument == "--handwritten") bucky.handwritten(0);
+        return 0;
+    }
+    const double with = instructions(argv[0], "--handwritten");
+    if (with > 0) {
+        Bucky<counted> bucky;
+        const double per_call = (with - instructions(argv[0], "--nothing")) /
+                                static_cast<double>(bucky.handwritten(0).calls());
+        Contest::print_figure("handwritten_instructions_per_call", per_call);
+        if (per_call > most_instructions) {
+            std::cerr << "the recursion by hand takes more than " << most_instructions
+                      << " instructions per element\n";
+            return 1;
+        }
+    }
+    if (is_quick(argc, argv)) {
+        compare<33>(3);
+    } else {
+        compare<129>(15);
+    }
+    return 0;
+}

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a second thread brings (oneTBB), on the bucky ball: triangles into a buffer, and an indexed
+// surface, which is the same to the last bit. One "name value" line per figure; --quick takes 33^3
+// samples instead of 129^3.
+#include <nestgrid/adapters/tbb.hpp>
+#include <nestgrid/algorithms/isosurface_series.hpp>
+
+#include "bucky_samples.hpp"
+
+namespace {
+
+template <int n>
+void compare(std::size_t rounds) {
+    Bucky<n> bucky;
+    const nestgrid::TbbExecutor two(2);
+    Contest::print_figure("threads", static_cast<double>(two.concurrency()));
+    nestgrid::IsosurfaceSeries one_series(bucky.grid, bucky.field);
+    nestgrid::IsosurfaceSeries two_series(bucky.grid, bucky.field);
+    for (const float threshold : bucky_thresholds) {
+        const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
+        Contest contest(rounds);
+        contest.add("soup_one", [&] { bucky.draw_soup(bucky.grid, bucky.field, threshold); });
+        contest.add("soup_two",
+                    [&] { bucky.draw_soup(bucky.grid, bucky.field, threshold, nullptr, two); });
+        contest.add("indexed_one", [&] { one_series.draw(double{bucky_isovalue}, options); });
+        contest.add("indexed_two", [&] { two_series.draw(double{bucky_isovalue}, options, two); });
+        contest.run();
+        for (const std::string name : {"soup", "indexed"}) {
+            Contest::print_figure(at_threshold(name + "_one_ms", threshold),
+                                  contest.time(name + "_one"));
+            Contest::print_figure(at_threshold(name + "_two_threads_speedup", threshold),
+                                  contest.time(name + "_one") / contest.time(name + "_two"));
+        }
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (is_quick(argc, argv)) {
+        compare<33>(3);
+    } else {
+        compare<129>(15);
+    }
+    return 0;
+}

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The bucky ball of docs/paper_table.md and its tetrahedra, for the benchmarks.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+
+#include "bucky_ball.hpp"
+#include "contest.hpp"
+#include "handwritten_bisection.hpp"
+
+inline constexpr float bucky_isovalue = 0.275F;
+inline constexpr std::array<float, 3> bucky_thresholds{0.0F, 0.005F, 0.02F};
+
+using Tetrahedra = nestgrid::LatticeBisection<3>;
+using Samples = nestgrid::LatticeField<Tetrahedra, float>;
+using Triangle = std::array<float, 9>;
+
+/// n samples along each direction.
+template <int n>
+struct Bucky {
+    using Handwritten = HandwrittenBisection<static_cast<std::uint32_t>(n)>;
+
+    std::vector<float> samples = bucky_ball(n);
+    Tetrahedra grid{{.samples = {n, n, n}}};
+    Samples field{grid, std::span<const float>(samples)};
+    nestgrid::HierarchicalIndicator indicator{grid, field};
+    std::vector<typename Handwritten::Node> nodes = handwritten_nodes();
+    std::vector<Triangle> soup = std::vector<Triangle>(40 * std::size_t{n} * n + 1000);
+
+    std::vector<typename Handwritten::Node> handwritten_nodes() const {
+        const auto bfloat16 = [](double x) {
+            return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(static_cast<float>(x)) >>
+                                              16U);
+        };
+        std::vector<typename Handwritten::Node> result;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            result.push_back(
+                {samples[i], bfloat16(indicator.stop(i)), bfloat16(indicator.bound(i))});
+        }
+        return result;
+    }
+
+    Handwritten handwritten(float threshold) {
+        Handwritten recursion(nodes.data(), bucky_isovalue, threshold, soup.data());
+        recursion.run();
+        return recursion;
+    }
+
+    /// Writes the triangles of any grid and field into `soup`.
+    /// \return how many
+    template <class Grid, class Field, class Executor = nestgrid::SequentialExecutor>
+    std::size_t draw_soup(const Grid& of, const Field& values, float threshold,
+                          nestgrid::TraversalCounts* counts = nullptr,
+                          const Executor& executor = {}) {
+        Triangle* to = soup.data();
+        const auto put = [&to](const std::array<nestgrid::Point, 3>& x) {
+            for (std::size_t i = 0; i < 9; ++i) (*to)[i] = static_cast<float>(x[i / 3][i % 3]);
+            ++to;
+        };
+        using Sink = nestgrid::SimplexStream<3, decltype(put)>;
+        const double isovalue = bucky_isovalue;
+        const nestgrid::Threshold<nestgrid::HierarchicalIndicator> criterion{&indicator, threshold};
+        const auto result = nestgrid::extract_isosurfaces(
+            of, values, std::span<const double>(&isovalue, 1), std::vector<Sink>{Sink(put)},
+            criterion, indicator, {}, executor);
+        if (counts != nullptr) *counts = result.front().counts;
+        return static_cast<std::size_t>(to - soup.data());
+    }
+};
+
+inline std::string at_threshold(const std::string& name, float threshold) {
+    char text[32];
+    std::snprintf(text, sizeof text, "_at_%g", static_cast<double>(threshold));
+    return name + text;
+}
+
+inline bool is_quick(int argc, char** argv) {
+    return argc > 1 && std::strcmp(argv[1], "--quick") == 0;
+}

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Several ways to the same thing, timed in turns: on a machine shared with others ratios are worth
+// more than times.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+class Contest {
+public:
+    /// \param rounds how often each contestant runs; the median counts
+    explicit Contest(std::size_t rounds) : rounds_{rounds} {}
+
+    void add(const std::string& name, std::function<void()> run) {
+        contestants_.push_back({name, std::move(run), {}});
+    }
+
+    void run() {
+        for (std::size_t round = 0; round < rounds_; ++round) {
+            for (Contestant& c : contestants_) {
+                const auto start = std::chrono::steady_clock::now();
+                c.run();
+                const std::chrono::duration<double, std::milli> time =
+                    std::chrono::steady_clock::now() - start;
+                c.times.push_back(time.count());
+            }
+        }
+        for (Contestant& c : contestants_) std::sort(c.times.begin(), c.times.end());
+    }
+
+    /// Median, in milliseconds.
+    double time(const std::string& name) const {
+        const auto c = std::find_if(contestants_.begin(), contestants_.end(),
+                                    [&](const Contestant& each) { return each.name == name; });
+        return c->times[c->times.size() / 2];
+    }
+
+    void print_times() const {
+        for (const Contestant& c : contestants_) {
+            print_figure(c.name + "_ms", c.times[c.times.size() / 2]);
+        }
+    }
+
+    static void print_figure(const std::string& name, double value) {
+        std::printf("%s %.4g\n", name.c_str(), value);
+        std::fflush(stdout);
+    }
+
+private:
+    struct Contestant {
+        std::string name;
+        std::function<void()> run;
+        std::vector<double> times;
+    };
+
+    std::size_t rounds_;
+    std::vector<Contestant> contestants_;
+};
