@@ -101,7 +101,8 @@ std::size_t contour(Filter* filter, double isovalue) {
     filter->SetValue(0, isovalue);
     filter->Modified();
     filter->Update();
-    return static_cast<std::size_t>(filter->GetOutput()->GetNumberOfCells());
+    return static_cast<std::size_t>(
+        vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells());
 }
 
 template <class Filter>

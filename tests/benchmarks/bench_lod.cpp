@@ -19,6 +19,8 @@
 namespace {
 
 using nestgrid::Point;
+using nestgrid::operator*;
+using nestgrid::operator+;
 
 class Trilinear {
 public:
