@@ -10,8 +10,9 @@ file(REMOVE_RECURSE ${work})
 run(${CMAKE_COMMAND} --install ${build} --prefix ${work}/prefix)
 set(configure ${CMAKE_COMMAND} -S ${source} -G ${generator} -D CMAKE_CXX_COMPILER=${compiler} -D
               CMAKE_CXX_FLAGS=${flags} -D CMAKE_PREFIX_PATH=${work}/prefix)
-string(REPLACE ";" "\\;" everything "${everything}")
-foreach(components "" bisection "bisection\;algorithms" "${everything}")
+# Separated by commas: a list would come apart on its way to the command.
+string(REPLACE ";" "," everything "${everything}")
+foreach(components "" bisection "bisection,algorithms" "${everything}")
   string(MAKE_C_IDENTIFIER "build_${components}" folder)
   run(${configure} -B ${work}/${folder} -D components=${components})
   if(NOT components STREQUAL "bisection")
