@@ -19,6 +19,7 @@
 
 #include "closedness.hpp"
 #include "refusal.hpp"
+#include "solver_laws.hpp"
 #include "thread_executor.hpp"
 
 namespace nestgrid_test {
@@ -105,11 +106,13 @@ std::size_t expect_closed_at_all_thresholds(const Grid& grid, const std::vector<
     return triangles.front();
 }
 
-/// All of it.
+/// All of it, in the unit cube or square.
 template <class Solver>
-void expect_laws(const Solver& solver, double volume = 1) {
+void expect_laws(const Solver& solver) {
     const DuneGrid grid(solver);
-    expect_sound(grid, volume);
+    expect_sound(grid, 1);
+    const std::vector<double> plane = at_vertices(solver, slanted<Solver::dimension>);
+    expect_linear_exact(grid, DuneVertexField(grid, plane));
     EXPECT_GT(expect_closed_at_all_thresholds(grid, at_vertices(solver, ball)), 8U);
     EXPECT_GT(expect_closed_at_all_thresholds(grid, noise(solver)), 8U);
 }

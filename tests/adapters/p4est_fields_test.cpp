@@ -53,6 +53,21 @@ TEST(P4estNodalField, ReproducesLinearFunctionsAndInterpolatesHangingNodes) {
     check_nodal_field<float, 3>(1e-5);
 }
 
+template <int dim>
+void expect_planes() {
+    for_each_forest<dim>(true, [](const std::string& name, const auto& forest, const auto& map) {
+        if (name != "square" && name != "cube") return;
+        const P4estGrid grid(forest.get(), map);
+        const auto nodes = forest.nodes();
+        const std::vector<double> values = nodal_values(grid, *nodes, slanted<dim>);
+        expect_linear_exact(grid, P4estNodalField(grid, nodes.get(), values));
+    });
+}
+TEST(P4estNodalField, LevelSetsOfLinearFunctionsArePlanes) {
+    expect_planes<2>();
+    expect_planes<3>();
+}
+
 TEST(P4estNodalField, SurfacesAreClosedAtEveryThreshold) {
     const auto check = [](const std::string& name, const auto& forest, const auto& map) {
         const P4estGrid grid(forest.get(), map);

@@ -4,6 +4,8 @@
 // The laws that a grid inside a real solver must obey, with the solver's own data on it.
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/algorithms/project.hpp>
 #include <nestgrid/check_grid.hpp>
 
@@ -69,17 +71,58 @@ void expect_closed_levels(const Grid& grid, const Field& field, double isovalue,
     }
 }
 
-/// A linear function is its own projection: every vertex lies on the plane, at any threshold.
-template <class Grid, class Field, class Linear>
-void expect_linear_exact(const Grid& grid, const Field& field, double isovalue,
-                         const Linear& linear) {
-    const HierarchicalIndicator indicator(grid, field);
-    for (const double threshold : {1e-12, 1.0}) {
-        const auto result = isosurface(grid, field, isovalue, indicator, {.threshold = threshold});
-        EXPECT_GT(result.surface.vertices.size(), 0U);
-        for (const Point& x : result.surface.vertices) {
-            EXPECT_NEAR(linear(x), isovalue, 2e-6);  // cuts keep away from nodes
+/// A linear function, and where it has a value in the unit cube, square or segment.
+struct Plane {
+    Point slope;  ///< no component 0, but the last of the plane
+    double isovalue;
+
+    double operator()(const Point& x) const {
+        return slope[0] * x[0] + slope[1] * x[1] + slope[2] * x[2];
+    }
+    /// Area, or length in two dimensions, by the corners on one side.
+    double area(int dim) const {
+        const auto n = static_cast<unsigned>(dim);
+        double sum = 0;
+        double product = dim == 3 ? 2 : 1;
+        for (unsigned d = 0; d < n; ++d) product *= slope[d];
+        for (unsigned corner = 0; corner < 1U << n; ++corner) {
+            const Point x{double(corner & 1U), double(corner >> 1U & 1U), double(corner >> 2U)};
+            const double above = std::max(0.0, isovalue - (*this)(x));
+            sum += (std::popcount(corner) % 2 == 0 ? 1 : -1) * std::pow(above, dim - 1);
         }
+        return norm(slope) * std::abs(sum / product);
+    }
+};
+
+/// A plane through the unit cube, and a line through the unit square, that pass by all nodes.
+inline constexpr Plane slanted_plane{{1, -2, 0.5}, -0.9 + 1 / 7.7};
+inline constexpr Plane slanted_line{{1, -2, 0}, -0.9 + 1 / 7.7};
+template <int dim>
+constexpr const Plane& slanted = dim == 2 ? slanted_line : slanted_plane;
+
+inline double size_of(const Surface<3, auto>& surface) { return surface_report(surface).area; }
+inline double size_of(const Surface<2, auto>& lines) {
+    double length = 0;
+    for (const auto& [a, b] : lines.simplices)
+        length += norm(lines.vertices[b] - lines.vertices[a]);
+    return length;
+}
+
+/// On a grid that fills the unit cube or square, with the plane's values at the nodes: a linear
+/// function is its own projection, so its surface is the plane, at any threshold.
+template <class Grid, class Field>
+void expect_linear_exact(const Grid& grid, const Field& field) {
+    const Plane& plane = slanted<Grid::dimension>;
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : {0.0, 1e-12, 1.0}) {
+        const auto surface =
+            isosurface(grid, field, plane.isovalue, indicator, {.threshold = threshold}).surface;
+        double off = 0;
+        for (const Point& x : surface.vertices) {
+            off = std::max(off, std::abs(plane(x) - plane.isovalue));
+        }
+        EXPECT_LE(off, 1e-14);
+        EXPECT_NEAR(size_of(surface), plane.area(Grid::dimension), 1e-12);
     }
 }
 

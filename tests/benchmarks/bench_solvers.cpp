@@ -4,14 +4,14 @@
 // An isosurface of a solution on an adaptive triangulation of deal.II: straight from the solver's
 // vector, and as it is done otherwise, by dealii::DataOut and VTK's contour, in memory or through a
 // file. Each contestant runs in a process of its own on the same solution, so that its peak of
-// memory is its own. Prints one "name value" line per figure; --quick takes a small grid.
+// memory is its own. Then, where they are there, p4est and Dune's UGGrid: what an element that is
+// visited costs in each. Prints one "name value" line per figure; --quick takes a small grid.
 #include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -42,27 +42,14 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <nestgrid/adapters/dealii.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
 
 #include "open_edges.hpp"
+#include "solver_runs.hpp"
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Vector = dealii::Vector<double>;
 constexpr double isovalue = 0;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-struct Run {
-    double first = 0;  // seconds, with everything a first surface needs
-    double next = 0;   // seconds, another isovalue on the same data
-    double bytes = 0;  // peak beside what was there before
-    double triangles = 0;
-    double visited = 0;
-};
 
 double peak_bytes() {
     std::ifstream status("/proc/self/status");
@@ -131,18 +118,7 @@ Run ours(const Problem& p, double threshold) {
     const auto start = Clock::now();
     const nestgrid::DealiiGrid<3> grid(p.triangulation);
     const nestgrid::DealiiField field(grid, p.dofs, p.values);
-    const nestgrid::HierarchicalIndicator indicator(grid, field);
-    {
-        const auto result = nestgrid::isosurface(grid, field, isovalue, indicator,
-                                                 {.threshold = threshold, .elements = false});
-        run.first = seconds_since(start);
-        run.triangles = static_cast<double>(result.surface.simplices.size());
-        run.visited = static_cast<double>(result.counts.visited);
-    }
-    const auto again = Clock::now();
-    nestgrid::isosurface(grid, field, isovalue + 1e-3, indicator,
-                         {.threshold = threshold, .elements = false});
-    run.next = seconds_since(again);
+    time_isosurfaces(grid, field, threshold, start, run);
     return run;
 }
 
@@ -294,6 +270,15 @@ void print_run(const std::string& name, const Run& run) {
     print(name + "_triangles", run.triangles);
 }
 
+/// \param run of another grid, at another level set
+[[maybe_unused]] void print_solver(const std::string& name, const Run& run) {
+    print(name + "_cells", run.leaves);
+    print(name + "_seconds_first", run.first);
+    print(name + "_seconds_next", run.next);
+    print(name + "_triangles", run.triangles);
+    print(name + "_ns_per_visited", 1e9 * run.next / run.visited);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -316,6 +301,12 @@ int main(int argc, char** argv) {
         print("dealii_time_ratio_next", memory.next / here.next);
         print("dealii_file_time_ratio_first", file.first / here.first);
         print_cracks(problem, 0.1);
+#ifdef NESTGRID_WITH_P4EST
+        print_solver("p4est", alone([&] { return run_p4est(quick ? 5 : 8); }));
+#endif
+#ifdef NESTGRID_WITH_DUNE
+        print_solver("dune_ug", alone([&] { return run_dune_ug(quick ? 2 : 5); }));
+#endif
     } catch (const std::exception& error) {
         std::fprintf(stderr, "bench_solvers: %s\n", error.what());
         return 1;
