@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/known_bisection.hpp>
 #include <nestgrid/traversal.hpp>
 
 namespace nestgrid {
@@ -38,9 +39,10 @@ enum class Law : std::uint8_t {
     hanging_value,   ///< a hanging node's value is its interpolant
     value_present,   ///< the field gives all values
     value_finite,
-    value_unique,  ///< one node, one value
-    position,      ///< own positions: those of eq. (1), and one node, one position
-    depth,         ///< the hierarchy ends
+    value_unique,     ///< one node, one value
+    position,         ///< own positions: those of eq. (1), and one node, one position
+    depth,            ///< the hierarchy ends
+    known_bisection,  ///< what is known at compile time is what split() and children() say
 };
 
 struct GridViolation {

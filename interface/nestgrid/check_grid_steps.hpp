@@ -96,6 +96,7 @@ private:
     bool deviates_from_mean(const Stencil& stencil, const std::vector<Corner>& nodes,
                             Real value) const;
     void check_positions(const State& s);
+    void check_known_bisection(const State& s, const Rule* rule);
     void check_own_keys(const State& s, std::span<const NodeKey> own);
     void check_values(std::size_t step, const char* which, std::size_t n, const Values& value);
     void check_hanging();

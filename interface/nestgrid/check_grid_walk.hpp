@@ -77,6 +77,56 @@ void GridChecker<Grid, Field>::check_positions(const State& s) {
 }
 
 template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const State& s,
+                                                     [[maybe_unused]] const Rule* rule) {
+    if constexpr (KnowsBisections<Grid, Field>) {
+        constexpr std::size_t corners = static_cast<std::size_t>(Grid::dimension) + 1;
+        const auto demand = [&](bool holds, const char* what) {
+            if (!holds) {
+                fail(Law::known_bisection, std::string(what) +
+                                               " is not what is known at compile time, in " +
+                                               name(s.step));
+            }
+        };
+        const std::size_t number = grid_.bisection(s.element);
+        demand(number < Grid::bisections.size(), "the number of the bisection");
+        const KnownBisection& known = Grid::bisections[number];
+        const auto n = grid_.nodes(s.element);
+        for (std::size_t k = 0; k < corners; ++k) {
+            demand(grid_.key(n[k]) == s.corner[k].key, "the node at a corner");
+        }
+        demand(grid_.nodes(grid_.element(number, n)) == n, "the element of some nodes");
+        const auto a = n[known.parent[0]];
+        const auto b = n[known.parent[1]];
+        demand(grid_.halved(a, b) == (rule != nullptr), "whether the element is split");
+        if (rule == nullptr) return;
+        demand(&grid_.rule(number) == rule, "the rule");
+        const auto z = grid_.middle(a, b);
+        NodeKey key{};
+        call_new_keys(grid_, context_, s.element, std::span<NodeKey>(&key, 1));
+        demand(grid_.key(z) == key, "the new node");
+        Real value{};
+        call_new_values(field_, context_, s.element, NodeMask{1}, std::span<Real>(&value, 1));
+        demand(field_.template value_at<false>(z, key) == value, "the value at the new node");
+        if (grid_.whole()) {
+            demand(field_.template value_at<true>(z, key) == value, "the value at the new node");
+        }
+        std::array<Element, 2> children;
+        call_children(grid_, context_, s.element, std::span<Element>(children));
+        for (std::size_t c = 0; c < 2; ++c) {
+            const KnownBisection::Half& half = known.child[c];
+            demand(grid_.bisection(children[c]) == half.bisection, "a child's bisection");
+            demand(rule->children[c].orientation == half.orientation, "a child's orientation");
+            const auto of_child = grid_.nodes(children[c]);
+            for (std::size_t k = 0; k < corners; ++k) {
+                demand(of_child[k] == (half.corner[k] == 4 ? z : n[half.corner[k]]),
+                       "a child's node");
+            }
+        }
+    }
+}
+
+template <class Grid, class Field>
 bool GridChecker<Grid, Field>::deviates_from_mean(const Stencil& stencil,
                                                   const std::vector<Corner>& nodes,
                                                   Real value) const {
@@ -153,6 +203,7 @@ void GridChecker<Grid, Field>::walk(const State& s) {
     }
     check_positions(s);
     const Rule* rule = call_split(grid_, context_, s.element);
+    check_known_bisection(s, rule);
     if (rule == nullptr) {
         std::array<NodeKey, max_corners> keys{};
         for (std::size_t k = 0; k < corners; ++k) keys[k] = s.corner[k].derived;

@@ -7,6 +7,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/any_grid.hpp>
+#include <nestgrid/check_grid.hpp>
 
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
@@ -76,6 +77,48 @@ TEST(KnownBisections, DrawWhatThePlainTraversalDraws) {
                                     data.range);
         }
     }
+}
+
+enum class Mistake { none, orientation, corner, leaf, node };
+
+/// One whose bisections at compile time are not those of split() and children().
+template <Mistake mistake>
+struct Mistaken : LatticeBisection<3> {
+    using LatticeBisection<3>::LatticeBisection;
+    static constexpr auto bisections = [] {
+        auto known = maubach_bisections<3>();
+        if (mistake == Mistake::orientation) known[2].child[1].orientation = 1;
+        if (mistake == Mistake::corner)
+            std::swap(known[1].child[0].corner[0], known[1].child[0].corner[1]);
+        return known;
+    }();
+    bool halved(Node a, Node b) const {
+        return LatticeBisection<3>::halved(a, b) && (mistake != Mistake::leaf || a < b);
+    }
+    Node middle(Node a, Node b) const {
+        return mistake == Mistake::node ? a : LatticeBisection<3>::middle(a, b);
+    }
+    using LatticeBisection<3>::middle;
+};
+
+template <Mistake mistake>
+std::string complaint() {
+    const Samples n{9, 9, 9};
+    const std::vector<float> values = sampled_fields(n)[0].values;
+    const Mistaken<mistake> grid({.samples = n});
+    const LatticeField field(grid, std::span<const float>(values));
+    const auto violation = check_grid(grid, field);
+    if (!violation) return "";
+    EXPECT_EQ(violation->law, Law::known_bisection);
+    return violation->sentence;
+}
+
+TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {
+    EXPECT_EQ(complaint<Mistake::none>(), "");
+    EXPECT_NE(complaint<Mistake::orientation>().find("orientation"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::corner>().find("a child's node"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::leaf>().find("whether the element is split"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::node>().find("the new node"), std::string::npos);
 }
 
 /// Isovalues between two numbers of the values' type, and at one.
