@@ -102,6 +102,12 @@ public:
     unsigned boundary_faces(const Element& e, AnyContext& c) const {
         return ask<unsigned>(table_->boundary_faces, "boundary_faces", e, c);
     }
+    bool knows_stars() const { return table_->library_star_rows != nullptr; }
+    template <class Function>
+    void for_each_star_row(Function&& function) const {
+        const std::function<void(const StarRow&)> call(std::ref(function));
+        table_->library_star_rows(table_->self, &call);
+    }
     std::uint64_t epoch() const {
         std::uint64_t epoch = 0;
         if (table_->epoch != nullptr) check(table_->epoch(table_->self, &epoch), "epoch");
@@ -164,6 +170,12 @@ public:
               "corner_gradients");
     }
 
+    bool knows_stars() const { return table_.library_value != nullptr; }
+    Real value(NodeKey node) const {
+        Real value{};
+        table_.library_value(table_.self, static_cast<std::uint64_t>(node), &value);
+        return value;
+    }
     /// Whether bisections below elements of this grid can be walked on the other side of the
     /// tables.
     template <int dim>

@@ -42,16 +42,16 @@ struct KnownBisection {
 template <int dim>
 constexpr std::array<KnownBisection, static_cast<std::size_t>(dim)> maubach_bisections() {
     std::array<KnownBisection, static_cast<std::size_t>(dim)> result;
-    for (std::uint8_t tag = 1; tag <= dim; ++tag) {
-        KnownBisection& rule = result[tag - 1U];
-        rule.parent = {0, tag};
-        for (std::uint8_t i = 0; i <= dim; ++i) {
-            const std::uint8_t next = i < tag ? static_cast<std::uint8_t>(i + 1) : i;
-            rule.child[0].corner[i] = i == tag ? std::uint8_t{4} : i;
-            rule.child[1].corner[i] = i == tag ? std::uint8_t{4} : next;
+    constexpr auto size = static_cast<std::size_t>(dim);
+    for (std::size_t tag = 1; tag <= size; ++tag) {
+        KnownBisection& rule = result[tag - 1];
+        rule.parent = {0, static_cast<std::uint8_t>(tag)};
+        for (std::size_t i = 0; i <= size; ++i) {
+            rule.child[0].corner[i] = static_cast<std::uint8_t>(i == tag ? 4 : i);
+            rule.child[1].corner[i] = static_cast<std::uint8_t>(i == tag ? 4 : i < tag ? i + 1 : i);
         }
         for (KnownBisection::Half& half : rule.child) {
-            half.bisection = static_cast<std::uint8_t>(tag == 1 ? dim - 1 : tag - 2);
+            half.bisection = static_cast<std::uint8_t>(tag == 1 ? size - 1 : tag - 2);
         }
         rule.child[1].orientation = static_cast<std::int8_t>(tag % 2 == 0 ? 1 : -1);
     }

@@ -106,9 +106,11 @@ typedef struct nestgrid_grid {
     void* (*make_context)(const void* self);
     void (*free_context)(const void* self, void* context);
 
-    /* Of the library's own tables, instead of `rules` and `split`; NULL in all others. */
+    /* Of the library's own tables, NULL in all others: C++ on both sides. library_split takes the
+     * place of `rules` and `split`. */
     int (*library_split)(const void* self, void* context, const nestgrid_element* e,
                          const void** rule);
+    int (*library_star_rows)(const void* self, const void* function);
 } nestgrid_grid;
 
 /* Values are float or double as value_type says; component c of node n goes to
@@ -131,6 +133,7 @@ typedef struct nestgrid_field {
     /* Of the library's own tables, NULL in all others: C++ on both sides. */
     int (*library_bisect)(const void* self, const nestgrid_grid* grid, const nestgrid_element* e,
                           const void* values, int level, int orientation, void* visitor);
+    int (*library_value)(const void* self, uint64_t node, void* out);
 } nestgrid_field;
 
 #ifdef __cplusplus

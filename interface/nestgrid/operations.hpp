@@ -27,6 +27,8 @@
 //         reaches across it; default: derived from coarse ids
 //     void for_each_star_row(f)
 //         calls f(StarRow) fine to coarse, each node in one row; default: sweeps
+//     bool knows_stars()
+//         whether it does, where that is decided at run time; of a field, whether it has value()
 //     Point node_position(NodeKey)
 //         random access, with for_each_star_row
 //     std::uint64_t epoch()
@@ -183,6 +185,16 @@ std::size_t dense_key_count(const Grid& grid) {
         return offers(grid, Feature::dense_keys) ? grid.node_count() : 0;
     } else {
         return 0;
+    }
+}
+
+/// Whether a grid or field that has the operations on stars can be asked for them.
+template <class Model>
+bool knows_stars(const Model& model) {
+    if constexpr (requires { model.knows_stars(); }) {
+        return model.knows_stars();
+    } else {
+        return true;
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <string>
 #include <type_traits>
 
@@ -112,6 +113,14 @@ struct GridTable {
         return guarded([&] {
             *rule = with(context, [&](auto& ctx) { return call_split(grid(self), ctx, load(e)); });
         });
+    }
+    /// \param function a std::function of rows; what it throws passes
+    static int library_star_rows(const void* self, const void* function) {
+        if constexpr (requires { grid(self).for_each_star_row([](const StarRow&) {}); }) {
+            grid(self).for_each_star_row(
+                *static_cast<const std::function<void(const StarRow&)>*>(function));
+        }
+        return 0;
     }
     static int children(const void* self, void* context, const nestgrid_element* e,
                         std::size_t count, nestgrid_element* out) {
@@ -290,6 +299,13 @@ struct FieldTable {
         void tick(std::uint64_t looked_at, std::uint64_t visited) { to->tick(looked_at, visited); }
     };
 
+    static int library_value(const void* self, std::uint64_t node, void* out) {
+        if constexpr (requires { field(self).value(NodeKey{}); }) {
+            *static_cast<Real*>(out) = field(self).value(NodeKey{node});
+        }
+        return 0;
+    }
+
     /// Walks down from an element with these values. Lets exceptions of the visitor pass.
     /// \param visitor an ErasedBisectionVisitor, or null to ask only
     /// \return 0, or 1 where the table is not that of such a grid
@@ -350,6 +366,9 @@ nestgrid_grid make_table(const Grid& grid) {
     }
     if constexpr (requires { grid.conforming(); }) t.conforming = grid.conforming() ? 1 : 0;
     t.epoch = Table::grid_epoch;
+    if constexpr (requires { grid.for_each_star_row([](const StarRow&) {}); }) {
+        t.library_star_rows = Table::library_star_rows;
+    }
     if constexpr (!std::is_same_v<Context<Grid>, NoContext>) {
         t.make_context = Table::make;
         t.free_context = Table::free;
@@ -376,6 +395,7 @@ nestgrid_field make_table(const Grid&, const Field& field) {
     if constexpr (KnowsBisections<Grid, Field> && detail::components_of<Field>() == 1) {
         t.library_bisect = Table::library_bisect;
     }
+    if constexpr (requires { field.value(NodeKey{}); }) t.library_value = Table::library_value;
     return t;
 }
 

@@ -39,6 +39,11 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
     EXPECT_TRUE(any_field.bisects(any));
     EXPECT_FALSE(any_field.bisects(AnyGrid<dim>(unknown)));
     const HierarchicalIndicator indicator(known, known_field);
+    const HierarchicalIndicator any_indicator(any, any_field);
+    for (NodeKey node = 0; node < known.node_count(); ++node) {
+        ASSERT_EQ(any_indicator.stop(node), indicator.stop(node));
+        ASSERT_EQ(any_indicator.bound(node), indicator.bound(node));
+    }
     for (const double threshold : {0.0, 0.01, 0.1, 10.0}) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
         const auto draw = [&](const auto& grid, const auto& field, const auto& criterion) {

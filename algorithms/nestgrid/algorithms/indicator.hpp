@@ -161,10 +161,12 @@ HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& fiel
     static_assert(require_nodal_field<Field, Grid>());
     if (hanging_nodes_unknown(grid)) hanging_ = derive_hanging_nodes(grid);
     if constexpr (detail::KnowsStars<Grid, Field> && std::is_same_v<LeafError, detail::Nothing>) {
-        sweep_stars(grid, field);
-    } else {
-        sweep_levels(grid, field, leaf_error);
+        if (knows_stars(grid) && knows_stars(field)) {
+            sweep_stars(grid, field);
+            return;
+        }
     }
+    sweep_levels(grid, field, leaf_error);
 }
 
 template <class Grid, class Field>
@@ -172,7 +174,7 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     using Real = typename Field::value_type;
     constexpr double limit = std::numeric_limits<Real>::max() / 8;
     node_count_ = grid.node_count();
-    largest_split_ = detail::new_node_capacity<Grid>();
+    largest_split_ = 1;  // a star is the midpoint of two nodes, the only one in its elements
     dense_ = std::make_unique<Entry[]>(node_count_);
     std::vector<float> bound(node_count_, 0.0F);
     for (std::size_t i = 0; i < node_count_; ++i) {

@@ -23,7 +23,7 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Executor>
 void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk(const Executor& executor) {
     if (executor.concurrency() < 2) return walk_->run(*this);
-    if constexpr (!logs) {
+    if constexpr (!logs && !std::is_same_v<Executor, SequentialExecutor>) {
         // Enough entries that parts can be even, enough parts that threads end together.
         const std::size_t wanted = 16 * executor.concurrency();
         const Frontier frontier(*walk_, *this, 16 * wanted);
