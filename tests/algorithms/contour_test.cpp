@@ -360,4 +360,40 @@ TEST(Contour, HasTheTopologyOfTheLevelSet) {
     }
 }
 
+/// In a box the fit has a closed form; a box whose corner is off by a little is fitted in general.
+template <std::size_t n>
+void expect_same_residual_in_boxes() {
+    std::mt19937 random(5);
+    const auto number = [&] { return static_cast<double>(random() % 2000) / 1000 - 1; };
+    for (int round = 0; round < 200; ++round) {
+        const Point low{number(), number(), n == 8 ? number() : 0.0};
+        const Point size{1.5 + number(), 1.5 + number(), n == 8 ? 1.5 + number() : 0.0};
+        std::array<Point, n> x{};
+        std::array<double, n> u;
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t d = 0; d < 3; ++d)
+                x[i][d] = low[d] + ((i >> d & 1U) != 0 ? size[d] : 0);
+            u[i] = number();
+        }
+        ASSERT_TRUE(detail::is_parallelepiped(std::span<const Point, n>(x)));
+        const double in_box =
+            affine_residual(std::span<const Point, n>(x), std::span<const double, n>(u));
+        std::array<Point, n> off = x;
+        off[n - 1][0] += 1e-11;
+        ASSERT_FALSE(detail::is_parallelepiped(std::span<const Point, n>(off)));
+        const double in_general =
+            affine_residual(std::span<const Point, n>(off), std::span<const double, n>(u));
+        EXPECT_NEAR(in_box, in_general, 1e-9);
+        EXPECT_GT(in_box, 0);
+        for (std::size_t i = 0; i < n; ++i) u[i] = 0.3 + dot({0.5, -2, n == 8 ? 0.7 : 0.0}, x[i]);
+        EXPECT_NEAR(affine_residual(std::span<const Point, n>(x), std::span<const double, n>(u)), 0,
+                    1e-14);
+    }
+}
+
+TEST(AffineResidual, IsTheSameInBoxesAndNearThem) {
+    expect_same_residual_in_boxes<4>();
+    expect_same_residual_in_boxes<8>();
+}
+
 }  // namespace

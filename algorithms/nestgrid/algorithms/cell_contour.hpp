@@ -31,6 +31,46 @@ constexpr bool joins_across(double a, double b, double c, double d) {
     return a >= 0 ? a * c >= b * d : b * d >= a * c;
 }
 
+namespace detail {
+
+/// Whether the corners of a quadrilateral or hexahedron are sums of edges at the first, to the last
+/// bit, as those of boxes along the axes are.
+template <std::size_t n>
+bool is_parallelepiped(std::span<const Point, n> x) {
+    for (std::size_t i = 3; i < n; ++i) {
+        if (std::has_single_bit(i)) continue;
+        const std::size_t first = i & (~i + 1);
+        for (std::size_t d = 0; d < 3; ++d) {
+            if (x[i][d] - x[0][d] != (x[first][d] - x[0][d]) + (x[i - first][d] - x[0][d])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// The same residual: there the fit is the mean and half the mean difference in each direction.
+template <std::size_t n>
+double affine_residual_of_parallelepiped(std::span<const double, n> u) {
+    constexpr std::size_t directions = n == 4 ? 2 : 3;
+    double mean = 0;
+    std::array<double, directions> slope{};
+    for (std::size_t i = 0; i < n; ++i) {
+        mean += u[i];
+        for (std::size_t d = 0; d < directions; ++d) slope[d] += (i >> d & 1U) != 0 ? u[i] : -u[i];
+    }
+    double greatest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        double fit = mean;
+        for (std::size_t d = 0; d < directions; ++d)
+            fit += (i >> d & 1U) != 0 ? slope[d] : -slope[d];
+        greatest = std::max(greatest, std::abs(u[i] - fit / n));
+    }
+    return greatest;
+}
+
+}  // namespace detail
+
 /// How far values at the corners of an element are from any affine function: the greatest residual
 /// of a least-squares fit. Affine functions are interpolated exactly, and the shape functions are a
 /// partition of 1 and nowhere below 0, so within the element the interpolated function deviates
@@ -38,6 +78,9 @@ constexpr bool joins_across(double a, double b, double c, double d) {
 /// the element, it deviates from that value by twice as much at most.
 template <std::size_t n>  // corners: the loops are short, and unrolled
 double affine_residual(std::span<const Point, n> x, std::span<const double, n> u) {
+    if constexpr (n == 4 || n == 8) {
+        if (detail::is_parallelepiped(x)) return detail::affine_residual_of_parallelepiped(u);
+    }
     std::array<std::array<double, n>, 4> basis;  // 1, x, y, z at the corners
     std::array<double, n> rest;
     for (std::size_t i = 0; i < n; ++i) {
