@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What the interface costs: triangles of the bucky ball into a buffer, by the concept, by a
-// type-erased grid, and by a recursion written by hand for this one grid. Where valgrind is
+// type-erased grid, by the general loop over rules, and by a recursion written by hand for this one
+// grid. Where valgrind is
 // installed its instructions per element are counted first; more than 105 fail the run, for then it
 // would be a bad measure. One "name value" line per figure; --quick takes 33^3 samples instead of
 // 129^3.
@@ -17,6 +18,13 @@
 namespace {
 
 constexpr double most_instructions = 105;
+
+/// The same grid, of which nothing is known at compile time.
+struct General : Tetrahedra {
+    using Tetrahedra::Tetrahedra;
+    struct Nothing {};
+    static constexpr Nothing bisections{};
+};
 
 /// What --handwritten runs under valgrind.
 constexpr int counted = 65;
@@ -41,6 +49,8 @@ double instructions(const std::string& program, const std::string& argument) {
 template <int n>
 void compare(std::size_t rounds) {
     Bucky<n> bucky;
+    const General general({.samples = {n, n, n}});
+    const nestgrid::LatticeField general_field(general, std::span<const float>(bucky.samples));
     const nestgrid::AnyGrid<3> any(bucky.grid);
     const nestgrid::AnyField<float> any_field(bucky.grid, bucky.field);
     for (const float threshold : bucky_thresholds) {
@@ -51,6 +61,7 @@ void compare(std::size_t rounds) {
         contest.add("concept", [&] {
             triangles = bucky.draw_soup(bucky.grid, bucky.field, threshold, &counts);
         });
+        contest.add("general", [&] { bucky.draw_soup(general, general_field, threshold); });
         contest.add("anygrid", [&] { bucky.draw_soup(any, any_field, threshold); });
         contest.run();
         const auto print = [&](const char* name, double value) {
@@ -65,6 +76,7 @@ void compare(std::size_t rounds) {
         print("calls", static_cast<double>(counts.calls));
         print("handwritten_ms", contest.time("handwritten"));
         print("concept_over_handwritten", contest.time("concept") / contest.time("handwritten"));
+        print("general_over_handwritten", contest.time("general") / contest.time("handwritten"));
         print("anygrid_over_handwritten", contest.time("anygrid") / contest.time("handwritten"));
     }
 }

@@ -48,7 +48,7 @@ public:
     }
 
     static void print_figure(const std::string& name, double value) {
-        std::printf("%s %.4g\n", name.c_str(), value);
+        std::printf("%s %.6g\n", name.c_str(), value);
         std::fflush(stdout);
     }
 
