@@ -40,7 +40,9 @@ void expect_same(const Isosurface<dimension, ElementA>& a,
     EXPECT_EQ(a.counts.visited, b.counts.visited);
     EXPECT_EQ(a.counts.extracted, b.counts.extracted);
     EXPECT_EQ(a.error_bound, b.error_bound);
-    if constexpr (std::is_same_v<ElementA, ElementB>) EXPECT_EQ(a.stack_bytes, b.stack_bytes);
+    if constexpr (std::is_same_v<ElementA, ElementB>) {
+        EXPECT_EQ(a.stack_bytes, b.stack_bytes);
+    }
 }
 
 }  // namespace nestgrid_test
