@@ -367,7 +367,7 @@ nestgrid_grid make_table(const Grid& grid) {
     if constexpr (requires { grid.conforming(); }) t.conforming = grid.conforming() ? 1 : 0;
     t.epoch = Table::grid_epoch;
     if constexpr (requires { grid.for_each_star_row([](const StarRow&) {}); }) {
-        t.library_star_rows = Table::library_star_rows;
+        if (knows_stars(grid)) t.library_star_rows = Table::library_star_rows;
     }
     if constexpr (!std::is_same_v<Context<Grid>, NoContext>) {
         t.make_context = Table::make;
@@ -395,7 +395,9 @@ nestgrid_field make_table(const Grid&, const Field& field) {
     if constexpr (KnowsBisections<Grid, Field> && detail::components_of<Field>() == 1) {
         t.library_bisect = Table::library_bisect;
     }
-    if constexpr (requires { field.value(NodeKey{}); }) t.library_value = Table::library_value;
+    if constexpr (requires { field.value(NodeKey{}); }) {
+        if (knows_stars(field)) t.library_value = Table::library_value;
+    }
     return t;
 }
 
