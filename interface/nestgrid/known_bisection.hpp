@@ -20,6 +20,7 @@
 // Nothing hangs in such a grid, and it knows keys, positions and boundary faces by heart.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
