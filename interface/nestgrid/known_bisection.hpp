@@ -83,8 +83,6 @@ struct BisectedElement {
     int level;
     int orientation;
     Real bound;  ///< what the visitor returned of it
-
-    static constexpr int corner_count() { return static_cast<int>(corners); }
 };
 
 /// Walks down from one element. A visitor has
@@ -110,9 +108,8 @@ public:
     }
 
     std::uint64_t looked_at() const { return 1 + 2 * bisected_ - masked_; }  ///< elements
-    std::uint64_t visited() const {
-        return bisected_ + extracted_;
-    }  ///< of interest to the visitor
+    /// Of interest to the visitor.
+    std::uint64_t visited() const { return bisected_ + extracted_; }
 
 private:
     template <std::size_t number>

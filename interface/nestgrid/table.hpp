@@ -116,10 +116,8 @@ struct GridTable {
     }
     /// \param function a std::function of rows; what it throws passes
     static int library_star_rows(const void* self, const void* function) {
-        if constexpr (requires { grid(self).for_each_star_row([](const StarRow&) {}); }) {
-            grid(self).for_each_star_row(
-                *static_cast<const std::function<void(const StarRow&)>*>(function));
-        }
+        grid(self).for_each_star_row(
+            *static_cast<const std::function<void(const StarRow&)>*>(function));
         return 0;
     }
     static int children(const void* self, void* context, const nestgrid_element* e,
@@ -300,9 +298,7 @@ struct FieldTable {
     };
 
     static int library_value(const void* self, std::uint64_t node, void* out) {
-        if constexpr (requires { field(self).value(NodeKey{}); }) {
-            *static_cast<Real*>(out) = field(self).value(NodeKey{node});
-        }
+        *static_cast<Real*>(out) = field(self).value(NodeKey{node});
         return 0;
     }
 

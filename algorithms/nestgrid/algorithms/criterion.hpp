@@ -4,7 +4,7 @@
 // Projection criteria S (paper, sections 2, 4 and 5.1): values that compose.
 //
 // A criterion answers, for the new nodes of one split, at which of them S holds:
-//     NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const;
+//     NodeMask operator()(const NewNodes& nodes) const;
 //     static constexpr bool saturated = ...;
 // Conjunctions and disjunctions of saturated criteria are saturated: where both hold at a corner,
 // both hold at the new nodes, and likewise where one of them does.

@@ -147,7 +147,7 @@ public:
     bool passes_over_leaves() const { return recording_ && !limited(); }
 
     // isosurface_bisections.hpp: simplices that conform, and nothing but triangles asked for.
-    bool walks_bisections() const;
+    bool walks_bisections() const { return bisects_; }
     void walk_bisections(const State& s);
     struct Glance {
         Visit visit;
@@ -159,18 +159,21 @@ public:
     template <class Load, class Boundary>
     void draw_bisected(const Bisected& s, const Load& load, const Boundary& boundary);
     void tick(std::uint64_t calls, std::uint64_t visited) const;
+    void count(std::uint64_t calls, std::uint64_t visited);
 
     // What a Frontier asks for.
     Decision look(const State& s, const Split& split);
     void undo();
     void restart();
 
-    std::size_t level_count() const { return layers_.size(); }
-    const Level& level(std::size_t i) const { return layers_[i]; }
-    TraversalCounts counts() const { return counts_; }
-    std::size_t table_bytes() const;
-    std::size_t stack_bytes() const {
-        return static_cast<std::size_t>(deepest_ + 1) * sizeof(State);
+    /// What is known beside surface i.
+    template <class Result>
+    void report(std::size_t i, Result& result) const {
+        result.counts = counts_;
+        result.counts.extracted = layers_[i].extracted;
+        result.error_bound = layers_[i].error_bound;
+        result.table_bytes = table_bytes();
+        result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(State);
     }
 
 private:
@@ -199,6 +202,7 @@ private:
 
     // isosurface_steps.hpp
     void set_isovalues();
+    std::size_t table_bytes() const;
     bool limited() const { return limit_ != std::numeric_limits<std::uint64_t>::max(); }
     unsigned pattern(const Real* value, std::size_t corners, const Layer& layer) const;
     bool of_interest(Real lo, Real hi, Real bound, bool also_below) const;
@@ -215,6 +219,9 @@ private:
                unsigned signs, bool& is_joined);
     void fill_gaps(Layer& layer);
     void set_normals(Layer& layer);
+
+    // isosurface_bisections.hpp
+    bool knows_bisections_of_grid() const;
 
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);
@@ -284,6 +291,7 @@ private:
     const IsosurfaceOptions* options_;
     std::vector<double> isovalues_;
     bool plainly_ = false;  // nothing but vertices and triangles is asked for
+    bool bisects_ = false;  // and bisections are known at compile time
     std::array<const ContourTable*, shape_count> table_{};
     std::vector<Layer> layers_;
     TraversalCounts counts_;
@@ -313,6 +321,32 @@ private:
 
 }  // namespace detail
 
+namespace detail {
+
+template <class Grid, class Indicator>
+void require_drawable(const Grid& grid, std::span<const double> isovalues,
+                      const Indicator& indicator) {
+    for (const double isovalue : isovalues) {
+        if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
+    }
+    if (indicator.epoch() != epoch(grid)) {
+        throw GridError("the grid has changed since its indicator was computed");
+    }
+}
+
+/// \return whether options.progress ended it
+template <class Visitor, class Executor>
+bool run_visitor(Visitor& visitor, const Executor& executor) {
+    try {
+        visitor.run(executor);
+        return false;
+    } catch (const Cancelled&) {
+        return true;
+    }
+}
+
+}  // namespace detail
+
 /// The isosurfaces U = isovalues[i] of component 0 of the field under the projection with
 /// `criterion`, in one traversal, each into its own sink (surface.hpp).
 /// \param indicator of the same grid and field: its bounds guide the search. HierarchicalIndicator,
@@ -330,9 +364,7 @@ std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
     std::vector<Sink> sinks, const S& criterion, const Indicator& indicator,
     const IsosurfaceOptions& options = {}, const E& executor = {}) {
     static_assert(Grid::dimension >= 2, "isosurfaces need a grid of dimension 2 or 3");
-    for (const double isovalue : isovalues) {
-        if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
-    }
+    detail::require_drawable(grid, isovalues, indicator);
     if (sinks.size() != isovalues.size()) {
         throw InvalidInput(std::to_string(isovalues.size()) +
                            " isovalues need as many sinks, not " + std::to_string(sinks.size()));
@@ -340,27 +372,14 @@ std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> extract_isosurfaces(
     if (!detail::IndexedSink<Sink> && options.normals) {
         throw InvalidInput("a stream of triangles has no normals");
     }
-    if (indicator.epoch() != epoch(grid)) {
-        throw GridError("the grid has changed since its indicator was computed");
-    }
     using Visitor = detail::IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>;
     const typename Visitor::Walk walk(grid, field, indicator.hanging());
     Visitor visitor(walk, isovalues, std::move(sinks), criterion, indicator, options);
-    bool cancelled = false;
-    try {
-        visitor.run(executor);
-    } catch (const detail::Cancelled&) {
-        cancelled = true;
-    }
+    const bool cancelled = detail::run_visitor(visitor, executor);
     std::vector<Isosurface<Grid::dimension, ElementOf<Grid>>> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
-        const auto& level = visitor.level(i);
-        results[i].counts = visitor.counts();
-        results[i].counts.extracted = level.extracted;
-        results[i].error_bound = level.error_bound;
+        visitor.report(i, results[i]);
         results[i].cancelled = cancelled;
-        results[i].table_bytes = visitor.table_bytes();
-        results[i].stack_bytes = visitor.stack_bytes();
     }
     return results;
 }

@@ -18,8 +18,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
     if constexpr (knows_bisections) {
         nestgrid::walk_bisections(walk_->grid(), walk_->field(), *this, s.element, s.value.data(),
                                   s.level, s.orientation, [&](const auto& walk) {
-                                      counts_.calls += walk.looked_at();
-                                      counts_.visited += walk.visited();
+                                      count(walk.looked_at(), walk.visited());
                                   });
     } else if constexpr (is_erased) {
         struct Erased final : ErasedBisectionVisitor<Real> {
@@ -49,8 +48,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 to->tick(calls, visited);
             }
             void end(std::uint64_t calls, std::uint64_t visited) override {
-                to->counts_.calls += calls;
-                to->counts_.visited += visited;
+                to->count(calls, visited);
             }
         } erased(this);
         walk_->field().bisect(walk_->grid(), s.element, s.value.data(), s.level, s.orientation,
@@ -58,8 +56,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
     }
 }
 
-NESTGRID_VISITOR::walks_bisections() const -> bool {
-    if (!plainly_ || must_record()) return false;
+NESTGRID_VISITOR::knows_bisections_of_grid() const -> bool {
     if constexpr (is_erased) return walk_->field().bisects(walk_->grid());
     return knows_bisections;
 }
@@ -68,12 +65,7 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
     Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) -> Glance {
     const std::span<const NodeKey> keys(&node, 1);
-    Real bound;
-    if constexpr (requires { { indicator_->bound(node) } -> std::same_as<float>; }) {
-        bound = indicator_->bound(node);
-    } else {
-        bound = bound_of(keys);
-    }
+    const Real bound = bound_of(keys);
     if (!of_interest(lo, hi, bound, false)) return {Visit::skip, bound};
     const NodeMask mask =
         (*criterion_)(NewNodes{rule, keys, level + 1, outside ? NodeMask{1} : NodeMask{0}});

@@ -36,7 +36,6 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
     const Topology& t = topology(shape);
     [[maybe_unused]] unsigned boundary = 0;
     if constexpr (indexed) boundary = boundary_faces();
-    bool begun = false;
     const std::size_t loops = simplices ? 1 : contour->loop_count;
     for (std::size_t l = 0; l < loops; ++l) {
         const ContourLoop& loop = contour->loop[l];
@@ -56,14 +55,9 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
                 if constexpr (indexed) cut.node = {key_[low], key_[high]};
                 return cut;
             };
-            if constexpr (indexed) {
-                v[i] = add({key_[low], key_[high]}, make);
-            } else {
-                v[i] = make().x;
-            }
+            v[i] = add({key_[low], key_[high]}, make);
         }
-        if (!begun) layer.sink.add_element(s.element, shape, s.level);
-        begun = true;
+        if (l == 0) layer.sink.add_element(s.element, shape, s.level);
         const auto put = [&](std::size_t a, std::size_t b, [[maybe_unused]] std::size_t c) {
             if (s.orientation < 0) std::swap(a, b);
             if constexpr (dimension == 2) {

@@ -35,16 +35,13 @@ public:
     template <Executor E = SequentialExecutor>
     const Result& draw(double isovalue, const IsosurfaceOptions& options = {},
                        const E& executor = {}) {
-        if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
-        if (indicator_.epoch() != epoch(walk_.grid())) {
-            throw GridError("the grid has changed since its indicator was computed");
-        }
+        const std::span<const double> isovalues(&isovalue, 1);
+        detail::require_drawable(walk_.grid(), isovalues, indicator_);
         criterion_ =
             criterion_for(walk_.grid(), walk_.field(), isovalue, indicator_, options, executor);
         options_ = options;
         Surface<Grid::dimension, ElementOf<Grid>>& surface = result_.surface;
         surface.clear();
-        const std::span<const double> isovalues(&isovalue, 1);
         sinks_.clear();
         sinks_.emplace_back(surface, options.elements);
         if (visitor_) {
@@ -52,17 +49,8 @@ public:
         } else {
             visitor_.emplace(walk_, isovalues, sinks_, criterion_, indicator_, options_);
         }
-        result_.cancelled = false;
-        try {
-            visitor_->run(executor);
-        } catch (const detail::Cancelled&) {
-            result_.cancelled = true;
-        }
-        result_.counts = visitor_->counts();
-        result_.counts.extracted = visitor_->level(0).extracted;
-        result_.error_bound = visitor_->level(0).error_bound;
-        result_.table_bytes = visitor_->table_bytes();
-        result_.stack_bytes = visitor_->stack_bytes();
+        result_.cancelled = detail::run_visitor(*visitor_, executor);
+        visitor_->report(0, result_);
         return result_;
     }
 

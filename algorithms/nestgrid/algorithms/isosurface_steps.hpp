@@ -41,6 +41,7 @@ NESTGRID_VISITOR::set_isovalues() -> void {
         layer.drawn_below = &layer.transitions;
     }
     plainly_ = attribute_count == 0 && !options_->cap && !options_->normals && !options_->reference;
+    bisects_ = plainly_ && knows_bisections_of_grid() && !must_record();
 }
 
 NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sink>& sinks) -> void {
@@ -136,6 +137,11 @@ NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
     const Decision decision = look(s, split);
     counts_.visited += decision.visit != Visit::skip;
     return decision;
+}
+
+NESTGRID_VISITOR::count(std::uint64_t calls, std::uint64_t visited) -> void {
+    counts_.calls += calls;
+    counts_.visited += visited;
 }
 
 /// Reports the counts so far, and these.

@@ -65,12 +65,13 @@ public:
 
     void children(const Element& e, std::span<Element> out) const {
         const Place z = middle(e);
-        out[0] = e;
-        out[0].corner[e.tag] = z;
-        out[1] = e;
-        for (std::size_t i = 0; i < e.tag; ++i) out[1].corner[i] = e.corner[i + 1];
-        out[1].corner[e.tag] = z;
-        out[0].tag = out[1].tag = static_cast<std::uint8_t>(e.tag == 1 ? dim : e.tag - 1);
+        for (std::size_t c = 0; c < max_children; ++c) {
+            const KnownBisection::Half& half = bisections[bisection(e)].child[c];
+            for (std::size_t i = 0; i < corners_; ++i) {
+                out[c].corner[i] = half.corner[i] == 4 ? z : e.corner[half.corner[i]];
+            }
+            out[c].tag = static_cast<std::uint8_t>(half.bisection + 1);
+        }
     }
 
     // Optional operations.
