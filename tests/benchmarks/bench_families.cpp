@@ -28,13 +28,12 @@ void measure_octree(std::size_t rounds) {
         TraversalCounts counts;
         Contest contest(rounds);
         contest.add("handwritten", [&] {
-            HandwrittenOctree<n> again = recursion;
-            again.run();
+            recursion =
+                HandwrittenOctree<n>(nodes.data(), bucky_isovalue, threshold, bucky.soup.data());
+            recursion.run();
         });
-        // Elements that stop on both sides of a face are walked twice above threshold 0.
         contest.add("ours", [&] { bucky.draw_soup(grid, field, threshold, &counts); });
         contest.run();
-        recursion.run();
         const auto print = [&](const char* name, double value) {
             Contest::print_figure(at_threshold(name, threshold), value);
         };

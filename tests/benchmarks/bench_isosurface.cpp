@@ -262,10 +262,6 @@ void compare(std::size_t rounds) {
 
 int main(int argc, char** argv) {
     setenv("VTK_SMP_MAX_THREADS", "1", 1);  // read when VTK first looks for threads
-    if (is_quick(argc, argv)) {
-        compare<33>(3);
-    } else {
-        compare<129>(9);
-    }
+    at_either_size(argc, argv, 9, [](auto n, std::size_t rounds) { compare<n.value>(rounds); });
     return 0;
 }

@@ -39,10 +39,6 @@ void compare(std::size_t rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (is_quick(argc, argv)) {
-        compare<33>(3);
-    } else {
-        compare<129>(15);
-    }
+    at_either_size(argc, argv, 15, [](auto n, std::size_t rounds) { compare<n.value>(rounds); });
     return 0;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include <nestgrid/adapters/bisection.hpp>
@@ -34,14 +35,10 @@ struct Bucky {
     std::vector<Triangle> soup = std::vector<Triangle>(40 * std::size_t{n} * n + 1000);
 
     std::vector<typename Handwritten::Node> handwritten_nodes() const {
-        const auto bfloat16 = [](double x) {
-            return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(static_cast<float>(x)) >>
-                                              16U);
-        };
         std::vector<typename Handwritten::Node> result;
         for (std::size_t i = 0; i < samples.size(); ++i) {
-            result.push_back(
-                {samples[i], bfloat16(indicator.stop(i)), bfloat16(indicator.bound(i))});
+            result.push_back({samples[i], nestgrid::bfloat16_above(indicator.stop(i)),
+                              nestgrid::bfloat16_above(indicator.bound(i))});
         }
         return result;
     }
@@ -82,4 +79,15 @@ inline std::string at_threshold(const std::string& name, float threshold) {
 
 inline bool is_quick(int argc, char** argv) {
     return argc > 1 && std::strcmp(argv[1], "--quick") == 0;
+}
+
+/// Calls function(std::integral_constant<int, n>, rounds): 129 samples along each direction, or 33
+/// and three rounds with --quick.
+template <class Function>
+void at_either_size(int argc, char** argv, std::size_t rounds, Function&& function) {
+    if (is_quick(argc, argv)) {
+        function(std::integral_constant<int, 33>{}, std::size_t{3});
+    } else {
+        function(std::integral_constant<int, 129>{}, rounds);
+    }
 }

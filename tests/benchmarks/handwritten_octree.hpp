@@ -32,18 +32,7 @@ public:
         : nodes_{nodes},
           isovalue_{isovalue},
           threshold_{static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(threshold) >> 16U)},
-          out_{out} {
-        const auto& table = nestgrid::ContourTable::of(nestgrid::Shape::hexahedron);
-        for (unsigned pattern = 0; pattern < 256; ++pattern) {
-            const nestgrid::Contour& contour = table.at(pattern, 0);
-            for (std::size_t l = 0; l < contour.loop_count; ++l) {
-                const nestgrid::ContourLoop& loop = contour.loop[l];
-                for (std::uint8_t i = 2; i < loop.count; ++i) {
-                    triangles_[pattern].push_back({loop.edge[0], loop.edge[i - 1U], loop.edge[i]});
-                }
-            }
-        }
-    }
+          out_{out} {}
 
     Triangle* run() {
         inspect(0, n - 1);
@@ -51,6 +40,26 @@ public:
     }
 
 private:
+    using Triangles = std::array<std::vector<std::array<std::uint8_t, 3>>, 256>;
+    /// By sign pattern, as edges.
+    static const Triangles& triangles() {
+        static const Triangles all = [] {
+            Triangles result;
+            const auto& table = nestgrid::ContourTable::of(nestgrid::Shape::hexahedron);
+            for (unsigned pattern = 0; pattern < 256; ++pattern) {
+                const nestgrid::Contour& contour = table.at(pattern, 0);
+                for (std::size_t l = 0; l < contour.loop_count; ++l) {
+                    const nestgrid::ContourLoop& loop = contour.loop[l];
+                    for (std::uint8_t i = 2; i < loop.count; ++i) {
+                        result[pattern].push_back({loop.edge[0], loop.edge[i - 1U], loop.edge[i]});
+                    }
+                }
+            }
+            return result;
+        }();
+        return all;
+    }
+
     static constexpr std::array<std::uint32_t, 3> stride_{1, n, n* n};
 
     static constexpr std::uint32_t offset(std::size_t corner) {
@@ -114,7 +123,7 @@ private:
                 vertex[e][d] = from + fraction * (to - from);
             }
         }
-        for (const auto& [a, b, c] : triangles_[pattern]) {
+        for (const auto& [a, b, c] : (*triangles_)[pattern]) {
             *out_++ = {vertex[a][0], vertex[a][1], vertex[a][2], vertex[b][0], vertex[b][1],
                        vertex[b][2], vertex[c][0], vertex[c][1], vertex[c][2]};
         }
@@ -124,5 +133,5 @@ private:
     float isovalue_;
     std::uint16_t threshold_;
     Triangle* out_;
-    std::array<std::vector<std::array<std::uint8_t, 3>>, 256> triangles_;
+    const Triangles* triangles_ = &triangles();
 };
