@@ -187,7 +187,7 @@ public:
     /// Where it says so, does it.
     template <int dim>
     void bisect(const AnyGrid<dim>& grid, const nestgrid_element& e, const Real* value, int level,
-                int orientation, detail::ErasedBisectionVisitor<Real>& visitor) const {
+                int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) const {
         table_.library_bisect(table_.self, &grid.table(), &e, value, level, orientation, &visitor);
     }
 

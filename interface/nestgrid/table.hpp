@@ -11,8 +11,8 @@
 #include <type_traits>
 
 #include <nestgrid/nestgrid.h>
+#include <nestgrid/erased_bisections.hpp>
 #include <nestgrid/error.hpp>
-#include <nestgrid/known_bisection.hpp>
 #include <nestgrid/operations.hpp>
 
 namespace nestgrid {
@@ -76,10 +76,7 @@ struct GridTable {
         std::memcpy(static_cast<void*>(&element), e, sizeof(element));
         return element;
     }
-    static void store(const Element& element, nestgrid_element* e) {
-        *e = {};
-        std::memcpy(e, &element, sizeof(element));
-    }
+    static void store(const Element& element, nestgrid_element* e) { *e = erased(element); }
     /// Hands the task's state to function, or an empty one where the grid has none.
     template <class Function>
     static decltype(auto) with(void* context, Function&& function) {
@@ -207,37 +204,6 @@ private:
     static std::uint64_t narrow(NodeKey key) { return static_cast<std::uint64_t>(key); }
 };
 
-/// A visitor of a BisectionWalk on the other side of a table: one call for an element that is
-/// looked at, and one that hands over all there is to know of an element to be extracted.
-template <class Real>
-class ErasedBisectionVisitor {
-public:
-    struct Glance {
-        Visit visit;
-        Real bound;
-    };
-    struct Extracted {
-        const nestgrid_element* element;
-        const Real* value;
-        const Point* position;
-        const NodeKey* key;
-        unsigned boundary;
-        int level;
-        int orientation;
-        Real bound;
-    };
-
-    virtual Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level,
-                          bool outside) = 0;
-    virtual bool glance_at_leaf(Real lo, Real hi) = 0;
-    virtual void extract(const Extracted& s) = 0;
-    virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
-    virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
-
-protected:
-    ~ErasedBisectionVisitor() = default;
-};
-
 template <class Grid, class Field>
 struct FieldTable {
     using Real = typename Field::value_type;
@@ -275,35 +241,13 @@ struct FieldTable {
         });
     }
 
-    struct BisectionForwarder {
-        const Grid* grid;
-        ErasedBisectionVisitor<Real>* to;
-
-        auto glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) {
-            return to->glance(lo, hi, rule, node, level, outside);
-        }
-        bool glance_at_leaf(Real lo, Real hi) { return to->glance_at_leaf(lo, hi); }
-        void extract(const BisectedElement<Grid, Real>& s) {
-            constexpr std::size_t corners = BisectedElement<Grid, Real>::corners;
-            nestgrid_element element;
-            std::array<Point, corners> position;
-            std::array<NodeKey, corners> key;
-            Bridge::store(s.element, &element);
-            grid->corner_positions(s.element, position);
-            grid->corner_keys(s.element, key);
-            to->extract({&element, s.value.data(), position.data(), key.data(),
-                         grid->boundary_faces(s.element), s.level, s.orientation, s.bound});
-        }
-        void tick(std::uint64_t looked_at, std::uint64_t visited) { to->tick(looked_at, visited); }
-    };
-
     static int library_value(const void* self, std::uint64_t node, void* out) {
         *static_cast<Real*>(out) = field(self).value(NodeKey{node});
         return 0;
     }
 
     /// Walks down from an element with these values. Lets exceptions of the visitor pass.
-    /// \param visitor an ErasedBisectionVisitor, or null to ask only
+    /// \param visitor an ErasedBisectionVisitor of the grid's dimension, or null to ask only
     /// \return 0, or 1 where the table is not that of such a grid
     static int library_bisect(const void* self, const nestgrid_grid* table,
                               const nestgrid_element* e, const void* values, int level,
@@ -311,11 +255,12 @@ struct FieldTable {
         if (table->library_split != Bridge::library_split) return 1;
         if (visitor == nullptr) return 0;
         const Grid& grid = Bridge::grid(table->self);
-        BisectionForwarder forward{&grid, static_cast<ErasedBisectionVisitor<Real>*>(visitor)};
-        walk_bisections(
-            grid, field(self), forward, Bridge::load(e), static_cast<const Real*>(values), level,
-            orientation,
-            [&](const auto& walk) { forward.to->end(walk.looked_at(), walk.visited()); });
+        using Visitor = ErasedBisectionVisitor<Grid::dimension, Real>;
+        Visitor& to = *static_cast<Visitor*>(visitor);
+        BisectionForwarder<Grid, Real> forward(grid, to);
+        walk_bisections(grid, field(self), forward, Bridge::load(e),
+                        static_cast<const Real*>(values), level, orientation,
+                        [&](const auto& walk) { to.end(walk.looked_at(), walk.visited()); });
         return 0;
     }
 };

@@ -19,6 +19,7 @@
 
 #include <functional>
 
+#include <nestgrid/algorithms/block_contours.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/frontier.hpp>
@@ -88,6 +89,13 @@ concept IndexedSink = !requires {
     requires !Sink::indexed;
 };
 
+/// Whether to tell a sink of the elements its simplices come from.
+template <class Sink>
+bool keeps_elements(const Sink& sink) {
+    if constexpr (requires { sink.keeps_elements(); }) return sink.keeps_elements();
+    return true;
+}
+
 template <class Grid>
 struct ContourOwner {
     ElementOf<Grid> element;
@@ -155,7 +163,11 @@ public:
     };
     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside);
     bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
+    template <class Interior>
+    typename Interior::Glance glance_within(const Interior& elements);
     void extract(const Bisected& s);
+    template <class Block>
+    unsigned extract_block(const Block& block, unsigned entered);
     template <class Load, class Boundary>
     void draw_bisected(const Bisected& s, const Load& load, const Boundary& boundary);
     void tick(std::uint64_t calls, std::uint64_t visited) const;
@@ -222,6 +234,11 @@ private:
 
     // isosurface_bisections.hpp
     bool knows_bisections_of_grid() const;
+    template <class Block>
+    void extract_part(const Block& block, std::size_t part);
+    template <class Block>
+    void draw_block(const Block& block, Layer& layer, const BlockContours& contours,
+                    const BlockContours::Contour& contour);
 
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);

@@ -9,6 +9,8 @@
 //     Point position(std::uint32_t vertex) const
 //     void add_element(const Element& element, Shape shape, int level)
 //         before the first simplex from it
+//     bool keeps_elements() const
+//         optional; where it says no, add_element() may not be called
 //     void add_simplex(const Simplex& vertices, std::span<const Point> reference)
 //         reference: where they lie in the element; empty unless asked for
 //     void add_boundary(const Ridge& vertices)        on the boundary of the domain
@@ -84,6 +86,7 @@ public:
         for (const double a : attributes) surface_->attributes.push_back(a);
     }
     Point position(std::uint32_t vertex) const { return surface_->vertices[vertex]; }
+    bool keeps_elements() const { return elements_; }
     void add_element(const Element& element, Shape shape, int level) {
         if (!elements_) return;
         surface_->elements.push_back(element);
@@ -119,6 +122,7 @@ public:
 
     explicit SimplexStream(Function function) : function_{std::move(function)} {}
 
+    bool keeps_elements() const { return false; }
     template <class Element>
     void add_element(const Element&, Shape, int) {}
     void add_simplex(const std::array<Point, static_cast<std::size_t>(dimension)>& x,

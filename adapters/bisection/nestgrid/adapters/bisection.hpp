@@ -76,6 +76,7 @@ public:
 
     // Optional operations.
     static constexpr auto bisections = maubach_bisections<dim>();
+    static constexpr std::size_t block_height = dim;  // then the lattice step is half
     std::size_t bisection(const Element& e) const { return e.tag - 1U; }
     std::array<Node, corners_> nodes(const Element& e) const { return e.corner; }
     NESTGRID_INLINE Element element(std::size_t number,

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Several bisections in a row as one pattern: which nodes there are, and which of them are the
+// corners of which element. Three of Maubach's bisections of a tetrahedron make 8 tetrahedra with
+// 10 nodes, two of a triangle 4 triangles with 6.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include <nestgrid/known_bisection.hpp>
+
+namespace nestgrid {
+
+/// The elements of a block, numbered like a heap: part 1 is the whole, parts 2i and 2i + 1 are the
+/// halves of part i, and the last 2^height parts are its ends.
+template <std::size_t corner_count, std::size_t block_height>
+struct BisectionBlock {
+    static constexpr std::size_t corners = corner_count;
+    static constexpr std::size_t height = block_height;
+    static constexpr std::size_t ends = std::size_t{1} << height;
+    static constexpr std::size_t most_nodes = corners + ends - 1;
+
+    struct Part {
+        std::array<std::uint8_t, 4> corner{};  ///< nodes; of a triangle the last is there twice
+        std::uint8_t bisection = 0;
+        std::uint8_t middle = 0;  ///< the new node of one that is split
+        std::uint8_t depth = 0;
+        bool mirrored = false;  ///< against part 1
+
+        friend constexpr bool operator==(const Part&, const Part&) = default;
+    };
+
+    std::array<Part, 2 * ends> part{};
+    std::size_t nodes = corners;
+    /// Of every node but the corners of part 1, which come first.
+    std::array<std::array<std::uint8_t, 2>, most_nodes> parent{};
+
+    /// \param of part 1
+    template <std::size_t count>
+    constexpr BisectionBlock(const std::array<KnownBisection, count>& bisections, std::size_t of) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            part[1].corner[i] = static_cast<std::uint8_t>(std::min(i, corners - 1));
+        }
+        part[1].bisection = static_cast<std::uint8_t>(of);
+        for (std::size_t p = 1; p < ends; ++p) {
+            const KnownBisection& rule = bisections[part[p].bisection];
+            part[p].middle = node_between(part[p].corner[rule.parent[0]],  //
+                                          part[p].corner[rule.parent[1]]);
+            for (std::size_t c = 0; c < 2; ++c) {
+                const KnownBisection::Half& half = rule.child[c];
+                Part& child = part[2 * p + c];
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const std::uint8_t from = half.corner[std::min(i, corners - 1)];
+                    child.corner[i] = from == 4 ? part[p].middle : part[p].corner[from];
+                }
+                child.bisection = half.bisection;
+                child.depth = static_cast<std::uint8_t>(part[p].depth + 1);
+                child.mirrored = part[p].mirrored != (half.orientation < 0);
+            }
+        }
+    }
+
+    friend constexpr bool operator==(const BisectionBlock&, const BisectionBlock&) = default;
+
+private:
+    constexpr std::uint8_t node_between(std::uint8_t a, std::uint8_t b) {
+        for (std::size_t n = corners; n < nodes; ++n) {
+            if ((parent[n][0] == a && parent[n][1] == b) ||
+                (parent[n][0] == b && parent[n][1] == a)) {
+                return static_cast<std::uint8_t>(n);
+            }
+        }
+        parent[nodes] = {a, b};
+        return static_cast<std::uint8_t>(nodes++);
+    }
+};
+
+/// The blocks of a grid that says how high they are (known_bisection.hpp).
+template <class Grid>
+inline constexpr auto block_of =
+    BisectionBlock<static_cast<std::size_t>(Grid::dimension) + 1, Grid::block_height>(
+        Grid::bisections, Grid::bisections.size() - 1);
+
+/// Those of Maubach's bisections.
+template <int dim>
+inline constexpr auto maubach_block =
+    BisectionBlock<static_cast<std::size_t>(dim) + 1, static_cast<std::size_t>(dim)>(
+        maubach_bisections<dim>(), static_cast<std::size_t>(dim) - 1);
+
+template <class Grid>
+concept HasMaubachBlocks = KnowsBlocks<Grid> &&
+    std::is_same_v<decltype(block_of<Grid>), decltype(maubach_block<Grid::dimension>)> &&
+    block_of<Grid>
+== maubach_block<Grid::dimension>;
+
+}  // namespace nestgrid

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Walks over bisections known at compile time (bisection_walk.hpp) with grid and visitor on either
+// side of a table: one call for an element that is looked at, or for all those within a block, and
+// one that hands over all there is to know of what is to be extracted.
+#pragma once
+
+#include <cstring>
+
+#include <nestgrid/nestgrid.h>
+#include <nestgrid/bisection_walk.hpp>
+#include <nestgrid/operations.hpp>
+
+namespace nestgrid::detail {
+
+/// A BisectedBlock of maubach_block.
+template <int dim, class Real>
+class ErasedBlock {
+public:
+    static constexpr const auto& pattern = maubach_block<dim>;
+
+    virtual nestgrid_element element(std::size_t part) const = 0;
+    virtual unsigned boundary(std::size_t part) const = 0;
+    const Point& position(std::size_t i) const { return positions[i]; }
+    NodeKey node_key(std::size_t i) const { return keys[i]; }
+
+    std::array<Real, pattern.nodes> value;
+    std::array<Point, pattern.nodes> positions;
+    std::array<NodeKey, pattern.nodes> keys;
+    int level;
+    int orientation;
+
+protected:
+    ErasedBlock() = default;
+    ~ErasedBlock() = default;
+};
+
+template <int dim, class Real>
+class ErasedBisectionVisitor {
+public:
+    static constexpr std::size_t interior = maubach_block<dim>.ends - 2;
+    struct Glance {
+        Visit visit;
+        Real bound;
+    };
+    struct Extracted {
+        const nestgrid_element* element;
+        const Real* value;
+        const Point* position;
+        const NodeKey* key;
+        unsigned boundary;
+        int level;
+        int orientation;
+        Real bound;
+    };
+
+    virtual Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level,
+                          bool outside) = 0;
+    virtual bool glance_at_leaf(Real lo, Real hi) = 0;
+    virtual void extract(const Extracted& s) = 0;
+    virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
+    virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
+    virtual BlockGlance<Real, interior> glance_within(
+        const BlockInterior<Real, interior>& elements) = 0;
+    virtual unsigned extract_block(const ErasedBlock<dim, Real>& block, unsigned entered) = 0;
+
+protected:
+    ErasedBisectionVisitor() = default;
+    ~ErasedBisectionVisitor() = default;
+};
+
+template <class Element>
+nestgrid_element erased(const Element& element) {
+    nestgrid_element result{};
+    std::memcpy(&result, &element, sizeof(element));
+    return result;
+}
+
+/// The grid's side.
+template <class Grid, class Real>
+class BisectionForwarder {
+    static constexpr int dim = Grid::dimension;
+
+public:
+    BisectionForwarder(const Grid& grid, ErasedBisectionVisitor<dim, Real>& to)
+        : grid_{&grid}, to_{&to} {}
+
+    auto glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) {
+        return to_->glance(lo, hi, rule, node, level, outside);
+    }
+    bool glance_at_leaf(Real lo, Real hi) { return to_->glance_at_leaf(lo, hi); }
+    void extract(const BisectedElement<Grid, Real>& s) {
+        constexpr std::size_t corners = BisectedElement<Grid, Real>::corners;
+        const nestgrid_element element = erased(s.element);
+        std::array<Point, corners> position;
+        std::array<NodeKey, corners> key;
+        grid_->corner_positions(s.element, position);
+        grid_->corner_keys(s.element, key);
+        to_->extract({&element, s.value.data(), position.data(), key.data(),
+                      grid_->boundary_faces(s.element), s.level, s.orientation, s.bound});
+    }
+    void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
+
+    template <std::size_t count>
+    auto glance_within(const BlockInterior<Real, count>& elements) requires HasMaubachBlocks<Grid> {
+        return to_->glance_within(elements);
+    }
+    unsigned extract_block(const BisectedBlock<Grid, Real>& block,
+                           unsigned entered) requires HasMaubachBlocks<Grid> {
+        struct Erased final : ErasedBlock<dim, Real> {
+            const BisectedBlock<Grid, Real>* of;
+
+            nestgrid_element element(std::size_t part) const override {
+                return erased(of->element(part));
+            }
+            unsigned boundary(std::size_t part) const override { return of->boundary(part); }
+        } all;
+        all.of = &block;
+        all.value = block.value;
+        for (std::size_t i = 0; i < all.pattern.nodes; ++i) {
+            all.positions[i] = block.position(i);
+            all.keys[i] = block.node_key(i);
+        }
+        all.level = block.level;
+        all.orientation = block.orientation;
+        return to_->extract_block(all, entered);
+    }
+
+private:
+    const Grid* grid_;
+    ErasedBisectionVisitor<dim, Real>* to_;
+};
+
+}  // namespace nestgrid::detail
