@@ -21,6 +21,7 @@ template <std::size_t corner_count, std::size_t block_height>
 struct BisectionBlock {
     static constexpr std::size_t corners = corner_count;
     static constexpr std::size_t height = block_height;
+    static_assert(height == 2 || height == 3);
     static constexpr std::size_t ends = std::size_t{1} << height;
     static constexpr std::size_t most_nodes = corners + ends - 1;
 
@@ -34,7 +35,17 @@ struct BisectionBlock {
         friend constexpr bool operator==(const Part&, const Part&) = default;
     };
 
+    /// What is reached when some of parts 2 ... ends - 1 are entered, one bit each from bit 0.
+    struct Reached {
+        std::uint8_t interior = 0;   ///< of those parts
+        std::uint8_t ends = 0;       ///< bit i: end i
+        std::uint8_t descended = 0;  ///< how many of the former are reached and entered
+
+        friend constexpr bool operator==(const Reached&, const Reached&) = default;
+    };
+
     std::array<Part, 2 * ends> part{};
+    std::array<Reached, std::size_t{1} << (ends - 2)> reached{};
     std::size_t nodes = corners;
     /// Of every node but the corners of part 1, which come first.
     std::array<std::array<std::uint8_t, 2>, most_nodes> parent{};
@@ -61,6 +72,17 @@ struct BisectionBlock {
                 child.depth = static_cast<std::uint8_t>(part[p].depth + 1);
                 child.mirrored = part[p].mirrored != (half.orientation < 0);
             }
+        }
+        for (unsigned entered = 0; entered < reached.size(); ++entered) {
+            unsigned parts = 4U | 8U;  // by number
+            for (std::size_t p = 2; p < ends; ++p) {
+                if ((parts >> p & entered >> (p - 2) & 1U) == 0) continue;
+                parts |= 3U << (2 * p);
+                ++reached[entered].descended;
+            }
+            const unsigned those = (1U << ends) - 1;
+            reached[entered].interior = static_cast<std::uint8_t>((parts & those) >> 2U);
+            reached[entered].ends = static_cast<std::uint8_t>(parts >> ends);
         }
     }
 

@@ -8,12 +8,19 @@
 // be shown elements of a block below one that it skips or stops at, and those answers are not used.
 #pragma once
 
-#include <bit>
+#include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include <nestgrid/bisection_block.hpp>
 #include <nestgrid/inlining.hpp>
 
 namespace nestgrid {
+
+/// Which faces of the subtree a node is in the node lies on, one bit each: edges whose ends share
+/// none are edges of no element outside it.
+using SubtreeFaces = std::uint8_t;
+inline constexpr SubtreeFaces no_subtree = 0x80;
 
 /// An element as bisections known at compile time leave it.
 template <class Grid, class Real>
@@ -27,7 +34,7 @@ struct BisectedElement {
     Real bound;  ///< what the visitor returned of it
 };
 
-/// A block whose ends are leaves and at none of whose elements the visitor stops.
+/// A block.
 template <class Grid, class Real>
 struct BisectedBlock {
     using Node = typename Grid::Node;
@@ -35,14 +42,15 @@ struct BisectedBlock {
 
     const Grid* grid;
     std::array<Node, pattern.nodes> node;
-    std::array<NodeKey, pattern.nodes> key;  ///< of the new nodes
+    std::array<NodeKey, pattern.nodes> key;
     std::array<Real, pattern.nodes> value;
+    std::array<SubtreeFaces, pattern.nodes> faces;
     int level;        ///< of part 1
     int orientation;  ///< of part 1
 
-    Point position(std::size_t i) const { return grid->position(node[i]); }
-    NodeKey node_key(std::size_t i) const {
-        return i < BisectedElement<Grid, Real>::corners ? grid->key(node[i]) : key[i];
+    NESTGRID_INLINE Point position(std::size_t i) const { return grid->position(node[i]); }
+    NESTGRID_INLINE void all_positions(std::array<Point, pattern.nodes>& x) const {
+        for (std::size_t i = 0; i < pattern.nodes; ++i) x[i] = position(i);
     }
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(std::size_t part) const { return grid->boundary_faces(element(part)); }
@@ -84,8 +92,13 @@ struct BlockInterior {
 /// and, to be shown blocks,
 ///     BlockGlance glance_within(const BlockInterior&)    what glance() says of each of them
 ///     unsigned extract_block(const BisectedBlock&, unsigned entered)
-///             extracts those of the leaves entered of which glance_at_leaf() says so, and says
-///             which; bit i stands for end i
+///             extracts those of the ends entered of which glance_at_leaf() says so, and says how
+///             many; bit i stands for end i. All ends are leaves
+///     void extract_part(const BisectedBlock&, std::size_t part, Real bound)
+///             a part at which it stops, or an end that is a leaf; only nodes at its corners are
+///             set
+///     void begin_subtree()                       optional, to be told of faces: what was inside
+///                                                the subtree before comes never again
 /// \tparam whole  what the grid says
 template <class Grid, class Field, class Visitor, bool whole>
 class BisectionWalk {
@@ -116,6 +129,9 @@ private:
         }
         return false;
     }();
+    static constexpr bool in_subtrees_ = requires(Visitor & v) { v.begin_subtree(); };
+    /// Three blocks of tetrahedra: 512 leaves, of whose edges half lie inside.
+    static constexpr int subtree_height_ = 3;
 
     template <std::size_t number>
     void start(const ElementOf<Grid>& e, const Real* u, int level, int orientation) {
@@ -134,14 +150,20 @@ private:
     template <std::size_t number>
     void bisect(Node n0, Node n1, Node n2, Node n3, Real u0, Real u1, Real u2, Real u3, int path);
     template <std::size_t number>
-    void extract(Node n0, Node n1, Node n2, Node n3, Real u0, Real u1, Real u2, Real u3, int path,
-                 Real bound);
+    void extract(const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound);
 
-    /// What lies below an element that starts a block and is entered; z: its new node.
-    void enter_block(Node n0, Node n1, Node n2, Node n3, Real u0, Real u1, Real u2, Real u3, Node z,
-                     NodeKey key, int path);
+    /// Walks down from an element that starts a block, given by places in the block above.
+    template <class Block>
+    void walk_block(const Block& above, const std::array<std::uint8_t, 4>& corner, int path);
     template <std::size_t part, class Block, class Glance>
-    void enter_part(const Block& block, const Glance& glance, int path);
+    void walk_part(const Block& block, const Glance& glance, bool leaves, int path);
+    template <class Block>
+    void extract_part(const Block& block, std::size_t part, Real bound) {
+        ++extracted_;
+        visitor_->extract_part(block, part, bound);
+    }
+    template <class Block>
+    void begin_subtree(Block& block);
 
     void count_bisected(std::uint64_t more) {
         bisected_ += more;
@@ -157,6 +179,7 @@ private:
     std::uint64_t next_tick_ = 0x4000U;
     std::uint64_t masked_ = 0;
     std::uint64_t extracted_ = 0;
+    int subtree_level_ = 0;  // on which subtrees start
 };
 
 /// Walks down from an element with these values; `end` is told the walk's counts.
@@ -182,148 +205,172 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
     const Real lo = std::min(std::min(u0, u1), std::min(u2, u3));
     const Real hi = std::max(std::max(u0, u1), std::max(u2, u3));
     if (!grid_->halved(n[rule.parent[0]], n[rule.parent[1]])) {
-        if (visitor_->glance_at_leaf(lo, hi)) {
-            extract<number>(n0, n1, n2, n3, u0, u1, u2, u3, path, Real(0));
-        }
+        if (visitor_->glance_at_leaf(lo, hi)) extract<number>(n, u, path, Real(0));
         return;
     }
-    const Node z = grid_->middle(n[rule.parent[0]], n[rule.parent[1]]);
-    bool outside = false;
-    if constexpr (!whole && may_offer<Grid>(Feature::outside)) {
-        std::array<Node, corners> of;
-        std::copy_n(n.begin(), corners, of.begin());
-        outside = grid_->outside(grid_->element(number, of)) != 0;
-    }
-    const NodeKey key = grid_->key(z);
-    const auto [visit, bound] =
-        visitor_->glance(lo, hi, grid_->rule(number), key, path / 2, outside);
-    if (visit == Visit::skip) return;
-    if (visit == Visit::stop) {
-        return extract<number>(n0, n1, n2, n3, u0, u1, u2, u3, path, bound);
-    }
-    count_bisected(1);
     if constexpr (in_blocks_ && number == last_) {
-        enter_block(n0, n1, n2, n3, u0, u1, u2, u3, z, key, path);
+        BisectedBlock<Grid, Real> above;
+        for (std::size_t i = 0; i < corners; ++i) {
+            above.node[i] = n[i];
+            above.key[i] = grid_->key(n[i]);
+            above.value[i] = u[i];
+            above.faces[i] = no_subtree;
+        }
+        // The deepest a block can be that is as deep everywhere.
+        int blocks = 0;
+        for (Node a = n[rule.parent[0]], b = n[rule.parent[1]]; grid_->halved(a, b); ++blocks) {
+            b = grid_->middle(a, b);
+        }
+        const int above_subtree = std::max(0, blocks - subtree_height_);
+        subtree_level_ = path / 2 + static_cast<int>(Grid::block_height) * above_subtree;
+        return walk_block(above, block_of<Grid>.part[1].corner, path);
     } else {
+        const Node z = grid_->middle(n[rule.parent[0]], n[rule.parent[1]]);
+        bool outside = false;
+        if constexpr (!whole && may_offer<Grid>(Feature::outside)) {
+            std::array<Node, corners> of;
+            std::copy_n(n.begin(), corners, of.begin());
+            outside = grid_->outside(grid_->element(number, of)) != 0;
+        }
+        const NodeKey key = grid_->key(z);
+        const auto [visit, bound] =
+            visitor_->glance(lo, hi, grid_->rule(number), key, path / 2, outside);
+        if (visit == Visit::skip) return;
+        if (visit == Visit::stop) return extract<number>(n, u, path, bound);
+        count_bisected(1);
         const Real uz = field_->template value_at<whole>(z, key);
-        const auto enter =
-            [&]<std::size_t c>(std::integral_constant<std::size_t, c>) NESTGRID_INLINE_LAMBDA {
-                constexpr KnownBisection::Half half = rule.child[c];
-                const auto node = [&](std::size_t i) {
-                    return half.corner[i] == 4 ? z : n[half.corner[i]];
-                };
-                const auto value = [&](std::size_t i) {
-                    return half.corner[i] == 4 ? uz : u[half.corner[i]];
-                };
-                constexpr std::size_t last = corners - 1;
-                if constexpr (!whole && may_offer<Grid>(Feature::masked)) {
-                    std::array<Node, corners> of;
-                    for (std::size_t i = 0; i < corners; ++i) of[i] = node(i);
-                    if (grid_->masked(grid_->element(half.bisection, of))) {
-                        ++masked_;
-                        return;
-                    }
-                }
-                bisect<half.bisection>(node(0), node(1), node(2), node(last), value(0), value(1),
-                                       value(2), value(last),
-                                       (path + 2) ^ (half.orientation < 0 ? 1 : 0));
+        unrolled<2>([&](auto c) NESTGRID_INLINE_LAMBDA {
+            constexpr KnownBisection::Half half = rule.child[c];
+            const auto node = [&](std::size_t i) {
+                return half.corner[i] == 4 ? z : n[half.corner[i]];
             };
-        enter(std::integral_constant<std::size_t, 0>{});
-        enter(std::integral_constant<std::size_t, 1>{});
+            const auto value = [&](std::size_t i) {
+                return half.corner[i] == 4 ? uz : u[half.corner[i]];
+            };
+            constexpr std::size_t last = corners - 1;
+            if constexpr (!whole && may_offer<Grid>(Feature::masked)) {
+                std::array<Node, corners> of;
+                for (std::size_t i = 0; i < corners; ++i) of[i] = node(i);
+                if (grid_->masked(grid_->element(half.bisection, of))) {
+                    ++masked_;
+                    return;
+                }
+            }
+            bisect<half.bisection>(node(0), node(1), node(2), node(last), value(0), value(1),
+                                   value(2), value(last),
+                                   (path + 2) ^ (half.orientation < 0 ? 1 : 0));
+        });
     }
 }
 
 template <class Grid, class Field, class Visitor, bool whole>
-void BisectionWalk<Grid, Field, Visitor, whole>::enter_block(Node n0, Node n1, Node n2, Node n3,
-                                                             Real u0, Real u1, Real u2, Real u3,
-                                                             Node z, NodeKey key, int path) {
+template <class Block>
+void BisectionWalk<Grid, Field, Visitor, whole>::walk_block(
+    const Block& above, const std::array<std::uint8_t, 4>& corner, int path) {
     static constexpr const auto& pattern = block_of<Grid>;
     constexpr std::size_t inner = pattern.ends - 2;
-    BisectedBlock<Grid, Real> block;
-    const std::array<Node, 4> n{n0, n1, n2, n3};
-    const std::array<Real, 4> u{u0, u1, u2, u3};
+    Block block;
+    block.grid = grid_;
+    block.level = path / 2;
+    block.orientation = path % 2 == 0 ? 1 : -1;
     for (std::size_t i = 0; i < corners; ++i) {
-        block.node[i] = n[i];
-        block.value[i] = u[i];
+        block.node[i] = above.node[corner[i]];
+        block.key[i] = above.key[corner[i]];
+        block.value[i] = above.value[corner[i]];
+        if constexpr (in_subtrees_) block.faces[i] = above.faces[corner[i]];
     }
-    block.node[corners] = z;
-    block.key[corners] = key;
-    block.value[corners] = field_->template value_at<whole>(z, key);
-    for (std::size_t i = corners + 1; i < pattern.nodes; ++i) {
-        block.node[i] =
-            grid_->middle(block.node[pattern.parent[i][0]], block.node[pattern.parent[i][1]]);
-        block.key[i] = grid_->key(block.node[i]);
-        block.value[i] = field_->template value_at<whole>(block.node[i], block.key[i]);
+    const auto make_node = [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
+        const auto [a, b] = pattern.parent[i];
+        block.node[i] = grid_->middle(block.node[a], block.node[b]);
+        block.key[i] = grid_->middle_key(block.key[a], block.key[b]);
+    };
+    const auto lo_hi = [&](const auto& part) NESTGRID_INLINE_LAMBDA {
+        const auto value = [&](std::size_t k) { return block.value[part.corner[k]]; };
+        return std::pair(std::min(std::min(value(0), value(1)), std::min(value(2), value(3))),
+                         std::max(std::max(value(0), value(1)), std::max(value(2), value(3))));
+    };
+    static_assert(pattern.part[1].middle == corners);
+    make_node(corners);
+    const auto [lo, hi] = lo_hi(pattern.part[1]);
+    const auto [visit, bound] =
+        visitor_->glance(lo, hi, grid_->rule(last_), block.key[corners], path / 2, false);
+    if (visit == Visit::skip) return;
+    if constexpr (in_subtrees_) {
+        if (path / 2 == subtree_level_) begin_subtree(block);
     }
+    if (visit == Visit::stop) return extract_part(block, 1, bound);
+    unrolled<pattern.nodes - corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
+        constexpr std::size_t at = corners + i;
+        if constexpr (at > corners) make_node(at);
+        block.value[at] = field_->template value_at<whole>(block.node[at], block.key[at]);
+        if constexpr (in_subtrees_) {
+            block.faces[at] =
+                block.faces[pattern.parent[at][0]] & block.faces[pattern.parent[at][1]];
+        }
+    });
     BlockInterior<Real, inner> interior;
-    [&]<std::size_t... i>(std::index_sequence<i...>) {
-        const auto fill = [&](std::size_t at, const auto& part) NESTGRID_INLINE_LAMBDA {
-            const auto value = [&](std::size_t k) { return block.value[part.corner[k]]; };
-            interior.lo[at] = std::min(std::min(value(0), value(1)), std::min(value(2), value(3)));
-            interior.hi[at] = std::max(std::max(value(0), value(1)), std::max(value(2), value(3)));
-            interior.key[at] = block.key[part.middle];
-            interior.rule[at] = &grid_->rule(part.bisection);
-            interior.level[at] = path / 2 + part.depth;
-        };
-        (fill(i, pattern.part[i + 2]), ...);
-    }
-    (std::make_index_sequence<inner>());
+    unrolled<inner>([&](auto i) NESTGRID_INLINE_LAMBDA {
+        constexpr auto part = pattern.part[i + 2];
+        std::tie(interior.lo[i], interior.hi[i]) = lo_hi(part);
+        interior.key[i] = block.key[part.middle];
+        interior.rule[i] = &grid_->rule(part.bisection);
+        interior.level[i] = path / 2 + part.depth;
+    });
     auto glance = visitor_->glance_within(interior);
-    // One bit for each part; those below one that is not entered are not reached.
-    unsigned reached = 2U | 4U | 8U;
-    glance.descend = glance.descend << 2U | 2U;
-    glance.stop <<= 2U;
-    for (std::size_t p = 2; p < pattern.ends; ++p) {
-        const unsigned entered = reached >> p & glance.descend >> p & 1U;
-        reached |= (entered * 3U) << (2 * p);
-    }
-    glance.descend &= reached;
-    glance.stop &= reached;
-    count_bisected(static_cast<std::uint64_t>(std::popcount(glance.descend)) - 1);
+    const auto& reached = pattern.reached[glance.descend];
+    glance.descend &= reached.interior;
+    glance.stop &= reached.interior;
+    count_bisected(1U + reached.descended);
     constexpr auto first = pattern.part[pattern.ends];
     constexpr KnownBisection next = Grid::bisections[first.bisection];
-    if (glance.stop == 0 && !grid_->halved(block.node[first.corner[next.parent[0]]],
-                                           block.node[first.corner[next.parent[1]]])) {
-        block.grid = grid_;
-        block.level = path / 2;
-        block.orientation = path % 2 == 0 ? 1 : -1;
-        const unsigned extracted = visitor_->extract_block(block, reached >> pattern.ends);
-        extracted_ += static_cast<std::uint64_t>(std::popcount(extracted));
+    const bool leaves = !grid_->halved(block.node[first.corner[next.parent[0]]],
+                                       block.node[first.corner[next.parent[1]]]);
+    if (leaves && glance.stop == 0) {
+        extracted_ += visitor_->extract_block(block, reached.ends);
         return;
     }
-    enter_part<2>(block, glance, path);
-    enter_part<3>(block, glance, path);
+    walk_part<2>(block, glance, leaves, path);
+    walk_part<3>(block, glance, leaves, path);
+}
+
+template <class Grid, class Field, class Visitor, bool whole>
+template <class Block>
+NESTGRID_NOINLINE void BisectionWalk<Grid, Field, Visitor, whole>::begin_subtree(Block& block) {
+    for (std::size_t i = 0; i < corners; ++i) {
+        block.faces[i] = static_cast<SubtreeFaces>((1U << corners) - 1 - (1U << i));
+    }
+    visitor_->begin_subtree();
 }
 
 template <class Grid, class Field, class Visitor, bool whole>
 template <std::size_t p, class Block, class Glance>
-NESTGRID_INLINE void BisectionWalk<Grid, Field, Visitor, whole>::enter_part(const Block& block,
-                                                                            const Glance& glance,
-                                                                            int path) {
+NESTGRID_INLINE void BisectionWalk<Grid, Field, Visitor, whole>::walk_part(const Block& block,
+                                                                           const Glance& glance,
+                                                                           bool leaves, int path) {
     static constexpr const auto& pattern = block_of<Grid>;
-    constexpr auto part = pattern.part[p];
-    const auto node = [&](std::size_t i) { return block.node[part.corner[i]]; };
-    const auto value = [&](std::size_t i) { return block.value[part.corner[i]]; };
-    const int its_path = (path + 2 * part.depth) ^ (part.mirrored ? 1 : 0);
+    static constexpr auto part = pattern.part[p];
     if constexpr (p >= pattern.ends) {
-        bisect<part.bisection>(node(0), node(1), node(2), node(3), value(0), value(1), value(2),
-                               value(3), its_path);
-    } else if ((glance.descend >> p & 1U) != 0) {
-        enter_part<2 * p>(block, glance, path);
-        enter_part<2 * p + 1>(block, glance, path);
-    } else if ((glance.stop >> p & 1U) != 0) {
-        extract<part.bisection>(node(0), node(1), node(2), node(3), value(0), value(1), value(2),
-                                value(3), its_path, glance.bound[p - 2]);
+        if (!leaves) {
+            walk_block(block, part.corner, (path + 2 * part.depth) ^ (part.mirrored ? 1 : 0));
+        } else {
+            const auto value = [&](std::size_t k) { return block.value[part.corner[k]]; };
+            const Real lo = std::min(std::min(value(0), value(1)), std::min(value(2), value(3)));
+            const Real hi = std::max(std::max(value(0), value(1)), std::max(value(2), value(3)));
+            if (visitor_->glance_at_leaf(lo, hi)) extract_part(block, p, Real(0));
+        }
+    } else if ((glance.descend >> (p - 2) & 1U) != 0) {
+        walk_part<2 * p>(block, glance, leaves, path);
+        walk_part<2 * p + 1>(block, glance, leaves, path);
+    } else if ((glance.stop >> (p - 2) & 1U) != 0) {
+        extract_part(block, p, glance.bound[p - 2]);
     }
 }
 
 template <class Grid, class Field, class Visitor, bool whole>
 template <std::size_t number>
 NESTGRID_NOINLINE void BisectionWalk<Grid, Field, Visitor, whole>::extract(
-    Node n0, Node n1, Node n2, Node n3, Real u0, Real u1, Real u2, Real u3, int path, Real bound) {
+    const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound) {
     ++extracted_;
-    const std::array<Node, 4> n{n0, n1, n2, n3};
-    const std::array<Real, 4> u{u0, u1, u2, u3};
     std::array<Node, corners> of;
     Bisected s;
     for (std::size_t i = 0; i < corners; ++i) {

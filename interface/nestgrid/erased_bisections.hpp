@@ -20,19 +20,25 @@ class ErasedBlock {
 public:
     static constexpr const auto& pattern = maubach_block<dim>;
 
+    virtual Point position(std::size_t i) const = 0;
+    virtual void all_positions(std::array<Point, pattern.nodes>& x) const = 0;
     virtual nestgrid_element element(std::size_t part) const = 0;
     virtual unsigned boundary(std::size_t part) const = 0;
-    const Point& position(std::size_t i) const { return positions[i]; }
-    NodeKey node_key(std::size_t i) const { return keys[i]; }
 
-    std::array<Real, pattern.nodes> value;
-    std::array<Point, pattern.nodes> positions;
-    std::array<NodeKey, pattern.nodes> keys;
-    int level;
-    int orientation;
+    const std::array<NodeKey, pattern.nodes>& key;
+    const std::array<Real, pattern.nodes>& value;
+    const std::array<SubtreeFaces, pattern.nodes>& faces;
+    const int level;
+    const int orientation;
 
 protected:
-    ErasedBlock() = default;
+    template <class Block>
+    explicit ErasedBlock(const Block& block)
+        : key{block.key},
+          value{block.value},
+          faces{block.faces},
+          level{block.level},
+          orientation{block.orientation} {}
     ~ErasedBlock() = default;
 };
 
@@ -63,6 +69,9 @@ public:
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual BlockGlance<Real, interior> glance_within(
         const BlockInterior<Real, interior>& elements) = 0;
+    virtual void begin_subtree() = 0;
+    virtual void extract_part(const ErasedBlock<dim, Real>& block, std::size_t part,
+                              Real bound) = 0;
     virtual unsigned extract_block(const ErasedBlock<dim, Real>& block, unsigned entered) = 0;
 
 protected:
@@ -101,33 +110,38 @@ public:
                       grid_->boundary_faces(s.element), s.level, s.orientation, s.bound});
     }
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
+    void begin_subtree() { to_->begin_subtree(); }
 
     template <std::size_t count>
     auto glance_within(const BlockInterior<Real, count>& elements) requires HasMaubachBlocks<Grid> {
         return to_->glance_within(elements);
     }
+    void extract_part(const BisectedBlock<Grid, Real>& block, std::size_t part,
+                      Real bound) requires HasMaubachBlocks<Grid> {
+        to_->extract_part(Block(block), part, bound);
+    }
     unsigned extract_block(const BisectedBlock<Grid, Real>& block,
                            unsigned entered) requires HasMaubachBlocks<Grid> {
-        struct Erased final : ErasedBlock<dim, Real> {
-            const BisectedBlock<Grid, Real>* of;
-
-            nestgrid_element element(std::size_t part) const override {
-                return erased(of->element(part));
-            }
-            unsigned boundary(std::size_t part) const override { return of->boundary(part); }
-        } all;
-        all.of = &block;
-        all.value = block.value;
-        for (std::size_t i = 0; i < all.pattern.nodes; ++i) {
-            all.positions[i] = block.position(i);
-            all.keys[i] = block.node_key(i);
-        }
-        all.level = block.level;
-        all.orientation = block.orientation;
-        return to_->extract_block(all, entered);
+        return to_->extract_block(Block(block), entered);
     }
 
 private:
+    struct Block final : ErasedBlock<dim, Real> {
+        using Original = BisectedBlock<Grid, Real>;
+        explicit Block(const Original& block) : ErasedBlock<dim, Real>(block), of{&block} {}
+
+        Point position(std::size_t i) const override { return of->position(i); }
+        void all_positions(std::array<Point, Original::pattern.nodes>& x) const override {
+            of->all_positions(x);
+        }
+        nestgrid_element element(std::size_t part) const override {
+            return erased(of->element(part));
+        }
+        unsigned boundary(std::size_t part) const override { return of->boundary(part); }
+
+        const Original* of;
+    };
+
     const Grid* grid_;
     ErasedBisectionVisitor<dim, Real>* to_;
 };

@@ -19,8 +19,9 @@
 //     template <bool whole> value_type value_at(Node, NodeKey)
 // Nothing hangs in such a grid, and it knows keys, positions and boundary faces by heart. It may
 // also offer
-//     static constexpr std::size_t block_height        at least 2
+//     static constexpr std::size_t block_height        2 or 3
 //     Point position(Node node)                        equal to corner_positions()
+//     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two
 // which says that an element split by the last of the bisections is split that many times over,
 // into elements of the last bisection again, of which either all are split or none; then those are
 // looked at together (bisection_walk.hpp).
@@ -81,8 +82,9 @@ concept KnowsBisections = requires(const Grid& grid, const Field& field, const E
 
 template <class Grid>
 concept KnowsBlocks = requires(const Grid& grid, typename Grid::Node node) {
-    requires Grid::block_height >= 2;
+    requires Grid::block_height == 2 || Grid::block_height == 3;
     { grid.position(node) } -> std::same_as<Point>;
+    { grid.middle_key(NodeKey{}, NodeKey{}) } -> std::same_as<NodeKey>;
 };
 
 }  // namespace nestgrid

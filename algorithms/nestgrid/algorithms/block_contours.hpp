@@ -5,8 +5,6 @@
 // with every cut edge of the block named once.
 #pragma once
 
-#include <map>
-
 #include <nestgrid/algorithms/contour_table.hpp>
 #include <nestgrid/bisection_block.hpp>
 
@@ -26,12 +24,18 @@ public:
         std::uint8_t mirrored;  ///< that end is, against part 1 of the block
         std::array<std::uint8_t, 4> cut;
     };
+    /// The one loop of one element.
+    struct Piece {
+        std::uint8_t count = 0;
+        std::array<Cut, 4> cut{};
+        std::array<std::uint8_t, 4> face{};  ///< of the element, behind a cut; contour_table.hpp
+    };
     struct Contour {
         std::uint32_t first_cut = 0;
         std::uint32_t first_loop = 0;
         std::uint8_t cut_count = 0;
         std::uint8_t loop_count = 0;
-        std::uint16_t ends = 0;  ///< that have a loop, one bit each
+        std::uint8_t ends = 0;  ///< that have a loop, one bit each
     };
 
     /// The table of a pattern of bisections, made when it is first asked for.
@@ -41,7 +45,11 @@ public:
         return table;
     }
 
-    /// Bit i of `signs` says that node i has U >= C.
+    /// Of a part alone. Bit i of `signs` says that its corner i has U >= C.
+    const Piece& piece(std::size_t part, unsigned signs) const {
+        return pieces_[16 * part + signs];
+    }
+    /// Of all ends. Bit i of `signs` says that node i has U >= C.
     const Contour& at(unsigned signs) const { return contours_[signs]; }
     /// In the order in which the ends come to them.
     std::span<const Cut> cuts(const Contour& c) const {
@@ -56,46 +64,68 @@ private:
     template <class Pattern>
     explicit BlockContours(const Pattern& pattern);
 
+    void make_piece(Shape shape, const std::array<std::uint8_t, 4>& corner, unsigned signs,
+                    Piece& piece) const;
+
+    std::vector<Piece> pieces_;
     std::vector<Contour> contours_;
     std::vector<Cut> cuts_;
     std::vector<Loop> loops_;
 };
 
 template <class Pattern>
-BlockContours::BlockContours(const Pattern& pattern) {
+BlockContours::BlockContours(const Pattern& pattern) : pieces_(32 * Pattern::ends) {
     const Shape shape = Pattern::corners == 3 ? Shape::triangle : Shape::tetrahedron;
-    const ContourTable& table = ContourTable::of(shape);
-    for (unsigned signs = 0; signs < 1U << pattern.nodes; ++signs) {
+    constexpr unsigned all = (1U << Pattern::corners) - 1;
+    for (std::size_t p = 1; p < 2 * Pattern::ends; ++p) {
+        for (unsigned bits = 1; bits < all; ++bits) {
+            make_piece(shape, pattern.part[p].corner, bits, pieces_[16 * p + bits]);
+        }
+    }
+    const auto count = std::size_t{1} << pattern.nodes;
+    contours_.reserve(count);
+    cuts_.reserve(13 * count);
+    loops_.reserve(7 * count);
+    for (unsigned signs = 0; signs < count; ++signs) {
         Contour contour;
         contour.first_cut = static_cast<std::uint32_t>(cuts_.size());
         contour.first_loop = static_cast<std::uint32_t>(loops_.size());
-        std::map<std::pair<std::uint8_t, std::uint8_t>, std::uint8_t> number;
+        std::array<std::array<std::uint8_t, 16>, 16> number{};  // of a cut, plus 1
         for (std::size_t end = 0; end < Pattern::ends; ++end) {
             const auto& part = pattern.part[Pattern::ends + end];
             unsigned bits = 0;
             for (std::size_t i = 0; i < Pattern::corners; ++i) {
                 bits |= (signs >> part.corner[i] & 1U) << i;
             }
-            if (bits == 0 || bits + 1 == 1U << Pattern::corners) continue;
-            const ContourLoop& from = table.plain(bits)->loop[0];  // of a simplex the only one
+            if (bits == 0 || bits == all) continue;
+            const Piece& from = piece(Pattern::ends + end, bits);
             Loop loop{static_cast<std::uint8_t>(end), from.count, part.mirrored, {}};
             for (std::size_t i = 0; i < from.count; ++i) {
-                const auto& [a, b] = topology(shape).edge[from.edge[i]];
-                const bool falls = (bits >> a & 1U) != 0;
-                const std::uint8_t low = part.corner[falls ? b : a];
-                const std::uint8_t high = part.corner[falls ? a : b];
-                const auto [at, is_new] = number.try_emplace({low, high}, contour.cut_count);
-                if (is_new) {
-                    cuts_.push_back({low, high});
-                    ++contour.cut_count;
+                const Cut cut = from.cut[i];
+                std::uint8_t& known = number[cut.low][cut.high];
+                if (known == 0) {
+                    cuts_.push_back(cut);
+                    known = ++contour.cut_count;
                 }
-                loop.cut[i] = at->second;
+                loop.cut[i] = static_cast<std::uint8_t>(known - 1);
             }
             loops_.push_back(loop);
             ++contour.loop_count;
-            contour.ends |= static_cast<std::uint16_t>(1U << end);
+            contour.ends |= static_cast<std::uint8_t>(1U << end);
         }
         contours_.push_back(contour);
+    }
+}
+
+inline void BlockContours::make_piece(Shape shape, const std::array<std::uint8_t, 4>& corner,
+                                      unsigned signs, Piece& piece) const {
+    const ContourLoop& from = ContourTable::of(shape).plain(signs)->loop[0];
+    piece.count = from.count;
+    for (std::size_t i = 0; i < from.count; ++i) {
+        const auto& [a, b] = topology(shape).edge[from.edge[i]];
+        const bool falls = (signs >> a & 1U) != 0;
+        piece.cut[i] = {corner[falls ? b : a], corner[falls ? a : b]};
+        piece.face[i] = from.face[i];
     }
 }
 

@@ -50,25 +50,19 @@ public:
     HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error = {});
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
-    NESTGRID_INLINE float stop(NodeKey node) const {
-        const Entry* e = entry(node);
-        return e == nullptr ? 0.0F : bfloat16_value(e->stop);
-    }
+    NESTGRID_INLINE float stop(NodeKey node) const { return bfloat16_value(entry(node).stop); }
 
     /// U and P_S U differ by at most this at a node of the finest level that is interpolated.
     double offset_bound(NodeKey node) const { return own_errors_ ? bound(node) : stop(node); }
 
     /// The bound of a node, for the intersection test.
-    NESTGRID_INLINE float bound(NodeKey node) const {
-        const Entry* e = entry(node);
-        return e == nullptr ? 0.0F : bfloat16_value(e->bound);
-    }
+    NESTGRID_INLINE float bound(NodeKey node) const { return bfloat16_value(entry(node).bound); }
 
     /// The largest bound of some nodes, eta_H(E) for the new nodes of an element E.
     NESTGRID_INLINE float bound(std::span<const NodeKey> nodes) const {
-        float largest = 0;
-        for (const NodeKey node : nodes) largest = std::max(largest, bound(node));
-        return largest;
+        std::uint16_t largest = 0;
+        for (const NodeKey node : nodes) largest = std::max(largest, entry(node).bound);
+        return bfloat16_value(largest);
     }
 
     /// Whether elements that stop conform on a grid without hanging nodes, because each split makes
@@ -104,9 +98,13 @@ private:
         float finer = 0;   // largest bound of finer nodes
     };
 
-    NESTGRID_INLINE const Entry* entry(NodeKey node) const {
-        if (dense_ != nullptr) return &dense_[static_cast<std::size_t>(node)];
-        return sparse_.find(node);
+    NESTGRID_INLINE Entry entry(NodeKey node) const {
+        if (dense_ != nullptr) return dense_[static_cast<std::size_t>(node)];
+        return sparse_entry(node);
+    }
+    NESTGRID_NOINLINE Entry sparse_entry(NodeKey node) const {
+        const Entry* e = sparse_.find(node);
+        return e == nullptr ? Entry{} : *e;
     }
 
     void add_value(double value, double limit) {

@@ -21,6 +21,7 @@
 
 #include <nestgrid/algorithms/block_contours.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
+#include <nestgrid/algorithms/at_least.hpp>
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/frontier.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
@@ -166,8 +167,12 @@ public:
     template <class Interior>
     typename Interior::Glance glance_within(const Interior& elements);
     void extract(const Bisected& s);
+    void begin_subtree()
+        requires(indexed);
     template <class Block>
     unsigned extract_block(const Block& block, unsigned entered);
+    template <class Block>
+    void extract_part(const Block& block, std::size_t part, Real bound);
     template <class Load, class Boundary>
     void draw_bisected(const Bisected& s, const Load& load, const Boundary& boundary);
     void tick(std::uint64_t calls, std::uint64_t visited) const;
@@ -204,10 +209,12 @@ private:
         Real least_inside;  // of the numbers that values can be
         Real greatest_outside;
         VertexNumbers number_of;
+        VertexNumbers number_within;  // a subtree of bisections
         Transitions transitions;
         const Transitions* drawn_below = nullptr;  // that of all tasks
         std::vector<Where> where;
         Number vertex_count = 0;
+        const BlockContours::Contour* contour = nullptr;  // of the block being drawn
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
     static constexpr Number none = std::numeric_limits<Number>::max();
@@ -235,10 +242,13 @@ private:
     // isosurface_bisections.hpp
     bool knows_bisections_of_grid() const;
     template <class Block>
-    void extract_part(const Block& block, std::size_t part);
+    using NodePositions = std::array<Point, indexed ? 1 : Block::pattern.nodes>;
     template <class Block>
-    void draw_block(const Block& block, Layer& layer, const BlockContours& contours,
-                    const BlockContours::Contour& contour);
+    Vertex cut_in(const Block& block, const Layer& layer, const BlockContours::Cut& ends,
+                  const NodePositions<Block>& x);
+    void put_loop(const std::array<Vertex, 4>& v, std::size_t count, bool mirrored);
+    template <class Block>
+    void draw_block(const Block& block, Layer& layer, const BlockContours& contours);
 
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);
@@ -272,6 +282,9 @@ private:
     Cut make_node(const State& s, std::size_t corner) const;
     template <class Make>
     Vertex add(const KeyPair& name, Make&& make);
+    template <class Make>
+    Vertex add_within(const KeyPair& name, SubtreeFaces faces, Make&& make);
+    Number add_new(const Cut& cut);
     Vertex add_unnamed(const Point& x, std::span<const double> attributes);
     Number number_of(const Vertex& vertex, const Point& reference);
     Number vertex(std::uint8_t edge);

@@ -48,6 +48,13 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 const BlockInterior<Real, Base::interior>& elements) override {
                 return to->glance_within(elements);
             }
+            void extract_part(const ErasedBlock<dimension, Real>& block, std::size_t part,
+                              Real bound) override {
+                to->extract_part(block, part, bound);
+            }
+            void begin_subtree() override {
+                if constexpr (indexed) to->begin_subtree();
+            }
             unsigned extract_block(const ErasedBlock<dimension, Real>& block,
                                    unsigned entered) override {
                 return to->extract_block(block, entered);
@@ -99,107 +106,124 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance_
     constexpr std::size_t count = Interior::size;
     typename Interior::Glance result;
     unsigned interest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        result.bound[i] = bound_of(std::span<const NodeKey>(&e.key[i], 1));
-    }
-    for (const Layer& layer : layers_) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const bool below = layer.least_inside - e.hi[i] <= result.bound[i];
-            const bool above = e.lo[i] - layer.greatest_outside <= result.bound[i];
-            interest |= (unsigned{below} & unsigned{above}) << i;
-        }
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const NodeMask mask = (*criterion_)(
-            NewNodes{*e.rule[i], std::span<const NodeKey>(&e.key[i], 1), e.level[i] + 1, 0});
+    unrolled<count>([&](auto i) NESTGRID_INLINE_LAMBDA {
+        const std::span<const NodeKey> key(&e.key[i], 1);
+        result.bound[i] = bound_of(key);
+        const NodeMask mask = (*criterion_)(NewNodes{*e.rule[i], key, e.level[i] + 1, 0});
         result.stop |= unsigned{mask != 0} << i;
+    });
+    for (const Layer& layer : layers_) {
+        unrolled<count>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const Real off =
+                std::max(layer.least_inside - e.hi[i], e.lo[i] - layer.greatest_outside);
+            interest |= unsigned{off <= result.bound[i]} << i;
+        });
     }
     result.stop &= interest;
     result.descend = interest & ~result.stop;
     return result;
 }
 
-/// Those of the ends entered which a level passes through, one bit each.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::begin_subtree()
+    requires(indexed)
+{
+    for (Layer& layer : layers_) layer.number_within.clear();
+}
+
+/// Those of the ends entered which a level passes through.
+/// \return how many
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Block>
 NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_block(
     const Block& block, unsigned entered) {
-    constexpr std::size_t nodes = Block::pattern.nodes;
     const BlockContours& contours = BlockContours::of<Block::pattern>();
-    const auto contour_of = [&](const Layer& layer) -> const BlockContours::Contour& {
-        unsigned signs = 0;
-        for (std::size_t i = 0; i < nodes; ++i) {
-            signs |= unsigned{block.value[i] >= layer.least_inside} << i;
-        }
-        return contours.at(signs);
+    const auto count_ends = [](unsigned bits) {  // at most 8 of them
+        bits = (bits & 0x55U) + (bits >> 1U & 0x55U);
+        bits = (bits & 0x33U) + (bits >> 2U & 0x33U);
+        return (bits & 0xFU) + (bits >> 4U);
     };
     unsigned ends = 0;
-    for (const Layer& layer : layers_) ends |= contour_of(layer).ends;
+    for (Layer& layer : layers_) {
+        layer.contour = &contours.at(at_least(block.value, layer.least_inside));
+        ends |= layer.contour->ends;
+    }
     if (ends == 0) return 0;
     bool plainly = (ends & ~entered) == 0;
     if constexpr (indexed) plainly = plainly && block.boundary(1) == 0;
     if (!plainly) {
         ends &= entered;
         for (unsigned left = ends; left != 0; left &= left - 1) {
-            extract_part(block, Block::pattern.ends + static_cast<unsigned>(std::countr_zero(left)));
+            const auto end = static_cast<unsigned>(std::countr_zero(left));
+            extract_part(block, Block::pattern.ends + end, Real(0));
         }
-        return ends;
+        return count_ends(ends);
     }
     deepest_ = std::max(deepest_, block.level + static_cast<int>(Block::pattern.height));
-    for (Layer& layer : layers_) draw_block(block, layer, contours, contour_of(layer));
-    return ends;
+    for (Layer& layer : layers_) draw_block(block, layer, contours);
+    return count_ends(ends);
 }
 
-/// A leaf alone.
+/// One element of a block, of which no more than its corners need be known.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Block>
-void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_part(const Block& block,
-                                                                      std::size_t p) {
+NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_part(
+    const Block& block, std::size_t p, Real bound) {
     const auto& part = Block::pattern.part[p];
-    Bisected s;
-    s.element = block.element(p);
-    for (std::size_t i = 0; i < Bisected::corners; ++i) {
-        s.value[i] = block.value[part.corner[i]];
-        x_[i] = block.position(part.corner[i]);
-        if constexpr (indexed) key_[i] = block.node_key(part.corner[i]);
+    const BlockContours& contours = BlockContours::of<Block::pattern>();
+    const int level = block.level + part.depth;
+    for (Layer& layer : layers_) {
+        unsigned bits = 0;
+        for (std::size_t i = 0; i < Bisected::corners; ++i) {
+            bits |= unsigned{block.value[part.corner[i]] >= layer.least_inside} << i;
+        }
+        if (bits == 0 || bits + 1 == 1U << Bisected::corners) continue;
+        layer_ = &layer;
+        deepest_ = std::max(deepest_, level);
+        layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
+        ++layer.extracted;
+        const BlockContours::Piece& piece = contours.piece(p, bits);
+        [[maybe_unused]] NodePositions<Block> x;
+        if constexpr (!indexed) {
+            for (std::size_t i = 0; i < Bisected::corners; ++i) {
+                x[part.corner[i]] = block.position(part.corner[i]);
+            }
+        }
+        std::array<Vertex, 4> v;
+        for (std::size_t i = 0; i < piece.count; ++i) v[i] = cut_in(block, layer, piece.cut[i], x);
+        if (keeps_elements(layer.sink)) {
+            layer.sink.add_element(block.element(p), simplex_shape, level);
+        }
+        put_loop(v, piece.count, part.mirrored != (block.orientation < 0));
+        if constexpr (indexed) {
+            const unsigned boundary = block.boundary(p);
+            for (std::size_t i = 0; boundary != 0 && i < piece.count; ++i) {
+                if ((boundary >> piece.face[i] & 1U) == 0) continue;
+                if constexpr (dimension == 2) {
+                    layer.sink.add_boundary({v[i]});
+                } else {
+                    layer.sink.add_boundary({v[i], v[(i + 1U) % piece.count]});
+                }
+            }
+        }
     }
-    s.level = block.level + part.depth;
-    s.orientation = part.mirrored ? -block.orientation : block.orientation;
-    s.bound = 0;
-    loaded_ = true;
-    draw_bisected(s, [] {}, [&] { return block.boundary(p); });
 }
 
+/// All of the ends that a level passes through.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Block>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_block(
-    const Block& block, Layer& layer, const BlockContours& contours,
-    const BlockContours::Contour& contour) {
+    const Block& block, Layer& layer, const BlockContours& contours) {
     constexpr std::size_t nodes = Block::pattern.nodes;
-    constexpr std::size_t edges = nodes * (nodes - 1) / 2;
+    const BlockContours::Contour& contour = *layer.contour;
     layer_ = &layer;
-    layer.extracted += static_cast<std::uint64_t>(std::popcount(contour.ends));
-    [[maybe_unused]] std::array<Point, indexed ? 1 : nodes> x;
-    if constexpr (!indexed) {
-        for (std::size_t i = 0; i < nodes; ++i) x[i] = block.position(i);
-    }
-    std::array<Vertex, edges> v;
+    layer.extracted += contour.loop_count;
+    [[maybe_unused]] NodePositions<Block> x;
+    if constexpr (!indexed) block.all_positions(x);
+    std::array<Vertex, nodes*(nodes - 1) / 2> v;
     std::size_t count = 0;
-    for (const auto [low, high] : contours.cuts(contour)) {
-        const auto fraction = [&] {
-            return cut_fraction(layer.isovalue, static_cast<double>(block.value[low]),
-                                static_cast<double>(block.value[high]));
-        };
-        if constexpr (indexed) {
-            const KeyPair name{block.node_key(low), block.node_key(high)};
-            v[count++] = add(name, [&] {
-                Cut cut{block.position(low), {block.node_key(low), block.node_key(high)}, fraction(), {}};
-                cut.x = cut.x + cut.fraction * (block.position(high) - cut.x);
-                return cut;
-            });
-        } else {
-            v[count++] = x[low] + fraction() * (x[high] - x[low]);
-        }
+    for (const BlockContours::Cut& cut : contours.cuts(contour)) {
+        v[count++] = cut_in(block, layer, cut, x);
     }
     const int level = block.level + static_cast<int>(Block::pattern.height);
     for (const BlockContours::Loop& loop : contours.loops(contour)) {
@@ -207,31 +231,61 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bl
             layer.sink.add_element(block.element(Block::pattern.ends + loop.end), simplex_shape,
                                    level);
         }
+        const auto vertex = [&](std::size_t i) { return v[loop.cut[i]]; };
         const bool mirrored = (loop.mirrored != 0) != (block.orientation < 0);
-        const auto put = [&](std::size_t a, std::size_t b, [[maybe_unused]] std::size_t c) {
-            if (mirrored) std::swap(a, b);
-            if constexpr (dimension == 2) {
-                put_simplex({v[loop.cut[a]], v[loop.cut[b]]}, {});
-            } else {
-                put_simplex({v[loop.cut[a]], v[loop.cut[b]], v[loop.cut[c]]}, {});
-            }
-        };
-        if (loop.count < 4) {
-            put(0, 1, 2);
-        } else {
-            const auto position = [&](std::size_t i) {
-                if constexpr (indexed) {
-                    return layer.sink.position(v[loop.cut[i]]);
-                } else {
-                    return v[loop.cut[i]];
-                }
-            };
-            const std::size_t a =
-                shorter(position(0), position(2), position(1), position(3)) ? 0 : 1;
-            put(a, a + 1, a + 2);
-            put(a + 2, (a + 3) % 4, a);
-        }
+        put_loop(std::array{vertex(0), vertex(1), vertex(2), vertex(3)}, loop.count, mirrored);
     }
+}
+
+/// The vertex on an edge of a block.
+/// \param x positions of its ends, where there are no indices
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Block>
+NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
+    const Block& block, const Layer& layer, const BlockContours::Cut& ends,
+    [[maybe_unused]] const NodePositions<Block>& x) -> Vertex {
+    const auto [low, high] = ends;
+    const auto fraction = [&] {
+        return cut_fraction(layer.isovalue, static_cast<double>(block.value[low]),
+                            static_cast<double>(block.value[high]));
+    };
+    if constexpr (indexed) {
+        const KeyPair name{block.key[low], block.key[high]};
+        const SubtreeFaces faces = block.faces[low] & block.faces[high];
+        return add_within(name, faces, [&] {
+            Cut cut{block.position(low), {block.key[low], block.key[high]}, fraction(), {}};
+            cut.x = cut.x + cut.fraction * (block.position(high) - cut.x);
+            return cut;
+        });
+    } else {
+        return x[low] + fraction() * (x[high] - x[low]);
+    }
+}
+
+/// A loop of a simplex: a segment, a triangle, or two.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_loop(
+    const std::array<Vertex, 4>& v, std::size_t count, bool mirrored) {
+    const auto put = [&](std::size_t a, std::size_t b,
+                         [[maybe_unused]] std::size_t c) NESTGRID_INLINE_LAMBDA {
+        if (mirrored) std::swap(a, b);
+        if constexpr (dimension == 2) {
+            put_simplex({v[a], v[b]}, {});
+        } else {
+            put_simplex({v[a], v[b], v[c]}, {});
+        }
+    };
+    if (count < 4) return put(0, 1, 2);
+    const auto position = [&](std::size_t i) {
+        if constexpr (indexed) {
+            return layer_->sink.position(v[i]);
+        } else {
+            return v[i];
+        }
+    };
+    const std::size_t a = shorter(position(0), position(2), position(1), position(3)) ? 0 : 1;
+    put(a, a + 1, a + 2);
+    put(a + 2, (a + 3) % 4, a);
 }
 
 template <class Grid, class Field, class S, class Indicator, class Sink>

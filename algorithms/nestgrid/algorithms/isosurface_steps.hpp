@@ -22,7 +22,7 @@ IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
     const bool small_keys = keys > 0 && keys <= (std::uint64_t{1} << 32U);
     for (Sink& sink : sinks) {
         layers_.push_back(
-            {{0, std::move(sink)}, 0, 0, VertexNumbers(small_keys), {}, nullptr, {}, 0});
+            {{0, std::move(sink)}, 0, 0, VertexNumbers(small_keys), VertexNumbers(small_keys), {}, nullptr, {}, 0});
     }
     set_isovalues();
 }
@@ -56,6 +56,7 @@ NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sin
         layer.extracted = 0;
         layer.error_bound = 0;
         layer.number_of.clear();
+        layer.number_within.clear();
         layer.transitions.clear();
         layer.where.clear();
         layer.vertex_count = 0;
@@ -101,7 +102,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& exe
 NESTGRID_VISITOR::table_bytes() const -> std::size_t {
     std::size_t bytes = gradients_.memory_bytes();
     for (const Layer& layer : layers_) {
-        bytes += layer.number_of.memory_bytes() + layer.transitions.memory_bytes() +
+        bytes += layer.number_of.memory_bytes() + layer.number_within.memory_bytes() + layer.transitions.memory_bytes() +
                  layer.where.capacity() * sizeof(Where);
     }
     return bytes;

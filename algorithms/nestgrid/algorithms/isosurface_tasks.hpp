@@ -91,6 +91,9 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
         void cut(const typename Log::Cut& c) {
             vertices.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
         }
+        void cut_alone(const typename Log::Cut& c) {
+            if constexpr (indexed) vertices.push_back(to->add_new(c));
+        }
         void vertex(const typename Log::Cut& c) {
             vertices.push_back(to->add_unnamed(c.x, c.attributes));
         }

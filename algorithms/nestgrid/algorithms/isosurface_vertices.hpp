@@ -86,29 +86,51 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Make>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(const KeyPair& name,
                                                                             Make&& make) -> Vertex {
+    return add_within(name, no_subtree, make);
+}
+
+/// The same in a walk of bisections.
+/// \param faces of the subtree on which its edge lies: where there is none, no element outside the
+///        subtree asks for it
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Make>
+NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_within(
+    const KeyPair& name, SubtreeFaces faces, Make&& make) -> Vertex {
     if constexpr (!indexed) {
         return make().x;
     } else {
-        if (layer_->vertex_count == none) throw GridError("the surface has 2^32 vertices or more");
-        const auto [number, is_new] = layer_->number_of.insert(name, layer_->vertex_count);
-        if (is_new) {
+        Layer& layer = *layer_;
+        bool is_new = false;
+        const auto make_number = [&] {
+            is_new = true;
             const Cut cut = make();
-            ++layer_->vertex_count;
             if constexpr (logs) {
-                layer_->sink.add_cut(cut);
+                layer.sink.add_cut(cut, faces == 0);
+                return layer.vertex_count++;
             } else {
-                layer_->sink.add_vertex(cut.x, cut.attributes);
-                if (options_->normals) {
-                    layer_->where.push_back({gradients_.slot(cut.node[0]),
-                                             gradients_.slot(cut.node[1]), cut.fraction, {}});
-                }
+                return add_new(cut);
             }
-        } else if (options_->verify && layer_->sink.position(number) != make().x) {
+        };
+        const auto make_on_face = [&] { return layer.number_of.find(name, make_number); };
+        const Number number = faces == 0            ? layer.number_within.find(name, make_number)
+                              : faces == no_subtree ? make_on_face()
+                                                    : layer.number_within.find(name, make_on_face);
+        if (options_->verify && !is_new && layer.sink.position(number) != make().x) {
             throw GridError("two elements put the vertex " + std::to_string(number) +
                             " at different places");
         }
         return number;
     }
+}
+
+NESTGRID_VISITOR::add_new(const Cut& cut) -> Number {
+    if (layer_->vertex_count == none) throw GridError("the surface has 2^32 vertices or more");
+    layer_->sink.add_vertex(cut.x, cut.attributes);
+    if (options_->normals) {
+        layer_->where.push_back({gradients_.slot(cut.node[0]), gradients_.slot(cut.node[1]),
+                                 cut.fraction, {}});
+    }
+    return layer_->vertex_count++;
 }
 
 /// A vertex inside one element.
@@ -247,8 +269,10 @@ NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dime
                                        : std::span<const Point>());
 }
 
-NESTGRID_VISITOR::put_simplex(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
-                              std::span<const Point> reference) -> void {
+template <class Grid, class Field, class S, class Indicator, class Sink>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_simplex(
+    const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
+    std::span<const Point> reference) {
     if (++drawn_ > limit_) throw OverLimit{};
     layer_->sink.add_simplex(v, reference);
     if constexpr (indexed && !logs && dimension == 3) {

@@ -41,8 +41,9 @@ public:
         int level;
     };
 
-    void add_cut(const Cut& cut) {
-        calls_.push_back(Call::cut);
+    /// \param alone no other task knows it
+    void add_cut(const Cut& cut, bool alone) {
+        calls_.push_back(alone ? Call::cut_alone : Call::cut);
         cuts_.push_back(cut);
     }
     void add_vertex(const Point& x, std::span<const double> attributes) {
@@ -80,6 +81,9 @@ public:
                 case Call::cut:
                     to.cut(*cut++);
                     break;
+                case Call::cut_alone:
+                    to.cut_alone(*cut++);
+                    break;
                 case Call::vertex:
                     to.vertex(*cut++);
                     break;
@@ -98,7 +102,7 @@ public:
     }
 
 private:
-    enum class Call : std::uint8_t { cut, vertex, element, simplex, boundary };
+    enum class Call : std::uint8_t { cut, cut_alone, vertex, element, simplex, boundary };
 
     std::vector<Call> calls_;
     std::vector<Cut> cuts_;

@@ -24,16 +24,18 @@ public:
     /// \param small_keys all keys are below 2^32
     explicit VertexNumbers(bool small_keys = false) : small_keys_{small_keys} {}
 
-    /// The number of the vertex between two nodes, and whether it is new; then it is `number`.
-    NESTGRID_INLINE std::pair<Number, bool> insert(const KeyPair& nodes, Number number) {
+    /// The number of the vertex between two nodes; make() gives it where it is new.
+    template <class Make>
+    NESTGRID_INLINE Number find(const KeyPair& nodes, Make&& make) {
         if (8 * size_ >= 5 * slots_.size()) grow();
         const NodeKey word = small_keys_ ? (nodes.low << 32U | nodes.high)
                                          : detail::mix(detail::mix(nodes.low) + nodes.high);
         Slot* slot = place(word);
-        if (slot->round == round_) return {slot->number, false};
+        if (slot->round == round_) return slot->number;
+        const Number number = make();
         *slot = {word, number, round_};
         ++size_;
-        return {number, true};
+        return number;
     }
 
     /// Forgets everything but its memory.

@@ -87,6 +87,7 @@ public:
     NESTGRID_INLINE bool halved(Node a, Node b) const { return ((a ^ b) & unit_) == 0; }
     NESTGRID_INLINE Node middle(Node a, Node b) const { return (a + b) >> 1U; }
     NESTGRID_INLINE NodeKey key(Node n) const { return node(n); }
+    NESTGRID_INLINE NodeKey middle_key(NodeKey a, NodeKey b) const { return (a + b) / 2; }
     using Lattice<dim>::whole;
 
     bool conforming() const { return true; }

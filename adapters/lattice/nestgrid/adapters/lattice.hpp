@@ -74,12 +74,15 @@ public:
         }
         return p;
     }
-    Point position(Place p) const {
-        Point x = geometry_.origin;
+    NESTGRID_INLINE Point position(Place p) const {
         if (aligned_) {
-            for (std::size_t d = 0; d < size_; ++d) x[d] = along_[d][at(p, d)];
-            return x;
+            if constexpr (dim == 2) {
+                return {along_[0][at(p, 0)], along_[1][at(p, 1)], geometry_.origin[2]};
+            } else {
+                return {along_[0][at(p, 0)], along_[1][at(p, 1)], along_[2][at(p, 2)]};
+            }
         }
+        Point x = geometry_.origin;
         for (std::size_t d = 0; d < size_; ++d) {
             const double step = geometry_.spacing[d] * at(p, d);
             for (std::size_t r = 0; r < 3; ++r) x[r] += geometry_.direction[r][d] * step;
