@@ -18,6 +18,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <mutex>
 
 #include <nestgrid/algorithms/block_contours.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
@@ -310,8 +312,7 @@ private:
     // isosurface_tasks.hpp
     template <class Executor>
     void walk(const Executor& executor);
-    template <class Main>
-    void begin_task(const Main& main);
+    std::unique_ptr<Task> begin_task();
     void add_task(const Task& task);
     void repeat(Layer& layer, const Log& log);
 
@@ -332,6 +333,11 @@ private:
     int deepest_ = 0;
     NodeGradients gradients_;
     std::vector<std::pair<Number, CornerGradient>> gradient_log_;  // of a task
+    struct {
+        std::mutex mutex;
+        std::vector<std::unique_ptr<Task>> tasks;  // whose memory is free to be used
+        IsosurfaceOptions silent;                  // of theirs: options_ without progress
+    } idle_;
 
     // The element being drawn; state_ is null while gaps are filled.
     const State* state_ = nullptr;

@@ -49,6 +49,7 @@ NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sin
     recording_ = false;  // where the last one was cancelled
     deepest_ = 0;
     gradients_.clear();
+    gradient_log_.clear();
     isovalues_.assign(isovalues.begin(), isovalues.end());
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Layer& layer = layers_[i];

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 
 #include <nestgrid/algorithms/isosurface.hpp>
 
@@ -29,18 +30,20 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk(const Executor& ex
         const Frontier frontier(*walk_, *this, 16 * wanted);
         const std::size_t entries = frontier.entry_count();
         const std::size_t parts = std::min(entries, wanted);
-        IsosurfaceOptions plain = *options_;
-        plain.progress = {};
+        idle_.silent = *options_;
+        idle_.silent.progress = {};
         executor.run(
             parts,
             [&](std::size_t i) {
-                auto task = std::make_unique<Task>(*walk_, isovalues_, std::vector<Log>(isovalues_.size()),
-                                                   *criterion_, *indicator_, plain);
-                task->begin_task(*this);
+                std::unique_ptr<Task> task = begin_task();
                 frontier.run(*walk_, i * entries / parts, (i + 1) * entries / parts, *task);
                 return task;
             },
-            [&](std::size_t, const std::unique_ptr<Task>& task) { add_task(*task); });
+            [&](std::size_t, std::unique_ptr<Task> task) {
+                add_task(*task);
+                const std::scoped_lock lock(idle_.mutex);
+                idle_.tasks.push_back(std::move(task));
+            });
     }
 }
 
@@ -51,14 +54,34 @@ NESTGRID_VISITOR::restart() -> void {
 
 NESTGRID_VISITOR::undo() -> void { --counts_.calls; --counts_.visited; }
 
-template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Main>
-void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::begin_task(const Main& main) {
-    recording_ = main.recording_;
-    limit_ = main.limit_;
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-        layers_[i].drawn_below = main.layers_[i].drawn_below;
+/// A visitor for a task, with the memory of an earlier one where there is one.
+NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
+    std::unique_ptr<Task> task;
+    {
+        const std::scoped_lock lock(idle_.mutex);
+        if (!idle_.tasks.empty()) {
+            task = std::move(idle_.tasks.back());
+            idle_.tasks.pop_back();
+        }
     }
+    std::vector<Log> sinks;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        const bool elements = keeps_elements(layers_[i].sink);
+        sinks.push_back(task ? std::move(task->layers_[i].sink) : Log(elements));
+        sinks.back().clear(elements);
+    }
+    if (task) {
+        task->begin_again(isovalues_, sinks);
+    } else {
+        task = std::make_unique<Task>(*walk_, isovalues_, std::move(sinks), *criterion_,
+                                      *indicator_, idle_.silent);
+    }
+    task->recording_ = recording_;
+    task->limit_ = limit_;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        task->layers_[i].drawn_below = layers_[i].drawn_below;
+    }
+    return task;
 }
 
 NESTGRID_VISITOR::add_task(const Task& task) -> void {
@@ -86,7 +109,7 @@ NESTGRID_VISITOR::add_task(const Task& task) -> void {
 NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
     struct Receiver {
         IsosurfaceVisitor* to;
-        std::vector<Vertex> vertices;
+        std::vector<Vertex>& vertices;
 
         void cut(const typename Log::Cut& c) {
             vertices.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
@@ -114,7 +137,8 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
         }
     };
     layer_ = &layer;
-    log.repeat(Receiver{this, {}});
+    local_.clear();
+    log.repeat(Receiver{this, local_});
 }
 
 }  // namespace nestgrid::detail

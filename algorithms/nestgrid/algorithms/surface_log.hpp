@@ -24,8 +24,8 @@ struct SurfaceCut {
     std::array<double, attribute_count> attributes;
 };
 
-/// A sink (surface.hpp) that keeps the calls in their order. Vertices come with the nodes they lie
-/// between, by which a vertex is known to several tasks; those inside one element come without.
+/// A sink (surface.hpp) that keeps what it is told. Vertices come with the nodes they lie between,
+/// by which a vertex is known to several tasks; those inside one element come without.
 template <int dimension, class Element, std::size_t attribute_count, bool is_indexed>
 class SurfaceLog {
 public:
@@ -39,72 +39,78 @@ public:
         Element element;
         Shape shape;
         int level;
+        std::size_t first;  ///< simplex from it
     };
+
+    /// \param elements whether the sink it is for keeps them
+    explicit SurfaceLog(bool elements) : keeps_elements_{elements} {}
 
     /// \param alone no other task knows it
     void add_cut(const Cut& cut, bool alone) {
-        calls_.push_back(alone ? Call::cut_alone : Call::cut);
+        kinds_.push_back(alone ? Kind::alone : Kind::shared);
         cuts_.push_back(cut);
     }
     void add_vertex(const Point& x, std::span<const double> attributes) {
-        calls_.push_back(Call::vertex);
+        kinds_.push_back(Kind::unnamed);
         cuts_.push_back({x, {}, 0, {}});
         for (std::size_t i = 0; i < attribute_count; ++i)
             cuts_.back().attributes[i] = attributes[i];
     }
     Point position(std::uint32_t vertex) const { return cuts_[vertex].x; }
+    bool keeps_elements() const { return keeps_elements_; }
     void add_element(const Element& element, Shape shape, int level) {
-        calls_.push_back(Call::element);
-        elements_.push_back({element, shape, level});
+        if (keeps_elements_) elements_.push_back({element, shape, level, simplices_.size()});
     }
     void add_simplex(const Simplex& corners, std::span<const Point> reference) {
-        calls_.push_back(Call::simplex);
         simplices_.push_back(corners);
         reference_.insert(reference_.end(), reference.begin(), reference.end());
     }
-    void add_boundary(const Ridge& corners) {
-        calls_.push_back(Call::boundary);
-        boundary_.push_back(corners);
+    void add_boundary(const Ridge& corners) { boundary_.push_back(corners); }
+
+    /// As new, but for its memory.
+    void clear(bool elements) {
+        keeps_elements_ = elements;
+        kinds_.clear();
+        cuts_.clear();
+        elements_.clear();
+        simplices_.clear();
+        reference_.clear();
+        boundary_.clear();
     }
 
-    /// Repeats the calls; corners are numbers of vertices in the order they were added here.
+    /// Repeats the calls, those for vertices before all others; corners are numbers of vertices in
+    /// the order they were added here.
     template <class Receiver>
     void repeat(Receiver&& to) const {
-        auto cut = cuts_.begin();
-        auto element = elements_.begin();
-        auto simplex = simplices_.begin();
-        auto boundary = boundary_.begin();
-        std::span<const Point> reference(reference_);
-        const std::size_t step = reference_.empty() ? 0 : dimension;
-        for (const Call call : calls_) {
-            switch (call) {
-                case Call::cut:
-                    to.cut(*cut++);
+        for (std::size_t i = 0; i < cuts_.size(); ++i) {
+            switch (kinds_[i]) {
+                case Kind::shared:
+                    to.cut(cuts_[i]);
                     break;
-                case Call::cut_alone:
-                    to.cut_alone(*cut++);
+                case Kind::alone:
+                    to.cut_alone(cuts_[i]);
                     break;
-                case Call::vertex:
-                    to.vertex(*cut++);
-                    break;
-                case Call::element:
-                    to.element(*element++);
-                    break;
-                case Call::simplex:
-                    to.simplex(*simplex++, reference.first(step));
-                    reference = reference.subspan(step);
-                    break;
-                case Call::boundary:
-                    to.boundary(*boundary++);
+                case Kind::unnamed:
+                    to.vertex(cuts_[i]);
                     break;
             }
         }
+        auto element = elements_.begin();
+        std::span<const Point> reference(reference_);
+        const std::size_t step = reference_.empty() ? 0 : dimension;
+        for (std::size_t i = 0; i < simplices_.size(); ++i) {
+            if (element != elements_.end() && element->first == i) to.element(*element++);
+            to.simplex(simplices_[i], reference.first(step));
+            reference = reference.subspan(step);
+        }
+        for (const Ridge& corners : boundary_) to.boundary(corners);
     }
 
 private:
-    enum class Call : std::uint8_t { cut, cut_alone, vertex, element, simplex, boundary };
+    enum class Kind : std::uint8_t { shared, alone, unnamed };
 
-    std::vector<Call> calls_;
+    bool keeps_elements_;
+    std::vector<Kind> kinds_;  // of the cuts
     std::vector<Cut> cuts_;
     std::vector<Owner> elements_;
     std::vector<Simplex> simplices_;
