@@ -116,6 +116,9 @@ private:
         greatest_ = std::max(greatest_, value);
     }
 
+    // indicator_stars.hpp
+    template <class Grid, class Field>
+    void add_values(const Field& field);
     template <class Grid, class Field>
     void sweep_stars(const Grid& grid, const Field& field);
     template <class Grid, class Field, class LeafError>
@@ -165,45 +168,6 @@ HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& fiel
         }
     }
     sweep_levels(grid, field, leaf_error);
-}
-
-template <class Grid, class Field>
-void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
-    using Real = typename Field::value_type;
-    constexpr double limit = std::numeric_limits<Real>::max() / 8;
-    node_count_ = grid.node_count();
-    largest_split_ = 1;  // a star is the midpoint of two nodes, the only one in its elements
-    dense_ = std::make_unique<Entry[]>(node_count_);
-    std::vector<float> bound(node_count_, 0.0F);
-    for (std::size_t i = 0; i < node_count_; ++i) {
-        add_value(field.value(static_cast<NodeKey>(i)), limit);
-    }
-    grid.for_each_star_row([&](const StarRow& row) {
-        const auto value = [&](std::size_t i) {
-            return static_cast<Real>(field.value(static_cast<NodeKey>(i)));
-        };
-        for (std::size_t i = 0; i < row.count; ++i) {
-            const std::size_t node = row.first + i * row.stride;
-            const auto at = [&](std::ptrdiff_t offset) {
-                return node + static_cast<std::size_t>(offset);
-            };
-            std::uint16_t stop = 0;
-            float finer = 0;
-            for (const std::ptrdiff_t offset : row.finer) {
-                stop = std::max(stop, dense_[at(offset)].stop);
-                finer = std::max(finer, bound[at(offset)]);
-            }
-            if (row.has_parents) {
-                const Real mean = midpoint(value(at(row.parent[0])), value(at(row.parent[1])));
-                const float own = detail::offset_above(value(node), mean);
-                stop = std::max(stop, bfloat16_above(own));
-                finer = sum_above(own, finer);
-            }
-            if (i + row.outside >= row.count) stop = bfloat16_infinity;
-            dense_[node] = {stop, bfloat16_above(finer)};
-            bound[node] = finer;
-        }
-    });
 }
 
 template <class Grid, class Field, class LeafError>
@@ -354,3 +318,5 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
 }
 
 }  // namespace nestgrid
+
+#include <nestgrid/algorithms/indicator_stars.hpp>

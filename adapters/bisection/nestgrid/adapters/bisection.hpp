@@ -160,7 +160,8 @@ private:
         return (nonzero(p) & nonzero(p ^ last_)) == above;
     }
     template <class Function>
-    void star_rows_of_step(std::uint32_t step, unsigned odd, Function& function) const;
+    void star_rows_of_plane(std::uint32_t step, unsigned odd, std::uint32_t plane,
+                            Function& function) const;
 
     std::array<const Rule*, corners_> rules_{};  // by tag
     Place last_ = 0;                             // of the domain

@@ -61,11 +61,13 @@ auto LatticeBisection<dim>::coarse(std::size_t i) const -> CoarseElement<Element
 /// half a step away in every direction; where two directions are odd or three, the centres of its
 /// edges or faces, a step away in one of those. Those of the edges of a cell are covered through
 /// its faces', all in a cell through its centre.
+/// \param plane those of them with this last coordinate, if any
 template <int dim>
 template <class Function>
-void LatticeBisection<dim>::star_rows_of_step(std::uint32_t step, unsigned odd,
-                                              Function& function) const {
+void LatticeBisection<dim>::star_rows_of_plane(std::uint32_t step, unsigned odd,
+                                               std::uint32_t plane, Function& function) const {
     const auto is_odd = [&](std::size_t d) { return (odd >> d & 1U) != 0; };
+    if (odd != 0 && is_odd(size_ - 1) != (plane % (2 * step) != 0)) return;
     const auto key_step = [&](std::size_t d, std::uint32_t steps) {
         return static_cast<std::ptrdiff_t>(node_stride_[d] * steps);
     };
@@ -118,9 +120,10 @@ void LatticeBisection<dim>::star_rows_of_step(std::uint32_t step, unsigned odd,
         }
         const std::uint32_t last = padded_cells_[0];
         const auto run = [&](std::uint32_t first, std::uint32_t end, std::uint32_t by) {
-            std::size_t count = 0;
+            std::size_t count = !padded_ && first < end ? (end - first - 1) / by + 1 : 0;
             std::size_t outside = 0;
-            for (std::uint32_t c = first; c < end && (odd == 0 || !beyond_all(0, c)); c += by) {
+            for (std::uint32_t c = first; padded_ && c < end && (odd == 0 || !beyond_all(0, c));
+                 c += by) {
                 ++count;
                 outside += odd != 0 && (all_across || across(0, c)) ? 1U : 0U;
             }
@@ -136,10 +139,11 @@ void LatticeBisection<dim>::star_rows_of_step(std::uint32_t step, unsigned odd,
             run(last, last + 1, spacing);
         }
     };
-    const auto from = [&](std::size_t d) { return is_odd(d) ? step : 0U; };
-    const std::uint32_t last_z = dim == 3 ? padded_cells_[size_ - 1] : 0;
-    for (x[2] = from(2); x[2] <= last_z; x[2] += spacing) {
-        for (x[1] = from(1); x[1] <= padded_cells_[1]; x[1] += spacing) line();
+    x[size_ - 1] = plane;
+    if constexpr (dim == 2) {
+        line();
+    } else {
+        for (x[1] = is_odd(1) ? step : 0U; x[1] <= padded_cells_[1]; x[1] += spacing) line();
     }
 }
 
@@ -147,14 +151,23 @@ template <int dim>
 template <class Function>
 void LatticeBisection<dim>::for_each_star_row(Function&& function) const {
     std::uint32_t step = 1;
+    const std::uint32_t last = padded_cells_[size_ - 1];
     for (int level = 0; level < levels_; ++level, step *= 2) {
-        for (int directions = 1; directions <= dim; ++directions) {
-            for (unsigned odd = 1; odd < 1U << size_; ++odd) {
-                if (std::popcount(odd) == directions) star_rows_of_step(step, odd, function);
+        // Nodes with more odd directions follow a plane behind: what they ask for is near in time.
+        for (std::uint32_t front = 0; front <= last + (dim - 1) * step; front += step) {
+            for (unsigned directions = 1; directions <= dim; ++directions) {
+                const std::uint32_t behind = (directions - 1) * step;
+                if (front < behind || front - behind > last) continue;
+                for (unsigned odd = 1; odd < 1U << size_; ++odd) {
+                    if (static_cast<unsigned>(std::popcount(odd)) != directions) continue;
+                    star_rows_of_plane(step, odd, front - behind, function);
+                }
             }
         }
     }
-    star_rows_of_step(step, 0, function);
+    for (std::uint32_t plane = 0; plane <= last; plane += step) {
+        star_rows_of_plane(step, 0, plane, function);
+    }
 }
 
 }  // namespace nestgrid
