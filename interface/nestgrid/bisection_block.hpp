@@ -102,6 +102,7 @@ private:
 };
 
 /// The blocks of a grid that says how high they are (known_bisection.hpp).
+/// Its ends are of the bisection it starts with.
 template <class Grid>
 inline constexpr auto block_of =
     BisectionBlock<static_cast<std::size_t>(Grid::dimension) + 1, Grid::block_height>(

@@ -290,6 +290,8 @@ void BisectionWalk<Grid, Field, Visitor, whole>::walk_block(
                          std::max(std::max(value(0), value(1)), std::max(value(2), value(3))));
     };
     static_assert(pattern.part[1].middle == corners);
+    static_assert(std::ranges::all_of(pattern.part.begin() + pattern.ends, pattern.part.end(),
+                                      [](const auto& end) { return end.bisection == last_; }));
     make_node(corners);
     const auto [lo, hi] = lo_hi(pattern.part[1]);
     const auto [visit, bound] =

@@ -97,6 +97,7 @@ private:
                             Real value) const;
     void check_positions(const State& s);
     void check_known_bisection(const State& s, const Rule* rule);
+    std::size_t count_block_ends(const Element& e, std::size_t height, std::size_t& split);
     void check_own_keys(const State& s, std::span<const NodeKey> own);
     void check_values(std::size_t step, const char* which, std::size_t n, const Values& value);
     void check_hanging();

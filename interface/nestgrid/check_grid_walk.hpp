@@ -96,6 +96,11 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
             demand(grid_.key(n[k]) == s.corner[k].key, "the node at a corner");
         }
         demand(grid_.nodes(grid_.element(number, n)) == n, "the element of some nodes");
+        if constexpr (KnowsBlocks<Grid>) {
+            for (std::size_t k = 0; k < corners; ++k) {
+                demand(grid_.position(n[k]) == s.corner[k].position, "the position of a node");
+            }
+        }
         const auto a = n[known.parent[0]];
         const auto b = n[known.parent[1]];
         demand(grid_.halved(a, b) == (rule != nullptr), "whether the element is split");
@@ -105,6 +110,16 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
         NodeKey key{};
         call_new_keys(grid_, context_, s.element, std::span<NodeKey>(&key, 1));
         demand(grid_.key(z) == key, "the new node");
+        if constexpr (KnowsBlocks<Grid>) {
+            demand(grid_.middle_key(grid_.key(a), grid_.key(b)) == key, "the key between two");
+            if (number + 1 == Grid::bisections.size()) {
+                std::size_t split = 0;
+                const std::size_t ends = count_block_ends(s.element, Grid::block_height, split);
+                demand(ends == std::size_t{1} << Grid::block_height &&
+                           (split == 0 || split == ends),
+                       "which elements of a block are split");
+            }
+        }
         Real value{};
         call_new_values(field_, context_, s.element, NodeMask{1}, std::span<Real>(&value, 1));
         demand(field_.template value_at<false>(z, key) == value, "the value at the new node");
@@ -124,6 +139,24 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
             }
         }
     }
+}
+
+/// The elements that many levels below one that is not masked.
+template <class Grid, class Field>
+std::size_t GridChecker<Grid, Field>::count_block_ends(const Element& e, std::size_t height,
+                                                       std::size_t& split) {
+    const Rule* rule = call_split(grid_, context_, e);
+    if (height == 0) {
+        split += rule != nullptr ? 1U : 0U;
+        return 1;
+    }
+    if (rule == nullptr) return 0;
+    std::array<Element, max_children> children;
+    const std::span<Element> all = std::span(children).first(rule->children.size());
+    call_children(grid_, context_, e, all);
+    std::size_t count = 0;
+    for (const Element& child : all) count += count_block_ends(child, height - 1, split);
+    return count;
 }
 
 template <class Grid, class Field>

@@ -84,7 +84,7 @@ TEST(KnownBisections, DrawWhatThePlainTraversalDraws) {
     }
 }
 
-enum class Mistake { none, orientation, corner, leaf, node };
+enum class Mistake { none, orientation, corner, leaf, node, position, key, block };
 
 /// One whose bisections at compile time are not those of split() and children().
 template <Mistake mistake>
@@ -104,6 +104,16 @@ struct Mistaken : LatticeBisection<3> {
         return mistake == Mistake::node ? a : LatticeBisection<3>::middle(a, b);
     }
     using LatticeBisection<3>::middle;
+    NodeKey middle_key(NodeKey a, NodeKey b) const {
+        return mistake == Mistake::key ? a : LatticeBisection<3>::middle_key(a, b);
+    }
+    Point position(Node n) const {
+        const Point x = LatticeBisection<3>::position(n);
+        return mistake == Mistake::position ? Point{x[0], x[2], x[1]} : x;
+    }
+    const Rule* split(const Element& e) const {
+        return mistake == Mistake::block && e.tag == 2 ? nullptr : LatticeBisection<3>::split(e);
+    }
 };
 
 template <Mistake mistake>
@@ -124,6 +134,9 @@ TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {
     EXPECT_NE(complaint<Mistake::corner>().find("a child's node"), std::string::npos);
     EXPECT_NE(complaint<Mistake::leaf>().find("whether the element is split"), std::string::npos);
     EXPECT_NE(complaint<Mistake::node>().find("the new node"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::position>().find("the position"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::key>().find("the key between"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::block>().find("of a block"), std::string::npos);
 }
 
 /// Isovalues between two numbers of the values' type, and at one.

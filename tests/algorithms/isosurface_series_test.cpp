@@ -27,21 +27,48 @@ TYPED_TEST_SUITE(SeriesOn, Grids);
 template <class Grid>
 struct Case {
     static constexpr int dim = Grid::dimension;
-    SampledField data = sampled_fields({21, 17, 19})[1];  // a gyroid
+    SampledField data = sampled_fields({21, 17, 17})[1];  // a gyroid
     Grid grid = make_grid();
     std::vector<float> samples{
         data.values.begin(),
         data.values.begin() + static_cast<std::ptrdiff_t>(grid.sample_count())};
     LatticeField<Grid, float> field{grid, std::span<const float>(samples)};
 
+    /// With padding in two dimensions, without in three.
     static Grid make_grid() {
         if constexpr (dim == 2) {
             return Grid({.samples = {21, 17}});
         } else {
-            return Grid({.samples = {21, 17, 19}});
+            return Grid({.samples = {21, 17, 17}, .block_levels = 2});
         }
     }
 };
+
+/// A stream of triangles needs heap for tables that all surfaces share, and a little of its own.
+TYPED_TEST(SeriesOn, StreamsTrianglesWithoutHeap) {
+    constexpr std::size_t shared = 256 * 1024;
+    constexpr std::size_t own = 64 * 1024;
+    const Case<TypeParam> c;
+    const HierarchicalIndicator indicator(c.grid, c.field);
+    for (const double threshold : {0.0, 0.05 * c.data.range}) {
+        for (const std::size_t limit : {shared + own, own}) {
+            const std::size_t before = allocated_bytes();
+            std::size_t most = before;
+            std::size_t simplices = 0;
+            const auto see = [&](const auto&) {
+                ++simplices;
+                most = std::max(most, allocated_bytes());
+            };
+            using Sink = SimplexStream<TypeParam::dimension, decltype(see)>;
+            const double isovalue = c.data.isovalue;
+            const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+            extract_isosurfaces(c.grid, c.field, std::span<const double>(&isovalue, 1),
+                                std::vector<Sink>{Sink(see)}, criterion, indicator);
+            EXPECT_GT(simplices, 10U);
+            EXPECT_LT(most - before, limit) << "threshold " << threshold;
+        }
+    }
+}
 
 TYPED_TEST(SeriesOn, DrawsWhatIsDrawnAlone) {
     const Case<TypeParam> c;
