@@ -161,6 +161,27 @@ constexpr const Topology& topology(Shape shape) {
     return detail::topologies[static_cast<std::size_t>(shape)];
 }
 
+namespace detail {
+
+inline constexpr auto edge_numbers = [] {
+    std::array<std::array<std::array<std::uint8_t, max_corners>, max_corners>, shape_count>
+        number{};
+    for (std::size_t s = 0; s < shape_count; ++s) {
+        for (std::uint8_t e = 0; e < topologies[s].edges; ++e) {
+            const auto [a, b] = topologies[s].edge[e];
+            number[s][a][b] = number[s][b][a] = e;
+        }
+    }
+    return number;
+}();
+
+}  // namespace detail
+
+/// The number of the edge between two corners that there is one between.
+constexpr std::uint8_t edge_between(Shape shape, std::size_t a, std::size_t b) {
+    return detail::edge_numbers[static_cast<std::size_t>(shape)][a][b];
+}
+
 constexpr bool is_simplex(Shape shape) {
     return topology(shape).corners == topology(shape).dimension + 1;
 }

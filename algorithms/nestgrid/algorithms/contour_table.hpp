@@ -119,8 +119,8 @@ private:
     /// The loop of face f; of the element itself in two dimensions.
     FaceTopology face(std::size_t f) const;
     std::size_t face_count() const { return topology_->dimension == 2 ? 1 : topology_->faces; }
-    std::uint8_t edge_between(std::uint8_t a, std::uint8_t b) const;
 
+    Shape shape_;
     const Topology* topology_;
     std::vector<std::uint8_t> alternating_;
     std::vector<std::uint32_t> first_;

@@ -36,16 +36,7 @@ inline FaceTopology ContourTable::face(std::size_t f) const {
     return loop;
 }
 
-inline std::uint8_t ContourTable::edge_between(std::uint8_t a, std::uint8_t b) const {
-    std::uint8_t e = 0;
-    while (topology_->edge[e] != std::array<std::uint8_t, 2>{a, b} &&
-           topology_->edge[e] != std::array<std::uint8_t, 2>{b, a}) {
-        ++e;
-    }
-    return e;
-}
-
-inline ContourTable::ContourTable(Shape shape) : topology_{&topology(shape)} {
+inline ContourTable::ContourTable(Shape shape) : shape_{shape}, topology_{&topology(shape)} {
     const unsigned patterns = 1U << topology_->corners;
     for (unsigned pattern = 0; pattern < patterns; ++pattern) {
         std::uint8_t alternating = 0;
@@ -100,7 +91,8 @@ inline Contour ContourTable::make_contour(unsigned pattern, unsigned joined) con
             signs |= (pattern >> corners.corner[i] & 1U) << i;
         }
         const auto edge = [&](std::size_t i) {
-            return edge_between(corners.corner[i], corners.corner[(i + 1) % corners.corners]);
+            return edge_between(shape_, corners.corner[i],
+                                corners.corner[(i + 1) % corners.corners]);
         };
         const FaceContour on_face = face_contour(corners.corners, signs, (joined >> f & 1U) != 0);
         for (std::size_t k = 0; k < on_face.count; ++k) {
@@ -113,7 +105,7 @@ inline Contour ContourTable::make_contour(unsigned pattern, unsigned joined) con
                 for (std::size_t i = 0; i < 2; ++i) {
                     for (std::uint8_t side = 0; side < topology_->faces; ++side) {
                         const auto& ends = topology_->face[side].corner;
-                        if (edge_between(ends[0], ends[1]) == segment.edge[i]) {
+                        if (edge_between(shape_, ends[0], ends[1]) == segment.edge[i]) {
                             segment.face[i] = side;
                         }
                     }

@@ -235,6 +235,7 @@ private:
     void load_gradients(const State& s);
     void record(const State& s, Layer& layer, unsigned pattern);
     void draw(const State& s, Layer& layer, unsigned pattern);
+    unsigned recorded_edges(const State& s, const Layer& layer, unsigned pattern) const;
     unsigned choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating);
     bool adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
                unsigned signs, bool& is_joined);
@@ -278,7 +279,6 @@ private:
                      bool forward) const;
 
     // isosurface_vertices.hpp: cuts, vertices, and what ContourFilling asks
-    std::uint8_t edge_between(const State& s, std::uint8_t a, std::uint8_t b) const;
     KeyPair name(const State& s, std::uint8_t edge) const;
     Cut make_cut(const State& s, const Layer& layer, std::uint8_t edge) const;
     Cut make_node(const State& s, std::size_t corner) const;
@@ -351,6 +351,7 @@ private:
     std::vector<Point> reference_;         // where they lie in it, where wanted
     std::array<Number, State::Closed::edges> on_edge_{};
     std::array<Number, max_corners> on_corner_{};
+    unsigned recorded_ = 0;      // edges cut where a finer side recorded something, one bit each
     std::uint16_t chained_ = 0;  // edges with a chain behind them
     std::array<std::vector<Number>, State::Closed::edges> chain_;
 };

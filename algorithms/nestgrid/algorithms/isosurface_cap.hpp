@@ -42,7 +42,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::for_each_cap_polygon(
             while ((left >> i & 1U) != 0) {
                 left &= ~(1U << i);
                 const std::size_t next = (i + 1) % n;
-                add(i, false, edge_between(s, face.corner[i], face.corner[next]));
+                add(i, false, edge_between(s.shape, face.corner[i], face.corner[next]));
                 if ((signs >> next & 1U) != 0) {
                     i = next;
                     continue;
@@ -53,7 +53,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::for_each_cap_polygon(
                     if (contour.segment[k].falls == i) rises = contour.segment[k].rises;
                 }
                 i = (rises + 1) % n;
-                add(rises, true, edge_between(s, face.corner[rises], face.corner[i]));
+                add(rises, true, edge_between(s.shape, face.corner[rises], face.corner[i]));
             }
             function(face, polygon);
         }
@@ -140,8 +140,8 @@ NESTGRID_VISITOR::draw_cap(const State& s, Layer& layer, unsigned pattern) -> vo
             const bool second = (pattern >> b & 1U) != 0;
             if ((boundary >> f & 1U) == 0 || (!first && !second)) continue;
             // Counterclockwise around the element the region is on the left, as on the contour.
-            simplex({first ? node_vertex(a) : vertex(edge_between(s, a, b)),
-                     second ? node_vertex(b) : vertex(edge_between(s, a, b))});
+            simplex({first ? node_vertex(a) : vertex(edge_between(s.shape, a, b)),
+                     second ? node_vertex(b) : vertex(edge_between(s.shape, a, b))});
         }
     } else {
         for_each_cap_polygon(s, pattern, [&](const FaceTopology& face, const CapPolygon& polygon) {
@@ -150,7 +150,7 @@ NESTGRID_VISITOR::draw_cap(const State& s, Layer& layer, unsigned pattern) -> vo
             const std::size_t n = polygon.count;
             for (std::size_t i = 0; i < n; ++i) {
                 const CapPoint& p = polygon.point[i];
-                v[i] = p.cut ? vertex(edge_between(s, face.corner[p.from],
+                v[i] = p.cut ? vertex(edge_between(s.shape, face.corner[p.from],
                                                    face.corner[(p.from + 1U) % face.corners]))
                              : node_vertex(face.corner[p.from]);
                 chains[i] = cap_chain(s, layer, face, polygon, i);

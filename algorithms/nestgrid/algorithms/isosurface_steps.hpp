@@ -207,7 +207,8 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
             if (boundary != 0) record_cap(s, layer, bits);
             continue;
         }
-        if (plainly_ && !s.closed.any && layer.drawn_below->empty()) {
+        recorded_ = recorded_edges(s, layer, bits);
+        if (plainly_ && !s.closed.any && recorded_ == 0) {
             if (const Contour* contour = plain_contour(s.shape, bits)) {
                 draw_plainly(s, s.shape, layer, contour, bits, [&] { return walk_->boundary(s); });
                 add_error(s, layer);
@@ -280,7 +281,7 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
         const FaceContour contour =
             face_contour(face.corners, signs, alternating && joined(s, face));
         const auto end = [&](std::uint8_t side) {
-            const std::uint8_t edge = edge_between(s, face.corner[side],
+            const std::uint8_t edge = edge_between(s.shape, face.corner[side],
                                                    face.corner[(side + 1U) % face.corners]);
             return layer.transitions.vertex(name(s, edge),
                                             [&] { return make_cut(s, layer, edge); });
@@ -298,16 +299,29 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
     }
 }
 
+NESTGRID_VISITOR::recorded_edges(const State& s, const Layer& layer, unsigned pattern) const
+    -> unsigned {
+    if (dimension == 2 || layer.drawn_below->empty()) return 0;
+    const Topology& t = topology(s.shape);
+    unsigned edges = 0;
+    for (std::uint8_t e = 0; e < t.edges; ++e) {
+        const auto& [a, b] = t.edge[e];
+        if (((pattern >> a ^ pattern >> b) & 1U) == 0) continue;
+        edges |= unsigned{layer.drawn_below->find(name(s, e)) != nullptr} << e;
+    }
+    return edges;
+}
+
 /// What the finer side draws on a face from the cut of one of its sides, if anything.
 /// \return whether there was something; is_joined is set by it on a face whose signs alternate
 NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
                         unsigned signs, bool& is_joined) -> bool {
     const std::size_t n = face.corners;
     const auto edge_at = [&](std::size_t i) {
-        return edge_between(s, face.corner[i], face.corner[(i + 1) % n]);
+        return edge_between(s.shape, face.corner[i], face.corner[(i + 1) % n]);
     };
+    if ((recorded_ >> edge_at(side) & 1U) == 0) return false;
     const Number* from = layer.drawn_below->find(name(s, edge_at(side)));
-    if (from == nullptr) return false;
     std::array<Number, 2> ends{none, none};
     std::array<std::size_t, 2> sides{};
     std::size_t count = 0;
@@ -356,12 +370,18 @@ NESTGRID_VISITOR::choose(const State& s, Layer& layer, unsigned pattern, unsigne
         const auto f = static_cast<std::size_t>(std::countr_zero(left));
         if (joined(s, loop_of(s, f))) joins |= 1U << f;
     }
-    if (dimension == 2 || layer.drawn_below->empty()) return joins;
+    if (recorded_ == 0) return joins;
     const Topology& t = topology(s.shape);
     for (std::size_t f = 0; f < t.faces; ++f) {
         const FaceTopology& face = t.face[f];
         unsigned signs = 0;
-        for (std::size_t i = 0; i < face.corners; ++i) signs |= (pattern >> face.corner[i] & 1U) << i;
+        unsigned known = 0;
+        for (std::size_t i = 0; i < face.corners; ++i) {
+            signs |= (pattern >> face.corner[i] & 1U) << i;
+            known += recorded_ >> edge_between(s.shape, face.corner[i],
+                                               face.corner[(i + 1U) % face.corners]) & 1U;
+        }
+        if (known < 2) continue;
         for (std::size_t i = 0; i < face.corners; ++i) {
             // The finer side draws from where our segment comes back to where it leaves.
             const unsigned there = signs >> i & 1U;

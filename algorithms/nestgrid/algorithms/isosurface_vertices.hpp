@@ -18,16 +18,6 @@ inline double cut_fraction(double isovalue, double low, double high) {
     return std::min(std::max((isovalue - low) / (high - low), least), 1 - least);
 }
 
-NESTGRID_VISITOR::edge_between(const State& s, std::uint8_t a, std::uint8_t b) const
-    -> std::uint8_t {
-    const Topology& t = topology(s.shape);
-    std::uint8_t e = 0;
-    while ((t.edge[e][0] != a || t.edge[e][1] != b) && (t.edge[e][0] != b || t.edge[e][1] != a)) {
-        ++e;
-    }
-    return e;
-}
-
 NESTGRID_VISITOR::name(const State& s, std::uint8_t edge) const -> KeyPair {
     if (s.closed.any && s.closed.edge[edge] != nullptr) {
         const auto& key = s.closed.edge[edge]->key;

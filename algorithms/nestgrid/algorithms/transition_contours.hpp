@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -77,6 +78,15 @@ public:
                   [](const Gap& a, const Gap& b) { return a.loop < b.loop; });
         conflicts_ = {};
         split_of_ = {};
+        for (std::size_t i = 0; i < segments_.size(); ++i) {
+            first_on_.insert(segments_[i].face, static_cast<Index>(i));
+        }
+        // At least 16 bits for each vertex, so that most names without one are told by one bit.
+        perhaps_.assign(std::bit_ceil(std::max<std::size_t>(cuts_.size() / 4, 16)), 0);
+        vertex_of_.for_each([&](const KeyPair& name, Index) {
+            const auto [word, bit] = place(name);
+            perhaps_[word] |= bit;
+        });
     }
 
     const std::vector<Gap>& gaps() const { return gaps_; }
@@ -84,7 +94,10 @@ public:
     bool empty() const { return segments_.empty(); }
 
     /// The recorded vertex with a name, or null.
-    const Index* find(const KeyPair& name) const { return vertex_of_.find(name); }
+    const Index* find(const KeyPair& name) const {
+        const auto [word, bit] = place(name);
+        return (perhaps_[word] & bit) != 0 ? vertex_of_.find(name) : nullptr;
+    }
 
     const Cut& cut(Index vertex) const { return cuts_[vertex]; }
 
@@ -92,9 +105,11 @@ public:
     /// pass(vertex) for those between. \return whether it got there
     template <class Stop, class Pass>
     bool follow(NodeKey face, Index from, Stop&& stop, Pass&& pass) const {
+        const Index* first = first_on_.find(face);
+        if (first == nullptr) return false;
         for (std::size_t steps = 0; steps <= segments_.size(); ++steps) {
-            const Segment wanted{face, from, 0};
-            const auto next = std::lower_bound(segments_.begin(), segments_.end(), wanted, before);
+            auto next = segments_.begin() + *first;
+            while (next != segments_.end() && next->face == face && next->from < from) ++next;
             if (next == segments_.end() || next->face != face || next->from != from) return false;
             from = next->to;
             if (stop(from)) return true;
@@ -110,11 +125,13 @@ public:
         conflicts_.clear();
         cuts_.clear();
         vertex_of_.clear();
+        first_on_.clear();
     }
 
     std::size_t memory_bytes() const {
         return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Cut) +
-               vertex_of_.memory_bytes();
+               perhaps_.capacity() * sizeof(perhaps_[0]) + vertex_of_.memory_bytes() +
+               first_on_.memory_bytes();
     }
 
 private:
@@ -132,6 +149,11 @@ private:
     void note_split(NodeKey face, const Split& split) {
         const auto [first, is_new] = split_of_.insert(face, split);
         if (first->by != split.by) conflicts_.insert(face, first->owner);
+    }
+
+    std::pair<std::size_t, std::uint64_t> place(const KeyPair& name) const {
+        const std::uint64_t bits = hash(name);
+        return {bits >> 32U & (perhaps_.size() - 1), std::uint64_t{1} << (bits >> 26U & 63U)};
     }
 
     static bool before(const Segment& a, const Segment& b) {
@@ -172,6 +194,8 @@ private:
     KeyTable<NodeKey, Owner> conflicts_;  // divided in two directions
     std::vector<Cut> cuts_;
     KeyTable<KeyPair, Index> vertex_of_;
+    KeyTable<NodeKey, Index> first_on_;   // segment on a face
+    std::vector<std::uint64_t> perhaps_;  // bits of the names there are
 };
 
 }  // namespace nestgrid
