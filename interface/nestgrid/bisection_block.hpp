@@ -21,7 +21,7 @@ template <std::size_t corner_count, std::size_t block_height>
 struct BisectionBlock {
     static constexpr std::size_t corners = corner_count;
     static constexpr std::size_t height = block_height;
-    static_assert(height == 2 || height == 3);
+    static_assert(height == 0 || height == 2 || height == 3);
     static constexpr std::size_t ends = std::size_t{1} << height;
     static constexpr std::size_t most_nodes = corners + ends - 1;
 
@@ -45,7 +45,7 @@ struct BisectionBlock {
     };
 
     std::array<Part, 2 * ends> part{};
-    std::array<Reached, std::size_t{1} << (ends - 2)> reached{};
+    std::array<Reached, std::size_t{1} << (height == 0 ? 0 : ends - 2)> reached{};
     std::size_t nodes = corners;
     /// Of every node but the corners of part 1, which come first.
     std::array<std::array<std::uint8_t, 2>, most_nodes> parent{};
@@ -73,7 +73,7 @@ struct BisectionBlock {
                 child.mirrored = part[p].mirrored != (half.orientation < 0);
             }
         }
-        for (unsigned entered = 0; entered < reached.size(); ++entered) {
+        for (unsigned entered = 0; height > 0 && entered < reached.size(); ++entered) {
             unsigned parts = 4U | 8U;  // by number
             for (std::size_t p = 2; p < ends; ++p) {
                 if ((parts >> p & entered >> (p - 2) & 1U) == 0) continue;
@@ -101,12 +101,17 @@ private:
     }
 };
 
-/// The blocks of a grid that says how high they are (known_bisection.hpp).
-/// Its ends are of the bisection it starts with.
+/// The blocks of a grid (known_bisection.hpp): their ends are of the bisection they start with. Of
+/// height 0 where it does not say how high they are.
 template <class Grid>
-inline constexpr auto block_of =
-    BisectionBlock<static_cast<std::size_t>(Grid::dimension) + 1, Grid::block_height>(
+inline constexpr auto block_of = [] {
+    constexpr std::size_t height = [] {
+        if constexpr (KnowsBlocks<Grid>) return std::size_t{Grid::block_height};
+        return std::size_t{0};
+    }();
+    return BisectionBlock<static_cast<std::size_t>(Grid::dimension) + 1, height>(
         Grid::bisections, Grid::bisections.size() - 1);
+}();
 
 /// Those of Maubach's bisections.
 template <int dim>

@@ -22,19 +22,7 @@ namespace nestgrid {
 using SubtreeFaces = std::uint8_t;
 inline constexpr SubtreeFaces no_subtree = 0x80;
 
-/// An element as bisections known at compile time leave it.
-template <class Grid, class Real>
-struct BisectedElement {
-    static constexpr std::size_t corners = static_cast<std::size_t>(Grid::dimension) + 1;
-
-    ElementOf<Grid> element;
-    std::array<Real, corners> value;  ///< P_S U at the corners
-    int level;
-    int orientation;
-    Real bound;  ///< what the visitor returned of it
-};
-
-/// A block.
+/// A block, or as much of it as is known: of an element that is extracted alone, the corners.
 template <class Grid, class Real>
 struct BisectedBlock {
     using Node = typename Grid::Node;
@@ -43,10 +31,11 @@ struct BisectedBlock {
     const Grid* grid;
     std::array<Node, pattern.nodes> node;
     std::array<NodeKey, pattern.nodes> key;
-    std::array<Real, pattern.nodes> value;
+    std::array<Real, pattern.nodes> value;  ///< P_S U
     std::array<SubtreeFaces, pattern.nodes> faces;
-    int level;        ///< of part 1
-    int orientation;  ///< of part 1
+    std::size_t bisection;  ///< number of the one of part 1
+    int level;              ///< of part 1
+    int orientation;        ///< of part 1
 
     NESTGRID_INLINE Point position(std::size_t i) const { return grid->position(node[i]); }
     NESTGRID_INLINE void all_positions(std::array<Point, pattern.nodes>& x) const {
@@ -55,10 +44,10 @@ struct BisectedBlock {
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(std::size_t part) const { return grid->boundary_faces(element(part)); }
     ElementOf<Grid> element(std::size_t part) const {
-        constexpr std::size_t corners = BisectedElement<Grid, Real>::corners;
-        std::array<Node, corners> of;
-        for (std::size_t i = 0; i < corners; ++i) of[i] = node[pattern.part[part].corner[i]];
-        return grid->element(pattern.part[part].bisection, of);
+        const auto& which = pattern.part[part];
+        std::array<Node, pattern.corners> of;
+        for (std::size_t i = 0; i < of.size(); ++i) of[i] = node[which.corner[i]];
+        return grid->element(part == 1 ? bisection : which.bisection, of);
     }
 };
 
@@ -87,16 +76,14 @@ struct BlockInterior {
 ///     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside)
 ///             {Visit visit; Real bound;} of an element that is split; lo ... hi: its values
 ///     bool glance_at_leaf(Real lo, Real hi)      whether to extract it
-///     void extract(const BisectedElement&)
+///     void extract_part(const BisectedBlock&, std::size_t part, Real bound)
+///             an element; bound: what glance() returned of it, or 0 for a leaf
 ///     void tick(looked_at, visited)              now and then
 /// and, to be shown blocks,
 ///     BlockGlance glance_within(const BlockInterior&)    what glance() says of each of them
 ///     unsigned extract_block(const BisectedBlock&, unsigned entered)
 ///             extracts those of the ends entered of which glance_at_leaf() says so, and says how
 ///             many; bit i stands for end i. All ends are leaves
-///     void extract_part(const BisectedBlock&, std::size_t part, Real bound)
-///             a part at which it stops, or an end that is a leaf; only nodes at its corners are
-///             set
 ///     void begin_subtree()                       optional, to be told of faces: what was inside
 ///                                                the subtree before comes never again
 /// \tparam whole  what the grid says
@@ -105,8 +92,8 @@ class BisectionWalk {
 public:
     using Real = typename Field::value_type;
     using Node = typename Grid::Node;
-    using Bisected = BisectedElement<Grid, Real>;
-    static constexpr std::size_t corners = Bisected::corners;
+    using Block = BisectedBlock<Grid, Real>;
+    static constexpr std::size_t corners = Block::pattern.corners;
 
     BisectionWalk(const Grid& grid, const Field& field, Visitor& visitor)
         : grid_{&grid}, field_{&field}, visitor_{&visitor} {}
@@ -123,9 +110,7 @@ private:
     static constexpr std::size_t last_ = Grid::bisections.size() - 1;
     static constexpr bool in_blocks_ = [] {
         if constexpr (whole && KnowsBlocks<Grid>) {
-            return requires(Visitor & v, const BisectedBlock<Grid, Real>& b) {
-                v.extract_block(b, 0U);
-            };
+            return requires(Visitor & v, const Block& b) { v.extract_block(b, 0U); };
         }
         return false;
     }();
@@ -153,16 +138,13 @@ private:
     void extract(const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound);
 
     /// Walks down from an element that starts a block, given by places in the block above.
-    template <class Block>
     void walk_block(const Block& above, const std::array<std::uint8_t, 4>& corner, int path);
-    template <std::size_t part, class Block, class Glance>
+    template <std::size_t part, class Glance>
     void walk_part(const Block& block, const Glance& glance, bool leaves, int path);
-    template <class Block>
     void extract_part(const Block& block, std::size_t part, Real bound) {
         ++extracted_;
         visitor_->extract_part(block, part, bound);
     }
-    template <class Block>
     void begin_subtree(Block& block);
 
     void count_bisected(std::uint64_t more) {
@@ -209,7 +191,7 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
         return;
     }
     if constexpr (in_blocks_ && number == last_) {
-        BisectedBlock<Grid, Real> above;
+        Block above;
         for (std::size_t i = 0; i < corners; ++i) {
             above.node[i] = n[i];
             above.key[i] = grid_->key(n[i]);
@@ -264,13 +246,13 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
 }
 
 template <class Grid, class Field, class Visitor, bool whole>
-template <class Block>
 void BisectionWalk<Grid, Field, Visitor, whole>::walk_block(
     const Block& above, const std::array<std::uint8_t, 4>& corner, int path) {
     static constexpr const auto& pattern = block_of<Grid>;
     constexpr std::size_t inner = pattern.ends - 2;
     Block block;
     block.grid = grid_;
+    block.bisection = last_;
     block.level = path / 2;
     block.orientation = path % 2 == 0 ? 1 : -1;
     for (std::size_t i = 0; i < corners; ++i) {
@@ -336,7 +318,6 @@ void BisectionWalk<Grid, Field, Visitor, whole>::walk_block(
 }
 
 template <class Grid, class Field, class Visitor, bool whole>
-template <class Block>
 NESTGRID_NOINLINE void BisectionWalk<Grid, Field, Visitor, whole>::begin_subtree(Block& block) {
     for (std::size_t i = 0; i < corners; ++i) {
         block.faces[i] = static_cast<SubtreeFaces>((1U << corners) - 1 - (1U << i));
@@ -345,7 +326,7 @@ NESTGRID_NOINLINE void BisectionWalk<Grid, Field, Visitor, whole>::begin_subtree
 }
 
 template <class Grid, class Field, class Visitor, bool whole>
-template <std::size_t p, class Block, class Glance>
+template <std::size_t p, class Glance>
 NESTGRID_INLINE void BisectionWalk<Grid, Field, Visitor, whole>::walk_part(const Block& block,
                                                                            const Glance& glance,
                                                                            bool leaves, int path) {
@@ -372,18 +353,18 @@ template <class Grid, class Field, class Visitor, bool whole>
 template <std::size_t number>
 NESTGRID_NOINLINE void BisectionWalk<Grid, Field, Visitor, whole>::extract(
     const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound) {
-    ++extracted_;
-    std::array<Node, corners> of;
-    Bisected s;
+    Block block;
+    block.grid = grid_;
     for (std::size_t i = 0; i < corners; ++i) {
-        of[i] = n[i];
-        s.value[i] = u[i];
+        block.node[i] = n[i];
+        block.key[i] = grid_->key(n[i]);
+        block.value[i] = u[i];
+        block.faces[i] = no_subtree;
     }
-    s.element = grid_->element(number, of);
-    s.level = path / 2;
-    s.orientation = path % 2 == 0 ? 1 : -1;
-    s.bound = bound;
-    visitor_->extract(s);
+    block.bisection = number;
+    block.level = path / 2;
+    block.orientation = path % 2 == 0 ? 1 : -1;
+    extract_part(block, 1, bound);
 }
 
 }  // namespace nestgrid

@@ -96,10 +96,8 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
             demand(grid_.key(n[k]) == s.corner[k].key, "the node at a corner");
         }
         demand(grid_.nodes(grid_.element(number, n)) == n, "the element of some nodes");
-        if constexpr (KnowsBlocks<Grid>) {
-            for (std::size_t k = 0; k < corners; ++k) {
-                demand(grid_.position(n[k]) == s.corner[k].position, "the position of a node");
-            }
+        for (std::size_t k = 0; k < corners; ++k) {
+            demand(grid_.position(n[k]) == s.corner[k].position, "the position of a node");
         }
         const auto a = n[known.parent[0]];
         const auto b = n[known.parent[1]];
@@ -115,9 +113,9 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
             if (number + 1 == Grid::bisections.size()) {
                 std::size_t split = 0;
                 const std::size_t ends = count_block_ends(s.element, Grid::block_height, split);
-                demand(ends == std::size_t{1} << Grid::block_height &&
-                           (split == 0 || split == ends),
-                       "which elements of a block are split");
+                demand(
+                    ends == std::size_t{1} << Grid::block_height && (split == 0 || split == ends),
+                    "which elements of a block are split");
             }
         }
         Real value{};

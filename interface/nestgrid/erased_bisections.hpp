@@ -50,21 +50,10 @@ public:
         Visit visit;
         Real bound;
     };
-    struct Extracted {
-        const nestgrid_element* element;
-        const Real* value;
-        const Point* position;
-        const NodeKey* key;
-        unsigned boundary;
-        int level;
-        int orientation;
-        Real bound;
-    };
 
     virtual Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level,
                           bool outside) = 0;
     virtual bool glance_at_leaf(Real lo, Real hi) = 0;
-    virtual void extract(const Extracted& s) = 0;
     virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual BlockGlance<Real, interior> glance_within(
@@ -87,7 +76,7 @@ nestgrid_element erased(const Element& element) {
 }
 
 /// The grid's side.
-template <class Grid, class Real>
+template <HasMaubachBlocks Grid, class Real>
 class BisectionForwarder {
     static constexpr int dim = Grid::dimension;
 
@@ -99,29 +88,17 @@ public:
         return to_->glance(lo, hi, rule, node, level, outside);
     }
     bool glance_at_leaf(Real lo, Real hi) { return to_->glance_at_leaf(lo, hi); }
-    void extract(const BisectedElement<Grid, Real>& s) {
-        constexpr std::size_t corners = BisectedElement<Grid, Real>::corners;
-        const nestgrid_element element = erased(s.element);
-        std::array<Point, corners> position;
-        std::array<NodeKey, corners> key;
-        grid_->corner_positions(s.element, position);
-        grid_->corner_keys(s.element, key);
-        to_->extract({&element, s.value.data(), position.data(), key.data(),
-                      grid_->boundary_faces(s.element), s.level, s.orientation, s.bound});
-    }
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
     void begin_subtree() { to_->begin_subtree(); }
 
     template <std::size_t count>
-    auto glance_within(const BlockInterior<Real, count>& elements) requires HasMaubachBlocks<Grid> {
+    auto glance_within(const BlockInterior<Real, count>& elements) {
         return to_->glance_within(elements);
     }
-    void extract_part(const BisectedBlock<Grid, Real>& block, std::size_t part,
-                      Real bound) requires HasMaubachBlocks<Grid> {
+    void extract_part(const BisectedBlock<Grid, Real>& block, std::size_t part, Real bound) {
         to_->extract_part(Block(block), part, bound);
     }
-    unsigned extract_block(const BisectedBlock<Grid, Real>& block,
-                           unsigned entered) requires HasMaubachBlocks<Grid> {
+    unsigned extract_block(const BisectedBlock<Grid, Real>& block, unsigned entered) {
         return to_->extract_block(Block(block), entered);
     }
 

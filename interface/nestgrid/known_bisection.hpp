@@ -14,13 +14,14 @@
 //     bool halved(Node a, Node b)                      whether an edge to be bisected is
 //     Node middle(Node a, Node b)                      its new node
 //     NodeKey key(Node)
+//     Point position(Node)
 //     bool whole()                                     that nothing is masked or outside
-// They must agree with split(), children(), new_keys() and corner_keys(); its field offers
+// They must agree with split(), children(), new_keys(), corner_keys() and corner_positions(); its
+// field offers
 //     template <bool whole> value_type value_at(Node, NodeKey)
 // Nothing hangs in such a grid, and it knows keys, positions and boundary faces by heart. It may
 // also offer
 //     static constexpr std::size_t block_height        2 or 3
-//     Point position(Node node)                        equal to corner_positions()
 //     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two
 // which says that an element split by the last of the bisections is split that many times over,
 // into elements of the last bisection again, of which either all are split or none; then those are
@@ -76,14 +77,14 @@ concept KnowsBisections = requires(const Grid& grid, const Field& field, const E
     { grid.halved(node, node) } -> std::same_as<bool>;
     { grid.middle(node, node) } -> std::same_as<typename Grid::Node>;
     { grid.key(node) } -> std::same_as<NodeKey>;
+    { grid.position(node) } -> std::same_as<Point>;
     { grid.whole() } -> std::same_as<bool>;
     { field.template value_at<true>(node, NodeKey{}) } -> std::same_as<typename Field::value_type>;
 };
 
 template <class Grid>
-concept KnowsBlocks = requires(const Grid& grid, typename Grid::Node node) {
+concept KnowsBlocks = requires(const Grid& grid) {
     requires Grid::block_height == 2 || Grid::block_height == 3;
-    { grid.position(node) } -> std::same_as<Point>;
     { grid.middle_key(NodeKey{}, NodeKey{}) } -> std::same_as<NodeKey>;
 };
 

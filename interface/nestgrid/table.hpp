@@ -333,7 +333,8 @@ nestgrid_field make_table(const Grid&, const Field& field) {
                                                   std::span<Point>>) {
         if (offers_gradients<Grid>(field)) t.corner_gradients = Table::corner_gradients;
     }
-    if constexpr (KnowsBisections<Grid, Field> && detail::components_of<Field>() == 1) {
+    if constexpr (KnowsBisections<Grid, Field> && HasMaubachBlocks<Grid> &&
+                  detail::components_of<Field>() == 1) {
         t.library_bisect = Table::library_bisect;
     }
     if constexpr (requires { field.value(NodeKey{}); }) {

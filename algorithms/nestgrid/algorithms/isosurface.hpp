@@ -116,7 +116,6 @@ public:
     using Walk = Traversal<Grid, Field, needs>;
     using State = typename Walk::State;
     using Real = typename State::Real;
-    using Bisected = BisectedElement<Grid, Real>;
     static constexpr Shape simplex_shape = dimension == 2 ? Shape::triangle : Shape::tetrahedron;
     static constexpr bool knows_bisections =
         KnowsBisections<Grid, Field> && State::components == 1;
@@ -168,15 +167,12 @@ public:
     bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
     template <class Interior>
     typename Interior::Glance glance_within(const Interior& elements);
-    void extract(const Bisected& s);
     void begin_subtree()
         requires(indexed);
     template <class Block>
     unsigned extract_block(const Block& block, unsigned entered);
     template <class Block>
     void extract_part(const Block& block, std::size_t part, Real bound);
-    template <class Load, class Boundary>
-    void draw_bisected(const Bisected& s, const Load& load, const Boundary& boundary);
     void tick(std::uint64_t calls, std::uint64_t visited) const;
     void count(std::uint64_t calls, std::uint64_t visited);
 

@@ -32,18 +32,6 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 return {visit, bound};
             }
             bool glance_at_leaf(Real lo, Real hi) override { return to->glance_at_leaf(lo, hi); }
-            void extract(const typename Base::Extracted& s) override {
-                Bisected element;
-                element.element = *s.element;
-                std::copy_n(s.value, Bisected::corners, element.value.begin());
-                element.level = s.level;
-                element.orientation = s.orientation;
-                element.bound = s.bound;
-                std::copy_n(s.position, Bisected::corners, to->x_.begin());
-                std::copy_n(s.key, Bisected::corners, to->key_.begin());
-                to->loaded_ = true;
-                to->draw_bisected(element, [] {}, [&] { return s.boundary; });
-            }
             BlockGlance<Real, Base::interior> glance_within(
                 const BlockInterior<Real, Base::interior>& elements) override {
                 return to->glance_within(elements);
@@ -85,17 +73,6 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
     const NodeMask mask =
         (*criterion_)(NewNodes{rule, keys, level + 1, outside ? NodeMask{1} : NodeMask{0}});
     return {mask != 0 ? Visit::stop : Visit::descend, bound};
-}
-
-NESTGRID_VISITOR::extract(const Bisected& s) -> void {
-    loaded_ = false;
-    draw_bisected(
-        s,
-        [&] {
-            walk_->grid().corner_positions(s.element, x_);
-            if constexpr (indexed) walk_->grid().corner_keys(s.element, key_);
-        },
-        [&] { return walk_->grid().boundary_faces(s.element); });
 }
 
 /// The same of each element within a block, without a branch.
@@ -174,10 +151,10 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
     const int level = block.level + part.depth;
     for (Layer& layer : layers_) {
         unsigned bits = 0;
-        for (std::size_t i = 0; i < Bisected::corners; ++i) {
+        for (std::size_t i = 0; i < Block::pattern.corners; ++i) {
             bits |= unsigned{block.value[part.corner[i]] >= layer.least_inside} << i;
         }
-        if (bits == 0 || bits + 1 == 1U << Bisected::corners) continue;
+        if (bits == 0 || bits + 1 == 1U << Block::pattern.corners) continue;
         layer_ = &layer;
         deepest_ = std::max(deepest_, level);
         layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
@@ -185,7 +162,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
         const BlockContours::Piece& piece = contours.piece(p, bits);
         [[maybe_unused]] NodePositions<Block> x;
         if constexpr (!indexed) {
-            for (std::size_t i = 0; i < Bisected::corners; ++i) {
+            for (std::size_t i = 0; i < Block::pattern.corners; ++i) {
                 x[part.corner[i]] = block.position(part.corner[i]);
             }
         }
@@ -286,23 +263,6 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_loo
     const std::size_t a = shorter(position(0), position(2), position(1), position(3)) ? 0 : 1;
     put(a, a + 1, a + 2);
     put(a + 2, (a + 3) % 4, a);
-}
-
-template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Load, class Boundary>
-NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bisected(
-    const Bisected& s, const Load& load, const Boundary& boundary) {
-    element_bound_ = s.bound;
-    for (Layer& layer : layers_) {
-        const unsigned bits = pattern(s.value.data(), Bisected::corners, layer);
-        if (bits == 0 || bits + 1 == 1U << Bisected::corners) continue;
-        deepest_ = std::max(deepest_, s.level);
-        if (!loaded_) load();
-        loaded_ = true;
-        draw_plainly(s, simplex_shape, layer, plain_contour(simplex_shape, bits), bits, boundary);
-        layer.error_bound = std::max(layer.error_bound, static_cast<double>(s.bound));
-        ++layer.extracted;
-    }
 }
 
 }  // namespace nestgrid::detail
