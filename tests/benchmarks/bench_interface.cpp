@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What the interface costs: triangles of the bucky ball into a buffer, by the concept, by a
-// type-erased grid, by the general loop over rules, and by a recursion written by hand for this one
-// grid. Where valgrind is
-// installed its instructions per element are counted first; more than 105 fail the run, for then it
-// would be a bad measure. One "name value" line per figure; --quick takes 33^3 samples instead of
+// type-erased grid, by the general loop over rules, by a table as a C code would fill it, and by a
+// recursion written by hand for this one grid. Where valgrind is installed, the instructions of the
+// latter per element are counted first; more than 105 fail the run, for then it would be a bad
+// measure. One "name value" line per figure; --quick takes 33^3 samples instead of
 // 129^3.
 #include <cstdlib>
 #include <fstream>
@@ -14,6 +14,7 @@
 #include <nestgrid/any_grid.hpp>
 
 #include "bucky_samples.hpp"
+#include "table_in_c.hpp"
 
 namespace {
 
@@ -53,6 +54,12 @@ void compare(std::size_t rounds) {
     const nestgrid::LatticeField general_field(general, std::span<const float>(bucky.samples));
     const nestgrid::AnyGrid<3> any(bucky.grid);
     const nestgrid::AnyField<float> any_field(bucky.grid, bucky.field);
+    using nestgrid::Shape;
+    const nestgrid_test::TableInC<Tetrahedra> in_c(
+        bucky.grid, {&nestgrid::bisection_rule(Shape::tetrahedron, 1),
+                     &nestgrid::bisection_rule(Shape::tetrahedron, 2),
+                     &nestgrid::bisection_rule(Shape::tetrahedron, 3)});
+    const nestgrid::AnyGrid<3> c_table(in_c.table);
     for (const float threshold : bucky_thresholds) {
         Contest contest(rounds);
         nestgrid::TraversalCounts counts;
@@ -63,6 +70,7 @@ void compare(std::size_t rounds) {
         });
         contest.add("general", [&] { bucky.draw_soup(general, general_field, threshold); });
         contest.add("anygrid", [&] { bucky.draw_soup(any, any_field, threshold); });
+        contest.add("c_table", [&] { bucky.draw_soup(c_table, any_field, threshold); });
         contest.run();
         const auto print = [&](const char* name, double value) {
             Contest::print_figure(at_threshold(name, threshold), value);
@@ -78,6 +86,7 @@ void compare(std::size_t rounds) {
         print("concept_over_handwritten", contest.time("concept") / contest.time("handwritten"));
         print("general_over_handwritten", contest.time("general") / contest.time("handwritten"));
         print("anygrid_over_handwritten", contest.time("anygrid") / contest.time("handwritten"));
+        print("c_table_over_handwritten", contest.time("c_table") / contest.time("handwritten"));
     }
 }
 
