@@ -119,10 +119,16 @@ inline constexpr auto maubach_block =
     BisectionBlock<static_cast<std::size_t>(dim) + 1, static_cast<std::size_t>(dim)>(
         maubach_bisections<dim>(), static_cast<std::size_t>(dim) - 1);
 
+namespace detail {
+template <class A, class B>
+constexpr bool is_same(const A& a, const B& b) {
+    if constexpr (std::is_same_v<A, B>) return a == b;
+    return false;
+}
+}  // namespace detail
+
 template <class Grid>
 concept HasMaubachBlocks = KnowsBlocks<Grid> &&
-    std::is_same_v<decltype(block_of<Grid>), decltype(maubach_block<Grid::dimension>)> &&
-    block_of<Grid>
-== maubach_block<Grid::dimension>;
+    detail::is_same(block_of<Grid>, maubach_block<Grid::dimension>);
 
 }  // namespace nestgrid

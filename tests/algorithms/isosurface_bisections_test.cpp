@@ -27,6 +27,17 @@ struct Unknown : LatticeBisection<dim> {
 static_assert(KnowsBisections<LatticeBisection<3>, LatticeField<LatticeBisection<3>, float>>);
 static_assert(!KnowsBisections<Unknown<3>, LatticeField<Unknown<3>, float>>);
 
+/// The same grid, whose bisections are not known to come in blocks.
+template <int dim>
+struct Unblocked : LatticeBisection<dim> {
+    using LatticeBisection<dim>::LatticeBisection;
+    struct Nothing {};
+    static constexpr Nothing block_height{};
+};
+static_assert(KnowsBisections<Unblocked<3>, LatticeField<Unblocked<3>, float>>);
+static_assert(KnowsBlocks<LatticeBisection<3>> && !KnowsBlocks<Unblocked<3>>);
+static_assert(HasMaubachBlocks<LatticeBisection<2>> && HasMaubachBlocks<LatticeBisection<3>>);
+
 template <int dim, class Sample>
 void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vector<Sample>& samples,
                           const std::vector<double>& isovalues, double range) {
@@ -34,6 +45,8 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
     const Unknown<dim> unknown(geometry);
     const LatticeField known_field(known, std::span<const Sample>(samples));
     const LatticeField unknown_field(unknown, std::span<const Sample>(samples));
+    const Unblocked<dim> unblocked(geometry);
+    const LatticeField unblocked_field(unblocked, std::span<const Sample>(samples));
     const AnyGrid<dim> any(known);
     const AnyField<typename decltype(known_field)::value_type> any_field(known, known_field);
     EXPECT_TRUE(any_field.bisects(any));
@@ -54,9 +67,11 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
             const auto a = draw(known, known_field, criterion);
             const auto b = draw(unknown, unknown_field, criterion);
             const auto c = draw(any, any_field, criterion);
+            const auto d = draw(unblocked, unblocked_field, criterion);
             for (std::size_t i = 0; i < a.size(); ++i) {
                 expect_same(a[i], b[i]);
                 expect_same(a[i], c[i]);
+                expect_same(a[i], d[i]);
             }
         };
         check(by_offset);
@@ -137,6 +152,34 @@ TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {
     EXPECT_NE(complaint<Mistake::position>().find("the position"), std::string::npos);
     EXPECT_NE(complaint<Mistake::key>().find("the key between"), std::string::npos);
     EXPECT_NE(complaint<Mistake::block>().find("of a block"), std::string::npos);
+}
+
+/// A stream has no indices: its triangles are those of the surface, corner by corner.
+TEST(KnownBisections, StreamTheSameTriangles) {
+    const Samples n{17, 17, 17};
+    const SampledField data = sampled_fields(n)[0];
+    const LatticeBisection<3> grid({.samples = n});
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : {0.0, 0.02 * data.range}) {
+        std::vector<std::array<Point, 3>> stream;
+        const auto put = [&](const std::array<Point, 3>& x) { stream.push_back(x); };
+        using Sink = SimplexStream<3, decltype(put)>;
+        const double isovalue = data.isovalue;
+        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+        extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1),
+                            std::vector<Sink>{Sink(put)}, criterion, indicator);
+        const auto result =
+            isosurface(grid, field, isovalue, indicator, {.threshold = threshold, .verify = true});
+        const auto& surface = result.surface;
+        ASSERT_EQ(stream.size(), surface.simplices.size());
+        EXPECT_GT(stream.size(), 100U);
+        for (std::size_t i = 0; i < stream.size(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                ASSERT_EQ(stream[i][k], surface.vertices[surface.simplices[i][k]]);
+            }
+        }
+    }
 }
 
 /// Isovalues between two numbers of the values' type, and at one.

@@ -71,6 +71,10 @@ NESTGRID_VISITOR::make_node(const State& s, std::size_t corner) const -> Cut {
     return cut;
 }
 
+[[noreturn]] inline void throw_too_many_vertices() {
+    throw GridError("the surface has 2^32 vertices or more");
+}
+
 /// The vertex with a name; make() says where it lies, where that is not known yet.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Make>
@@ -95,6 +99,7 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_wit
             is_new = true;
             const Cut cut = make();
             if constexpr (logs) {
+                if (layer.vertex_count == none) throw_too_many_vertices();
                 layer.sink.add_cut(cut, faces == 0);
                 return layer.vertex_count++;
             } else {
@@ -114,7 +119,7 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_wit
 }
 
 NESTGRID_VISITOR::add_new(const Cut& cut) -> Number {
-    if (layer_->vertex_count == none) throw GridError("the surface has 2^32 vertices or more");
+    if (layer_->vertex_count == none) throw_too_many_vertices();
     layer_->sink.add_vertex(cut.x, cut.attributes);
     if (options_->normals) {
         layer_->where.push_back({gradients_.slot(cut.node[0]), gradients_.slot(cut.node[1]),
