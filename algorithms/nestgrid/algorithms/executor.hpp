@@ -6,7 +6,8 @@
 //         how many tasks it may run at a time; with 1 none are made
 //     void run(std::size_t count, Work&& work, Consume&& consume) const
 //         calls work(i) once for every i < count, several at a time and in any order, and
-//         consume(i, result) once for each, in the order of i and one at a time, beside the others.
+//         consume(i, std::move(result)) once for each, in the order of i and one at a time, beside
+//         the others. Results can be moved, and need not be copied.
 //         Where one of them throws, no further ones are begun, and the exception is passed on when
 //         all have ended.
 // A grid and a field that are walked by several threads must allow it: their const operations must
