@@ -8,6 +8,7 @@
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/region.hpp>
+#include <nestgrid/any_grid.hpp>
 #include <nestgrid/error.hpp>
 
 #include "hierarchy.hpp"
@@ -133,8 +134,12 @@ ExtractionRun extract(const Volume& volume, const ExtractionRequest& request) {
     ExtractionRun run;
     run.nodes = volume.sample_count();
     run.leaf_elements = leaf_count(grid);
+    // Type-erased: samples have ten types, and all of this would be compiled for each.
+    const nestgrid::AnyGrid<3> any(grid);
     with_samples(volume, [&](auto samples) {
-        extract_all(grid, nestgrid::LatticeField(grid, samples), request, run);
+        const nestgrid::LatticeField field(grid, samples);
+        using Real = typename decltype(field)::value_type;
+        extract_all(any, nestgrid::AnyField<Real>(grid, field), request, run);
     });
     return run;
 }

@@ -96,8 +96,10 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
             demand(grid_.key(n[k]) == s.corner[k].key, "the node at a corner");
         }
         demand(grid_.nodes(grid_.element(number, n)) == n, "the element of some nodes");
+        std::array<Point, corners> x;
+        call_corner_positions(grid_, context_, s.element, std::span<Point>(x));
         for (std::size_t k = 0; k < corners; ++k) {
-            demand(grid_.position(n[k]) == s.corner[k].position, "the position of a node");
+            demand(grid_.position(n[k]) == x[k], "the position of a node");
         }
         const auto a = n[known.parent[0]];
         const auto b = n[known.parent[1]];
