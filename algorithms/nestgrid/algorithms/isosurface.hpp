@@ -168,7 +168,10 @@ public:
     template <class Interior>
     typename Interior::Glance glance_within(const Interior& elements);
     void begin_subtree()
-        requires(indexed);
+        requires(indexed)
+    {
+        for (Layer& layer : layers_) layer.number_within.clear();
+    }
     template <class Block>
     unsigned extract_block(const Block& block, unsigned entered);
     template <class Block>

@@ -22,18 +22,18 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                                   });
     } else if constexpr (is_erased) {
         struct Erased final : ErasedBisectionVisitor<dimension, Real> {
-            using Base = ErasedBisectionVisitor<dimension, Real>;
             IsosurfaceVisitor* to;
             explicit Erased(IsosurfaceVisitor* visitor) : to{visitor} {}
 
-            typename Base::Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node,
-                                         int level, bool outside) override {
+            typename ErasedBisectionVisitor<dimension, Real>::Glance glance(
+                Real lo, Real hi, const Rule& rule, NodeKey node, int level,
+                bool outside) override {
                 const auto [visit, bound] = to->glance(lo, hi, rule, node, level, outside);
                 return {visit, bound};
             }
             bool glance_at_leaf(Real lo, Real hi) override { return to->glance_at_leaf(lo, hi); }
-            BlockGlance<Real, Base::interior> glance_within(
-                const BlockInterior<Real, Base::interior>& elements) override {
+            BlockGlance<Real, Erased::interior> glance_within(
+                const BlockInterior<Real, Erased::interior>& elements) override {
                 return to->glance_within(elements);
             }
             void extract_part(const ErasedBlock<dimension, Real>& block, std::size_t part,
@@ -99,13 +99,6 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance_
     result.stop &= interest;
     result.descend = interest & ~result.stop;
     return result;
-}
-
-template <class Grid, class Field, class S, class Indicator, class Sink>
-void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::begin_subtree()
-    requires(indexed)
-{
-    for (Layer& layer : layers_) layer.number_within.clear();
 }
 
 /// Those of the ends entered which a level passes through.
@@ -221,7 +214,8 @@ template <class Block>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
     const Block& block, const Layer& layer, const BlockContours::Cut& ends,
     [[maybe_unused]] const NodePositions<Block>& x) -> Vertex {
-    const auto [low, high] = ends;
+    const std::size_t low = ends.low;
+    const std::size_t high = ends.high;
     const auto fraction = [&] {
         return cut_fraction(layer.isovalue, static_cast<double>(block.value[low]),
                             static_cast<double>(block.value[high]));
