@@ -147,6 +147,35 @@ private:
     }
     void begin_subtree(Block& block);
 
+    NESTGRID_INLINE static std::pair<Real, Real> range(const std::array<Real, 4>& u) {
+        return {std::min(std::min(u[0], u[1]), std::min(u[2], u[3])),
+                std::max(std::max(u[0], u[1]), std::max(u[2], u[3]))};
+    }
+    NESTGRID_INLINE static std::pair<Real, Real> range(const Block& block,
+                                                       const std::array<std::uint8_t, 4>& corner) {
+        return range({block.value[corner[0]], block.value[corner[1]], block.value[corner[2]],
+                      block.value[corner[3]]});
+    }
+    NESTGRID_INLINE void begin_block(Block& block, std::size_t number, int path) const {
+        block.grid = grid_;
+        block.bisection = number;
+        block.level = path / 2;
+        block.orientation = path % 2 == 0 ? 1 : -1;
+    }
+    /// One that is an element alone, in no subtree.
+    Block make_alone(std::size_t number, const std::array<Node, 4>& n, const std::array<Real, 4>& u,
+                     int path) const {
+        Block block;
+        begin_block(block, number, path);
+        for (std::size_t i = 0; i < corners; ++i) {
+            block.node[i] = n[i];
+            block.key[i] = grid_->key(n[i]);
+            block.value[i] = u[i];
+            block.faces[i] = no_subtree;
+        }
+        return block;
+    }
+
     void count_bisected(std::uint64_t more) {
         bisected_ += more;
         if (bisected_ < next_tick_) return;
@@ -184,20 +213,12 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
     constexpr KnownBisection rule = Grid::bisections[number];
     const std::array<Node, 4> n{n0, n1, n2, n3};
     const std::array<Real, 4> u{u0, u1, u2, u3};
-    const Real lo = std::min(std::min(u0, u1), std::min(u2, u3));
-    const Real hi = std::max(std::max(u0, u1), std::max(u2, u3));
+    const auto [lo, hi] = range(u);
     if (!grid_->halved(n[rule.parent[0]], n[rule.parent[1]])) {
         if (visitor_->glance_at_leaf(lo, hi)) extract<number>(n, u, path, Real(0));
         return;
     }
     if constexpr (in_blocks_ && number == last_) {
-        Block above;
-        for (std::size_t i = 0; i < corners; ++i) {
-            above.node[i] = n[i];
-            above.key[i] = grid_->key(n[i]);
-            above.value[i] = u[i];
-            above.faces[i] = no_subtree;
-        }
         // The deepest a block can be that is as deep everywhere.
         int blocks = 0;
         for (Node a = n[rule.parent[0]], b = n[rule.parent[1]]; grid_->halved(a, b); ++blocks) {
@@ -205,7 +226,7 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
         }
         const int above_subtree = std::max(0, blocks - subtree_height_);
         subtree_level_ = path / 2 + static_cast<int>(Grid::block_height) * above_subtree;
-        return walk_block(above, block_of<Grid>.part[1].corner, path);
+        return walk_block(make_alone(number, n, u, path), block_of<Grid>.part[1].corner, path);
     } else {
         const Node z = grid_->middle(n[rule.parent[0]], n[rule.parent[1]]);
         bool outside = false;
@@ -251,10 +272,7 @@ void BisectionWalk<Grid, Field, Visitor, whole>::walk_block(
     static constexpr const auto& pattern = block_of<Grid>;
     constexpr std::size_t inner = pattern.ends - 2;
     Block block;
-    block.grid = grid_;
-    block.bisection = last_;
-    block.level = path / 2;
-    block.orientation = path % 2 == 0 ? 1 : -1;
+    begin_block(block, last_, path);
     for (std::size_t i = 0; i < corners; ++i) {
         block.node[i] = above.node[corner[i]];
         block.key[i] = above.key[corner[i]];
@@ -266,16 +284,11 @@ void BisectionWalk<Grid, Field, Visitor, whole>::walk_block(
         block.node[i] = grid_->middle(block.node[a], block.node[b]);
         block.key[i] = grid_->middle_key(block.key[a], block.key[b]);
     };
-    const auto lo_hi = [&](const auto& part) NESTGRID_INLINE_LAMBDA {
-        const auto value = [&](std::size_t k) { return block.value[part.corner[k]]; };
-        return std::pair(std::min(std::min(value(0), value(1)), std::min(value(2), value(3))),
-                         std::max(std::max(value(0), value(1)), std::max(value(2), value(3))));
-    };
     static_assert(pattern.part[1].middle == corners);
     static_assert(std::ranges::all_of(pattern.part.begin() + pattern.ends, pattern.part.end(),
                                       [](const auto& end) { return end.bisection == last_; }));
     make_node(corners);
-    const auto [lo, hi] = lo_hi(pattern.part[1]);
+    const auto [lo, hi] = range(block, pattern.part[1].corner);
     const auto [visit, bound] =
         visitor_->glance(lo, hi, grid_->rule(last_), block.key[corners], path / 2, false);
     if (visit == Visit::skip) return;
@@ -295,7 +308,7 @@ void BisectionWalk<Grid, Field, Visitor, whole>::walk_block(
     BlockInterior<Real, inner> interior;
     unrolled<inner>([&](auto i) NESTGRID_INLINE_LAMBDA {
         constexpr auto part = pattern.part[i + 2];
-        std::tie(interior.lo[i], interior.hi[i]) = lo_hi(part);
+        std::tie(interior.lo[i], interior.hi[i]) = range(block, part.corner);
         interior.key[i] = block.key[part.middle];
         interior.rule[i] = &grid_->rule(part.bisection);
         interior.level[i] = path / 2 + part.depth;
@@ -336,9 +349,7 @@ NESTGRID_INLINE void BisectionWalk<Grid, Field, Visitor, whole>::walk_part(const
         if (!leaves) {
             walk_block(block, part.corner, (path + 2 * part.depth) ^ (part.mirrored ? 1 : 0));
         } else {
-            const auto value = [&](std::size_t k) { return block.value[part.corner[k]]; };
-            const Real lo = std::min(std::min(value(0), value(1)), std::min(value(2), value(3)));
-            const Real hi = std::max(std::max(value(0), value(1)), std::max(value(2), value(3)));
+            const auto [lo, hi] = range(block, part.corner);
             if (visitor_->glance_at_leaf(lo, hi)) extract_part(block, p, Real(0));
         }
     } else if ((glance.descend >> (p - 2) & 1U) != 0) {
@@ -353,18 +364,7 @@ template <class Grid, class Field, class Visitor, bool whole>
 template <std::size_t number>
 NESTGRID_NOINLINE void BisectionWalk<Grid, Field, Visitor, whole>::extract(
     const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound) {
-    Block block;
-    block.grid = grid_;
-    for (std::size_t i = 0; i < corners; ++i) {
-        block.node[i] = n[i];
-        block.key[i] = grid_->key(n[i]);
-        block.value[i] = u[i];
-        block.faces[i] = no_subtree;
-    }
-    block.bisection = number;
-    block.level = path / 2;
-    block.orientation = path % 2 == 0 ? 1 : -1;
-    extract_part(block, 1, bound);
+    extract_part(make_alone(number, n, u, path), 1, bound);
 }
 
 }  // namespace nestgrid

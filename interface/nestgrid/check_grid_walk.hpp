@@ -141,7 +141,7 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
     }
 }
 
-/// The elements that many levels below one that is not masked.
+/// How many elements there are so many levels below one, and how many of them are split.
 template <class Grid, class Field>
 std::size_t GridChecker<Grid, Field>::count_block_ends(const Element& e, std::size_t height,
                                                        std::size_t& split) {

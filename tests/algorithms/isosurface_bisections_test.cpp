@@ -17,11 +17,12 @@ using namespace nestgrid_test;
 
 namespace {
 
+struct Nothing {};
+
 /// The same grid, of which nothing is known at compile time.
 template <int dim>
 struct Unknown : LatticeBisection<dim> {
     using LatticeBisection<dim>::LatticeBisection;
-    struct Nothing {};
     static constexpr Nothing bisections{};
 };
 static_assert(KnowsBisections<LatticeBisection<3>, LatticeField<LatticeBisection<3>, float>>);
@@ -31,7 +32,6 @@ static_assert(!KnowsBisections<Unknown<3>, LatticeField<Unknown<3>, float>>);
 template <int dim>
 struct Unblocked : LatticeBisection<dim> {
     using LatticeBisection<dim>::LatticeBisection;
-    struct Nothing {};
     static constexpr Nothing block_height{};
 };
 static_assert(KnowsBisections<Unblocked<3>, LatticeField<Unblocked<3>, float>>);

@@ -117,7 +117,7 @@ private:
     }
 
     // indicator_stars.hpp
-    template <class Grid, class Field>
+    template <class Field>
     void add_values(const Field& field);
     template <class Grid, class Field>
     void sweep_stars(const Grid& grid, const Field& field);

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The preroll by rows of nodes, on grids that know their stars; included by indicator.hpp. Many
-// nodes at a time, in short loops over local arrays, which compilers turn into vector instructions.
-// What comes out is what the sweep of levels gives, to the last bit.
+// The preroll by rows of nodes, on grids that know their stars; included by indicator.hpp. What
+// comes out is what the sweep of levels gives, to the last bit.
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
@@ -12,13 +11,12 @@ namespace nestgrid {
 
 namespace detail {
 using FullEntry [[gnu::vector_size(8)]] = float;  // stop and bound, not rounded
-inline constexpr std::size_t nodes_at_a_time = 64;
 template <class T>
-using Many = std::array<T, nodes_at_a_time>;
+using Many = std::array<T, 64>;  // for short loops, which become vector instructions
 }  // namespace detail
 
 /// The same as add_value() of every node.
-template <class Grid, class Field>
+template <class Field>
 void HierarchicalIndicator::add_values(const Field& field) {
     using Real = typename Field::value_type;
     constexpr Real limit = std::numeric_limits<Real>::max() / 8;
@@ -54,7 +52,7 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     using Real = typename Field::value_type;
     node_count_ = grid.node_count();
     largest_split_ = 1;  // a star is the midpoint of two nodes, the only one in its elements
-    add_values<Grid>(field);
+    add_values(field);
     dense_ = std::make_unique<Entry[]>(node_count_);
     const auto full = std::make_unique<detail::FullEntry[]>(node_count_);
     grid.for_each_star_row([&, entries = dense_.get(), full = full.get()](const StarRow& row) {

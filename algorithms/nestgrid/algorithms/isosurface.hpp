@@ -21,9 +21,9 @@
 #include <memory>
 #include <mutex>
 
+#include <nestgrid/algorithms/at_least.hpp>
 #include <nestgrid/algorithms/block_contours.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
-#include <nestgrid/algorithms/at_least.hpp>
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/frontier.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
@@ -207,13 +207,13 @@ private:
         Point around{0, 0, 0};  // area vectors of the triangles at it
     };
     struct Layer : Level {
-        Real least_inside;  // of the numbers that values can be
-        Real greatest_outside;
+        Real least_inside = 0;  // of the numbers that values can be
+        Real greatest_outside = 0;
         VertexNumbers number_of;
         VertexNumbers number_within;  // a subtree of bisections
-        Transitions transitions;
+        Transitions transitions{};
         const Transitions* drawn_below = nullptr;  // that of all tasks
-        std::vector<Where> where;
+        std::vector<Where> where{};
         Number vertex_count = 0;
         const BlockContours::Contour* contour = nullptr;  // of the block being drawn
     };
@@ -248,15 +248,18 @@ private:
     template <class Block>
     Vertex cut_in(const Block& block, const Layer& layer, const BlockContours::Cut& ends,
                   const NodePositions<Block>& x);
-    void put_loop(const std::array<Vertex, 4>& v, std::size_t count, bool mirrored);
     template <class Block>
     void draw_block(const Block& block, Layer& layer, const BlockContours& contours);
 
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);
-    template <class AnyState, class Boundary>
-    void draw_plainly(const AnyState& s, Shape shape, Layer& layer, const Contour* contour,
-                      unsigned bits, const Boundary& boundary_faces);
+    void draw_plainly(const State& s, Layer& layer, const Contour* contour, unsigned bits);
+    template <class Vertices>
+    void put_triangle(const Vertices& v, const std::array<std::uint8_t, 3>& corner, bool mirrored);
+    template <class Vertices>
+    void put_loop(const Vertices& v, std::size_t count, bool mirrored);
+    template <class Vertices, class Faces>
+    void put_boundary(const Vertices& v, std::size_t count, const Faces& face, unsigned boundary);
 
     // isosurface_cap.hpp
     struct CapPoint {  // a corner of a polygon: corner `from` of the face, or its cut side `from`
@@ -354,10 +357,6 @@ private:
     std::uint16_t chained_ = 0;  // edges with a chain behind them
     std::array<std::vector<Number>, State::Closed::edges> chain_;
 };
-
-}  // namespace detail
-
-namespace detail {
 
 template <class Grid, class Indicator>
 void require_drawable(const Grid& grid, std::span<const double> isovalues,

@@ -165,17 +165,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
             layer.sink.add_element(block.element(p), simplex_shape, level);
         }
         put_loop(v, piece.count, part.mirrored != (block.orientation < 0));
-        if constexpr (indexed) {
-            const unsigned boundary = block.boundary(p);
-            for (std::size_t i = 0; boundary != 0 && i < piece.count; ++i) {
-                if ((boundary >> piece.face[i] & 1U) == 0) continue;
-                if constexpr (dimension == 2) {
-                    layer.sink.add_boundary({v[i]});
-                } else {
-                    layer.sink.add_boundary({v[i], v[(i + 1U) % piece.count]});
-                }
-            }
-        }
+        if constexpr (indexed) put_boundary(v, piece.count, piece.face, block.boundary(p));
     }
 }
 
@@ -231,32 +221,6 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
     } else {
         return x[low] + fraction() * (x[high] - x[low]);
     }
-}
-
-/// A loop of a simplex: a segment, a triangle, or two.
-template <class Grid, class Field, class S, class Indicator, class Sink>
-NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_loop(
-    const std::array<Vertex, 4>& v, std::size_t count, bool mirrored) {
-    const auto put = [&](std::size_t a, std::size_t b,
-                         [[maybe_unused]] std::size_t c) NESTGRID_INLINE_LAMBDA {
-        if (mirrored) std::swap(a, b);
-        if constexpr (dimension == 2) {
-            put_simplex({v[a], v[b]}, {});
-        } else {
-            put_simplex({v[a], v[b], v[c]}, {});
-        }
-    };
-    if (count < 4) return put(0, 1, 2);
-    const auto position = [&](std::size_t i) {
-        if constexpr (indexed) {
-            return layer_->sink.position(v[i]);
-        } else {
-            return v[i];
-        }
-    };
-    const std::size_t a = shorter(position(0), position(2), position(1), position(3)) ? 0 : 1;
-    put(a, a + 1, a + 2);
-    put(a + 2, (a + 3) % 4, a);
 }
 
 }  // namespace nestgrid::detail

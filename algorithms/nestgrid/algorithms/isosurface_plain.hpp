@@ -27,22 +27,19 @@ NESTGRID_INLINE const Contour* IsosurfaceVisitor<Grid, Field, S, Indicator, Sink
 
 /// Draws a plain contour; positions (and keys) of the corners are loaded.
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class AnyState, class Boundary>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_plainly(
-    const AnyState& s, Shape shape, Layer& layer, const Contour* contour, unsigned bits,
-    const Boundary& boundary_faces) {
+    const State& s, Layer& layer, const Contour* contour, unsigned bits) {
     constexpr bool simplices = State::capacity == static_cast<std::size_t>(dimension) + 1;
     layer_ = &layer;
-    const Topology& t = topology(shape);
-    [[maybe_unused]] unsigned boundary = 0;
-    if constexpr (indexed) boundary = boundary_faces();
+    const Topology& t = topology(s.shape);
+    const bool mirrored = s.orientation < 0;
     const std::size_t loops = simplices ? 1 : contour->loop_count;
     for (std::size_t l = 0; l < loops; ++l) {
         const ContourLoop& loop = contour->loop[l];
         const std::size_t n = loop.count;
         std::array<Vertex, simplices ? 4 : max_edges> v;
         for (std::size_t i = 0; i < n; ++i) {
-            const auto [a, b] = t.edge[loop.edge[i]];
+            const auto& [a, b] = t.edge[loop.edge[i]];
             const bool falls = (bits >> a & 1U) != 0;
             const std::size_t low = falls ? b : a;
             const std::size_t high = falls ? a : b;
@@ -57,43 +54,67 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
             };
             v[i] = add({key_[low], key_[high]}, make);
         }
-        if (l == 0) layer.sink.add_element(s.element, shape, s.level);
-        const auto put = [&](std::size_t a, std::size_t b, [[maybe_unused]] std::size_t c) {
-            if (s.orientation < 0) std::swap(a, b);
-            if constexpr (dimension == 2) {
-                put_simplex({v[a], v[b]}, {});
-            } else {
-                put_simplex({v[a], v[b], v[c]}, {});
-            }
-        };
-        if (n <= 3) {
-            put(0, 1, 2);
-        } else if (loop.any_diagonal) {
-            const auto position = [&](std::size_t i) {
-                if constexpr (indexed) {
-                    return layer.sink.position(v[i]);
-                } else {
-                    return v[i];
-                }
-            };
-            const std::size_t a =
-                shorter(position(0), position(2), position(1), position(3)) ? 0 : 1;
-            put(a, a + 1, a + 2);
-            put(a + 2, (a + 3) % 4, a);
+        if (l == 0) layer.sink.add_element(s.element, s.shape, s.level);
+        if (n <= 3 || loop.any_diagonal) {
+            put_loop(v, n, mirrored);
         } else {
             for (std::size_t i = 0; i < loop.triangle_count; ++i) {
-                put(loop.triangle[i][0], loop.triangle[i][1], loop.triangle[i][2]);
+                put_triangle(v, loop.triangle[i], mirrored);
             }
         }
-        if constexpr (indexed && dimension == 2) {
-            for (std::size_t i = 0; boundary != 0 && i < n; ++i) {
-                if ((boundary >> loop.face[i] & 1U) != 0) layer.sink.add_boundary({v[i]});
-            }
-        } else if constexpr (indexed) {
-            for (std::size_t i = 0; boundary != 0 && i < n; ++i) {
-                if ((boundary >> loop.face[i] & 1U) == 0) continue;
-                layer.sink.add_boundary({v[i], v[(i + 1) % n]});
-            }
+        if constexpr (indexed) put_boundary(v, n, loop.face, walk_->boundary(s));
+    }
+}
+
+/// Three vertices of a loop; a segment of its first two in two dimensions.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Vertices>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_triangle(
+    const Vertices& v, const std::array<std::uint8_t, 3>& corner, bool mirrored) {
+    const Vertex& a = v[corner[mirrored ? 1 : 0]];
+    const Vertex& b = v[corner[mirrored ? 0 : 1]];
+    if constexpr (dimension == 2) {
+        put_simplex({a, b}, {});
+    } else {
+        put_simplex({a, b, v[corner[2]]}, {});
+    }
+}
+
+/// A loop that is a segment, a triangle, or two with the shorter diagonal.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Vertices>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_loop(
+    const Vertices& v, std::size_t count, bool mirrored) {
+    if (count < 4) return put_triangle(v, {0, 1, 2}, mirrored);
+    const auto position = [&](std::size_t i) {
+        if constexpr (indexed) {
+            return layer_->sink.position(v[i]);
+        } else {
+            return v[i];
+        }
+    };
+    if (shorter(position(0), position(2), position(1), position(3))) {
+        put_triangle(v, {0, 1, 2}, mirrored);
+        put_triangle(v, {2, 3, 0}, mirrored);
+    } else {
+        put_triangle(v, {1, 2, 3}, mirrored);
+        put_triangle(v, {3, 0, 1}, mirrored);
+    }
+}
+
+/// The sides of a loop that lie on the boundary of the domain.
+/// \param face behind each vertex
+/// \param boundary the element's faces there, one bit each
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Vertices, class Faces>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_boundary(
+    const Vertices& v, std::size_t count, const Faces& face, unsigned boundary) {
+    for (std::size_t i = 0; boundary != 0 && i < count; ++i) {
+        if ((boundary >> face[i] & 1U) == 0) continue;
+        if constexpr (dimension == 2) {
+            layer_->sink.add_boundary({v[i]});
+        } else {
+            layer_->sink.add_boundary({v[i], v[(i + 1) % count]});
         }
     }
 }

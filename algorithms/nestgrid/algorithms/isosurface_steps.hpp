@@ -22,7 +22,7 @@ IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
     const bool small_keys = keys > 0 && keys <= (std::uint64_t{1} << 32U);
     for (Sink& sink : sinks) {
         layers_.push_back(
-            {{0, std::move(sink)}, 0, 0, VertexNumbers(small_keys), VertexNumbers(small_keys), {}, nullptr, {}, 0});
+            {{0, std::move(sink)}, 0, 0, VertexNumbers(small_keys), VertexNumbers(small_keys)});
     }
     set_isovalues();
 }
@@ -103,8 +103,8 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& exe
 NESTGRID_VISITOR::table_bytes() const -> std::size_t {
     std::size_t bytes = gradients_.memory_bytes();
     for (const Layer& layer : layers_) {
-        bytes += layer.number_of.memory_bytes() + layer.number_within.memory_bytes() + layer.transitions.memory_bytes() +
-                 layer.where.capacity() * sizeof(Where);
+        bytes += layer.number_of.memory_bytes() + layer.number_within.memory_bytes() +
+                 layer.transitions.memory_bytes() + layer.where.capacity() * sizeof(Where);
     }
     return bytes;
 }
@@ -210,7 +210,7 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
         recorded_ = recorded_edges(s, layer, bits);
         if (plainly_ && !s.closed.any && recorded_ == 0) {
             if (const Contour* contour = plain_contour(s.shape, bits)) {
-                draw_plainly(s, s.shape, layer, contour, bits, [&] { return walk_->boundary(s); });
+                draw_plainly(s, layer, contour, bits);
                 add_error(s, layer);
                 continue;
             }

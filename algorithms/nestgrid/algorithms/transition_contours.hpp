@@ -79,7 +79,8 @@ public:
         conflicts_ = {};
         split_of_ = {};
         for (std::size_t i = 0; i < segments_.size(); ++i) {
-            first_on_.insert(segments_[i].face, static_cast<Index>(i));
+            const auto here = static_cast<Index>(i);
+            segments_on_.insert(segments_[i].face, {here, here}).first->last = here + 1;
         }
         // At least 16 bits for each vertex, so that most names without one are told by one bit.
         perhaps_.assign(std::bit_ceil(std::max<std::size_t>(cuts_.size() / 4, 16)), 0);
@@ -105,12 +106,13 @@ public:
     /// pass(vertex) for those between. \return whether it got there
     template <class Stop, class Pass>
     bool follow(NodeKey face, Index from, Stop&& stop, Pass&& pass) const {
-        const Index* first = first_on_.find(face);
-        if (first == nullptr) return false;
+        const Range* on_face = segments_on_.find(face);
+        if (on_face == nullptr) return false;
+        const auto end = segments_.begin() + on_face->last;
         for (std::size_t steps = 0; steps <= segments_.size(); ++steps) {
-            auto next = segments_.begin() + *first;
-            while (next != segments_.end() && next->face == face && next->from < from) ++next;
-            if (next == segments_.end() || next->face != face || next->from != from) return false;
+            const auto next = std::lower_bound(segments_.begin() + on_face->first, end,
+                                               Segment{face, from, 0}, before);
+            if (next == end || next->from != from) return false;
             from = next->to;
             if (stop(from)) return true;
             pass(from);
@@ -125,13 +127,13 @@ public:
         conflicts_.clear();
         cuts_.clear();
         vertex_of_.clear();
-        first_on_.clear();
+        segments_on_.clear();
     }
 
     std::size_t memory_bytes() const {
         return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Cut) +
                perhaps_.capacity() * sizeof(perhaps_[0]) + vertex_of_.memory_bytes() +
-               first_on_.memory_bytes();
+               segments_on_.memory_bytes();
     }
 
 private:
@@ -140,6 +142,10 @@ private:
         Index from;
         Index to;
         bool operator==(const Segment&) const = default;
+    };
+    struct Range {  // of the segments on one face
+        Index first;
+        Index last;  // one behind it
     };
     /// How a face is divided, where it is divided one way, as first seen by an element below it.
     struct Split {
@@ -194,7 +200,7 @@ private:
     KeyTable<NodeKey, Owner> conflicts_;  // divided in two directions
     std::vector<Cut> cuts_;
     KeyTable<KeyPair, Index> vertex_of_;
-    KeyTable<NodeKey, Index> first_on_;   // segment on a face
+    KeyTable<NodeKey, Range> segments_on_;
     std::vector<std::uint64_t> perhaps_;  // bits of the names there are
 };
 
