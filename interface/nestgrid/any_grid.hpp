@@ -96,6 +96,7 @@ public:
     bool masked(const Element& e, AnyContext& c) const {
         return ask<int>(table_->masked, "masked", e, c) != 0;
     }
+    Hidden hidden(const Element& e, AnyContext& c) const;
     NodeMask outside(const Element& e, AnyContext& c) const {
         return ask<std::uint64_t>(table_->outside, "outside", e, c);
     }

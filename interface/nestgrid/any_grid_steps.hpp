@@ -141,6 +141,15 @@ const Rule* AnyGrid<dim>::split(const Element& e, AnyContext& c) const {
 }
 
 template <int dim>
+Hidden AnyGrid<dim>::hidden(const Element& e, AnyContext& c) const {
+    const int part = ask<int>(table_->hidden, "hidden", e, c);
+    if (part < 0 || part > 2) {
+        throw GridError("hidden gave " + std::to_string(part) + ", not 0, 1 or 2");
+    }
+    return static_cast<Hidden>(part);
+}
+
+template <int dim>
 bool AnyGrid<dim>::offers(Feature feature) const {
     const bool keys = table_->corner_keys != nullptr && table_->new_keys != nullptr;
     switch (feature) {
@@ -156,6 +165,8 @@ bool AnyGrid<dim>::offers(Feature feature) const {
             return table_->constrained != nullptr;
         case Feature::masked:
             return table_->masked != nullptr;
+        case Feature::hidden:
+            return table_->hidden != nullptr;
         case Feature::outside:
             return table_->outside != nullptr;
         case Feature::boundary_faces:

@@ -42,6 +42,7 @@ enum class Law : std::uint8_t {
     value_unique,     ///< one node, one value
     position,         ///< own positions: those of eq. (1), and one node, one position
     depth,            ///< the hierarchy ends
+    hidden,           ///< an element is hidden as its children are; no leaf is in part
     known_bisection,  ///< what is known at compile time is what split() and children() say
 };
 

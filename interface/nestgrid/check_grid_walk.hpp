@@ -237,7 +237,12 @@ void GridChecker<Grid, Field>::walk(const State& s) {
     check_positions(s);
     const Rule* rule = call_split(grid_, context_, s.element);
     check_known_bisection(s, rule);
+    const Hidden hidden = hidden_part(grid_, context_, s.element);
     if (rule == nullptr) {
+        if (hidden == Hidden::partly) {
+            fail(Law::hidden, name(s.step) + " is a leaf, but hidden in part");
+        }
+        if (hidden == Hidden::wholly) return;
         std::array<NodeKey, max_corners> keys{};
         for (std::size_t k = 0; k < corners; ++k) keys[k] = s.corner[k].derived;
         leaves_.push_back({s.shape, keys});
@@ -250,6 +255,14 @@ void GridChecker<Grid, Field>::walk(const State& s) {
     check_new_nodes(s, *rule, nodes);
     std::vector<Element> children(rule->children.size());
     call_children(grid_, context_, s.element, std::span<Element>(children));
+    for (const Element& child : children) {
+        if (hidden != Hidden::partly && hidden_part(grid_, context_, child) != hidden) {
+            fail(Law::hidden,
+                 name(s.step) + " is " +
+                     (hidden == Hidden::wholly ? "hidden, but not" : "not hidden, but") +
+                     " all that lies below it");
+        }
+    }
     for (std::size_t k = 0; k < children.size(); ++k) {
         if constexpr (may_offer<Grid>(Feature::masked)) {
             if (offers(grid_, Feature::masked) && call_masked(grid_, context_, children[k])) {

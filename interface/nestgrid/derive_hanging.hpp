@@ -152,7 +152,7 @@ HangingNodes derive_hanging_nodes(const Grid& grid) {
         probe.add_nodes(*split.rule, keys, split.keys);
     });
     for_each_element(walk, [&](const auto& s, const Split& split) {
-        if (split.rule != nullptr) return;
+        if (split.rule != nullptr || is_hidden(grid, *s.context, s.element)) return;
         walk.keys(s, keys);
         probe.probe_leaf(s.shape, keys);
     });

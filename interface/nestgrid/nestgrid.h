@@ -99,6 +99,8 @@ typedef struct nestgrid_grid {
     int (*constrained)(const void* self, void* context, const nestgrid_element* e, uint64_t* nodes);
     int conforming; /* not 0: no node hangs */
     int (*masked)(const void* self, void* context, const nestgrid_element* e, int* is_masked);
+    /* *part: 0 where e is shown, 1 where it is hidden in part, 2 where it is hidden */
+    int (*hidden)(const void* self, void* context, const nestgrid_element* e, int* part);
     int (*outside)(const void* self, void* context, const nestgrid_element* e, uint64_t* nodes);
     int (*boundary_faces)(const void* self, void* context, const nestgrid_element* e,
                           unsigned* faces);

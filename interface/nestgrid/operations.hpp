@@ -19,6 +19,10 @@
 //         promises that no node hangs, which spares the derivation
 //     bool masked(e)
 //         e lies outside the domain: skipped with everything below it
+//     Hidden hidden(e)
+//         whether e and what lies below it is shown: nothing is drawn where it is hidden, but what
+//         is drawn beside is what would be drawn if it were not. No element that is hidden in part
+//         stops, and hidden leaves constrain no node
 //     NodeMask outside(e)
 //         new nodes at which no element may stop because only deeper elements end at the boundary
 //         of the domain; saturated like an infinite indicator
@@ -67,7 +71,10 @@ enum class Feature : unsigned {
     outside = 64,
     boundary_faces = 128,
     gradients = 256,
+    hidden = 512,
 };
+
+enum class Hidden : std::uint8_t { not_at_all, partly, wholly };
 
 template <class Grid>
 using ElementOf = typename Grid::Element;
@@ -114,6 +121,7 @@ NESTGRID_OPERATION(corner_positions)
 NESTGRID_OPERATION(new_positions)
 NESTGRID_OPERATION(constrained)
 NESTGRID_OPERATION(masked)
+NESTGRID_OPERATION(hidden)
 NESTGRID_OPERATION(outside)
 NESTGRID_OPERATION(boundary_faces)
 NESTGRID_OPERATION(corner_gradients)
@@ -142,6 +150,7 @@ constexpr unsigned static_features() {
     add(Feature::new_positions, offers_new_positions<Grid, C, E, NodeMask, std::span<Point>>);
     add(Feature::constrained, offers_constrained<Grid, C, E>);
     add(Feature::masked, offers_masked<Grid, C, E>);
+    add(Feature::hidden, offers_hidden<Grid, C, E>);
     add(Feature::outside, offers_outside<Grid, C, E>);
     add(Feature::boundary_faces, offers_boundary_faces<Grid, C, E>);
     return f;
@@ -163,6 +172,19 @@ constexpr bool offers(const Grid& grid, Feature feature) {
     } else {
         return may_offer<Grid>(feature);
     }
+}
+
+/// How much of an element is hidden.
+template <class Grid>
+Hidden hidden_part(const Grid& grid, Context<Grid>& context, const ElementOf<Grid>& e) {
+    if constexpr (may_offer<Grid>(Feature::hidden)) {
+        if (offers(grid, Feature::hidden)) return detail::call_hidden(grid, context, e);
+    }
+    return Hidden::not_at_all;
+}
+template <class Grid>
+bool is_hidden(const Grid& grid, Context<Grid>& context, const ElementOf<Grid>& e) {
+    return hidden_part(grid, context, e) == Hidden::wholly;
 }
 
 /// Whether this field offers gradients at the corners of elements of the grid.

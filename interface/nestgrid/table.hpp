@@ -175,6 +175,12 @@ struct GridTable {
                                                                                                 : 0;
         });
     }
+    static int hidden(const void* self, void* context, const nestgrid_element* e, int* answer) {
+        return guarded([&] {
+            *answer = static_cast<int>(
+                with(context, [&](auto& ctx) { return call_hidden(grid(self), ctx, load(e)); }));
+        });
+    }
     static int outside(const void* self, void* context, const nestgrid_element* e,
                        std::uint64_t* nodes) {
         return guarded([&] {
@@ -298,6 +304,9 @@ nestgrid_grid make_table(const Grid& grid) {
     }
     if constexpr (may_offer<Grid>(Feature::masked)) {
         if (offers(grid, Feature::masked)) t.masked = Table::masked;
+    }
+    if constexpr (may_offer<Grid>(Feature::hidden)) {
+        if (offers(grid, Feature::hidden)) t.hidden = Table::hidden;
     }
     if constexpr (may_offer<Grid>(Feature::outside)) {
         if (offers(grid, Feature::outside)) t.outside = Table::outside;

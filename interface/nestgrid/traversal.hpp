@@ -84,6 +84,11 @@ template <class Grid>
 constexpr bool by_heart(Feature feature) {
     return may_offer<Grid>(feature) && !DecidesAtRunTime<Grid>;
 }
+template <class Visitor>
+bool sees_hidden(const Visitor& visitor) {
+    if constexpr (requires { visitor.sees_hidden(); }) return visitor.sees_hidden();
+    return false;
+}
 }  // namespace detail
 
 /// An element on the way down.
@@ -131,10 +136,12 @@ struct ElementState {
 ///     void extract(const State&);              called for elements where it said stop, and leaves
 ///     bool passes_over_leaves() const;         optional: whether leaves around which nothing is
 ///                                              closed may be left out, unless coarse
+///     bool sees_hidden() const;                optional: whether it looks at hidden elements
 ///     void walk_bisections(const State&)       optional: takes the element and all below it in a
 ///                                              walk of its own (known_bisection.hpp), where
 ///     bool walks_bisections() const;           says so
 /// Elements whose split creates no node (copies) are looked through: never shown to the visitor.
+/// Where an element is hidden in part, stop means descend.
 template <class Grid, class Field, Needs needs = Needs{}>
 class Traversal {
     static_assert(require_nested_grid<Grid>());

@@ -118,6 +118,8 @@ void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) co
     std::array<NodeKey,
                needs.keys || !detail::by_heart<Grid>(Feature::constrained) ? node_capacity_ : 1>
         keys;
+    const Hidden hidden = hidden_part(*grid_, *s.context, s.element);
+    if (hidden == Hidden::wholly && !detail::sees_hidden(visitor)) return;
     Split split;
     split.rule = detail::call_split(*grid_, *s.context, s.element);
     if (split.rule == nullptr) {
@@ -159,7 +161,7 @@ void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) co
     Decision decision;
     if (count > 0) decision = visitor.inspect(s, split);
     if (decision.visit == Visit::skip) return;
-    if (decision.visit == Visit::stop) {
+    if (decision.visit == Visit::stop && hidden != Hidden::partly) {
         visitor.extract(s);
     } else {
         descend(s, split, decision.interpolated, keys.data(), visitor);

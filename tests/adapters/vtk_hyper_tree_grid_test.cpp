@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // VTK's own hyper tree grids: data of cells, by the means at nodes.
+#include <map>
+
 #include <vtkBitArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkHyperTreeGridNonOrientedCursor.h>
@@ -171,15 +173,108 @@ TEST(HyperTreeGrid, SurfacesCarryTheDataOfLeaves) {
     }
 }
 
+/// What is masked is not drawn, whatever its data are; the surface is open towards it, and nowhere
+/// else.
+template <int dim>
+void expect_laws_beside_a_mask(vtkHyperTreeGrid& trees, unsigned seed) {
+    std::mt19937 random(seed);
+    const auto cells = static_cast<std::size_t>(trees.GetNumberOfVertices());
+    const vtkNew<vtkBitArray> mask;
+    for (std::size_t i = 0; i < cells; ++i) mask->InsertNextValue(random() % 9 == 0);
+    const HyperTreeGrid<dim> whole(trees);
+    trees.SetMask(mask);
+    const HyperTreeGrid<dim> grid(trees);
+    using Element = typename HyperTreeGrid<dim>::Element;
+    const std::vector<double> values =
+        at_centres(whole, cells, [&](const Point& x) { return x[0] + x[1] * x[1] + x[2] - 1.03; });
+    const CellAverages field(grid, [&](const Element& e) {
+        EXPECT_EQ(grid.hidden(e), Hidden::not_at_all);
+        return values[static_cast<std::size_t>(grid.index(e))];
+    });
+    expect_sound_grid(grid, field);
+
+    std::vector<std::array<Point, 2>> masked;  // boxes of leaves: first and last corner
+    using Zero = ZeroField<HyperTreeGrid<dim>>;
+    const Zero zero;
+    const Traversal<HyperTreeGrid<dim>, Zero, Needs{.keys = true, .positions = true}> walk(grid,
+                                                                                           zero);
+    for_each_element(walk, [&](const auto& s, const Split& split) {
+        if (split.rule != nullptr || grid.hidden(s.element) == Hidden::not_at_all) return;
+        std::array<Point, max_corners> x;
+        walk.positions(s, x);
+        masked.push_back({x[0], x[(std::size_t{1} << dim) - 1]});
+    });
+    ASSERT_GT(masked.size(), 100U);
+    const auto beside_masked = [&](const Point& p) {
+        return std::any_of(masked.begin(), masked.end(), [&](const auto& box) {
+            bool inside = true;
+            for (std::size_t d = 0; d < 3; ++d) {
+                inside = inside && p[d] >= box[0][d] - 1e-9 && p[d] <= box[1][d] + 1e-9;
+            }
+            return inside;
+        });
+    };
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : {0.0, 0.01, 0.1, 1.0}) {
+        SCOPED_TRACE(threshold);
+        const auto surface =
+            isosurface(grid, field, 0.0, indicator, {.threshold = threshold, .verify = true})
+                .surface;
+        EXPECT_GT(surface.simplices.size(), 20U);
+        for (const Element& e : surface.elements) EXPECT_EQ(grid.hidden(e), Hidden::not_at_all);
+        // Sides of simplices, each in one direction; those on the boundary are told.
+        using Side = std::array<std::uint32_t, dim - 1>;
+        std::map<Side, int> sides;
+        const auto add = [&](const auto& simplex, std::size_t from, int orientation) {
+            Side side;
+            for (std::size_t i = 0; i + 1 < dim; ++i)
+                side[i] = simplex[(from + i) % simplex.size()];
+            if (dim == 2 && from == 1) orientation = -orientation;
+            if (side.front() > side.back()) orientation = -orientation;
+            std::sort(side.begin(), side.end());
+            sides[side] += orientation;
+        };
+        for (const auto& s : surface.simplices) {
+            for (std::size_t i = 0; i < s.size(); ++i) add(s, i, 1);
+        }
+        std::size_t open = 0;
+        for (const Side& side : surface.boundary) {
+            Side sorted = side;
+            std::sort(sorted.begin(), sorted.end());
+            sides.erase(sorted);
+        }
+        for (const auto& [side, count] : sides) {
+            if (count == 0) continue;
+            ++open;
+            Point middle{0, 0, 0};
+            for (const auto v : side) middle = middle + (1.0 / (dim - 1)) * surface.vertices[v];
+            EXPECT_TRUE(beside_masked(middle));
+        }
+        EXPECT_GT(open, 10U);
+    }
+}
+
+TEST(HyperTreeGrid, HidesWhatIsMasked) {
+    expect_laws_beside_a_mask<3>(*random_trees({5, 5, 5}, 4, 1), 1);
+    expect_laws_beside_a_mask<3>(*random_trees({5, 4, 4}, 4, 2, true), 2);
+    expect_laws_beside_a_mask<2>(*random_trees({9, 8, 1}, 6, 2), 3);
+}
+
+/// All of it, or a tree.
+TEST(HyperTreeGrid, MasksMayHideEverything) {
+    const vtkNew<vtkHyperTreeGrid> trees = random_trees({3, 3, 3}, 3, 1);
+    const vtkNew<vtkBitArray> mask;
+    for (vtkIdType i = 0; i < trees->GetNumberOfVertices(); ++i) mask->InsertNextValue(1);
+    trees->SetMask(mask);
+    const HyperTreeGrid<3> grid(*trees);
+    const CellAverages field(grid, [](const HyperTreeGrid<3>::Element&) { return 1.0; });
+    expect_sound_grid(grid, field);
+    EXPECT_EQ(isosurface(grid, field, 0.5).surface.simplices.size(), 0U);
+}
+
 TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
     const vtkNew<vtkHyperTreeGrid> flat = random_trees({3, 3, 1}, 1, 1);
     expect_refused([&] { HyperTreeGrid<3> grid(*flat); }, "has dimension 2, not 3");
-    const vtkNew<vtkHyperTreeGrid> masked = random_trees({3, 3, 3}, 1, 1);
-    vtkNew<vtkBitArray> mask;
-    for (vtkIdType i = 0; i < masked->GetNumberOfVertices(); ++i) mask->InsertNextValue(i == 5);
-    masked->SetMask(mask);
-    expect_refused([&] { HyperTreeGrid<3> grid(*masked); },
-                   "cell 5 of the hyper tree grid is masked");
     vtkNew<vtkHyperTreeGrid> thirds;
     thirds->SetDimensions(2, 2, 2);
     thirds->SetBranchFactor(3);

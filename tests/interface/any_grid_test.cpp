@@ -163,9 +163,9 @@ TEST(AnyGrid, PassesOnStateAndOptionalOperations) {
     const CurvedGrid grid(forest);
     const CurvedField field(grid, distance);
     const AnyGrid<3> any(grid);
-    for (const Feature f :
-         {Feature::own_keys, Feature::dense_keys, Feature::own_positions, Feature::new_positions,
-          Feature::constrained, Feature::masked, Feature::outside, Feature::boundary_faces}) {
+    for (const Feature f : {Feature::own_keys, Feature::dense_keys, Feature::own_positions,
+                            Feature::new_positions, Feature::constrained, Feature::masked,
+                            Feature::hidden, Feature::outside, Feature::boundary_faces}) {
         EXPECT_EQ(offers(any, f), offers(grid, f)) << static_cast<unsigned>(f);
     }
     EXPECT_FALSE(grid.hanging.empty());

@@ -300,6 +300,7 @@ struct Throwing {
     void new_positions(int, NodeMask, std::span<Point>) const { fail(); }
     NodeMask constrained(int) const { fail(); }
     bool masked(int) const { fail(); }
+    Hidden hidden(int) const { fail(); }
     NodeMask outside(int) const { fail(); }
     unsigned boundary_faces(int) const { fail(); }
     std::uint64_t epoch() const { fail(); }
@@ -335,6 +336,7 @@ void expect_codes(int code) {
     EXPECT_EQ(t.new_positions(t.self, c, &e, 1, 6, rows.data()), code);
     EXPECT_EQ(t.constrained(t.self, c, &e, bits.data()), code);
     EXPECT_EQ(t.masked(t.self, c, &e, &answer), code);
+    EXPECT_EQ(t.hidden(t.self, c, &e, &answer), code);
     EXPECT_EQ(t.outside(t.self, c, &e, bits.data()), code);
     EXPECT_EQ(t.boundary_faces(t.self, c, &e, &faces), code);
     EXPECT_EQ(t.epoch(t.self, bits.data()), code);

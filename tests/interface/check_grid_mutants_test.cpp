@@ -216,6 +216,17 @@ std::map<Law, Mutator<dim>> mutators() {
         }
         return true;
     };
+    m[Law::hidden] = [=](Grid& g, Field&, Random& r) {
+        g.features = feature(Feature::hidden);
+        const std::uint32_t father = random_refined(g, r);
+        const auto& of = g.forest.cells[father];
+        const auto child =
+            static_cast<std::uint32_t>(of.first_child + r() % of.rule->children.size());
+        const bool leaf = g.forest.cells[child].rule == nullptr;
+        g.hides[r() % 2 == 0 ? child : father] = Hidden::wholly;
+        if (leaf && r() % 2 == 0) g.hides = {{child, Hidden::partly}, {father, Hidden::partly}};
+        return true;
+    };
     m[Law::depth] = [](Grid& g, Field& f, Random& r) {
         std::fill(f.field.values.begin(), f.field.values.end(), 1.0);
         const std::uint32_t father = random_refined(g, r);
@@ -293,6 +304,6 @@ TEST_P(Mutants, AreNamed) {
     EXPECT_GE(made, law == Law::one_stencil ? mutants_per_law / 2 : mutants_per_law);
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryLaw, Mutants, testing::Range(0, int(Law::depth) + 1));
+INSTANTIATE_TEST_SUITE_P(EveryLaw, Mutants, testing::Range(0, int(Law::hidden) + 1));
 
 }  // namespace

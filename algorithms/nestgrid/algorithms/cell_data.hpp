@@ -4,7 +4,8 @@
 // Data in cells, as finite volume codes have it, as a nodal field: the value at a node is the plain
 // mean of the leaves that have it for a corner. A linear function is reproduced where those leaves
 // lie symmetrically around the node. Nodes that hang get such a mean too, but the traversal puts
-// the interpolant in its place.
+// the interpolant in its place. Hidden leaves count for nothing; nodes of theirs alone get the mean
+// of all others, where nothing is drawn.
 //
 // Invariant: the mean of equal values is that value, to the last bit, so that plateaus stay flat.
 // Memory: O(nodes), 48 to 96 bytes a node, and 64 to 128 more while it is built.
@@ -61,8 +62,13 @@ public:
 
 private:
     struct Running {
-        double mean;
-        std::uint32_t count;
+        double mean = 0;
+        std::uint64_t count = 0;
+
+        void add(double value) {
+            ++count;
+            mean = count == 1 ? value : mean + (value - mean) / static_cast<double>(count);
+        }
     };
     NodeMask look_up(std::span<const NodeKey> keys, NodeMask which, std::span<double> out) const {
         NodeMask missing = 0;
@@ -70,6 +76,8 @@ private:
             if ((which >> i & 1U) == 0) continue;
             if (const double* mean = means_.find(keys[i])) {
                 out[i] = *mean;
+            } else if (offers(*grid_, Feature::hidden)) {
+                out[i] = elsewhere_.mean;
             } else {
                 missing |= NodeMask{1} << i;
             }
@@ -81,6 +89,7 @@ private:
     LeafValue leaf_value_;
     std::uint64_t epoch_;
     KeyTable<NodeKey, double> means_;
+    Running elsewhere_;  // of all leaves that are not hidden
 };
 
 template <class Grid, class LeafValue>
@@ -93,13 +102,13 @@ CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue leaf_val
     const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
     KeyTable<NodeKey, Running> running;
     for_each_element(walk, [&](const auto& s, const Split& split) {
-        if (split.rule != nullptr) return;
+        if (split.rule != nullptr || is_hidden(grid, *s.context, s.element)) return;
         const double value = this->leaf_value(s.element);
+        elsewhere_.add(value);
         std::array<NodeKey, max_corners> keys;
         walk.keys(s, keys);
         for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-            Running& r = *running.insert(keys[i], {value, 0}).first;
-            r.mean += (value - r.mean) / ++r.count;
+            running.insert(keys[i], {}).first->add(value);
         }
     });
     means_.reserve(running.size());

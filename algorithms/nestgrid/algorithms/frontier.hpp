@@ -88,6 +88,7 @@ private:
         int level;
         std::size_t* open;
 
+        bool sees_hidden() const { return detail::sees_hidden(*visitor); }
         template <class State>
         Decision inspect(const State& s, const Split& split) {
             auto& items = frontier->items_;
@@ -122,6 +123,7 @@ private:
         std::size_t last;
         std::size_t item;  ///< the next one to be met
 
+        bool sees_hidden() const { return detail::sees_hidden(*visitor); }
         template <class State>
         Decision inspect(const State& s, const Split& split) {
             const auto& items = frontier->items_;

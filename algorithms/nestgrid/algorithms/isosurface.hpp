@@ -155,6 +155,8 @@ public:
     void extract(const State& s);
     /// Where nothing is closed around a leaf it records nothing, and is only counted for a limit.
     bool passes_over_leaves() const { return recording_ && !limited(); }
+    /// What hidden elements would draw on faces around them is recorded all the same.
+    bool sees_hidden() const { return recording_; }
 
     // isosurface_bisections.hpp: simplices that conform, and nothing but triangles asked for.
     bool walks_bisections() const { return bisects_; }

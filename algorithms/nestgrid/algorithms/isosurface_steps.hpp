@@ -73,6 +73,7 @@ NESTGRID_VISITOR::must_record() const -> bool {
                              indicator_->hanging() != nullptr;
         if (hanging) return true;
         if (std::is_same_v<S, Exact>) return false;
+        if (offers(walk_->grid(), Feature::hidden)) return true;
         if constexpr (requires { indicator_->stops_conform(); }) {
             return !indicator_->stops_conform();
         } else {
@@ -201,7 +202,10 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
         state_ = &s;
         layer_ = &layer;
         if (recording_) {
-            if (bits != all && ++drawn_ > limit_) throw OverLimit{};
+            if (bits != all && !is_hidden(walk_->grid(), *s.context, s.element) &&
+                ++drawn_ > limit_) {
+                throw OverLimit{};
+            }
             if (!s.closed.any) continue;
             if (bits != all) record(s, layer, bits);
             if (boundary != 0) record_cap(s, layer, bits);

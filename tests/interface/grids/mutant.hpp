@@ -68,6 +68,10 @@ public:
         return mask;
     }
     bool conforming() const { return says_conforming; }
+    Hidden hidden(Element e) const {
+        const auto at = hides.find(e);
+        return at == hides.end() ? Hidden::not_at_all : at->second;
+    }
 
     static constexpr Element nowhere = 0xFFFFFFFFU;
     Forest<dim> forest;
@@ -75,6 +79,7 @@ public:
     std::vector<NodeKey> keys;
     std::set<std::uint32_t> hanging;
     std::map<Element, const Rule*> rules;
+    std::map<Element, Hidden> hides;
     unsigned features = 0;
     bool says_conforming = false;
     std::size_t corner = 0;

@@ -5,12 +5,13 @@
 // rectilinear coarse grid, with data of cells.
 //
 // A node is named by its place on the lattice of the deepest level, so that trees agree about
-// it. Data of cells get to the nodes by CellAverages (cell_data.hpp).
+// it. Masked cells are hidden. Data of cells get to the nodes by CellAverages (cell_data.hpp).
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include <vtkBitArray.h>
 #include <vtkDataArray.h>
 #include <vtkHyperTree.h>
 #include <vtkHyperTreeGrid.h>
@@ -37,8 +38,8 @@ public:
         Place place{};  ///< of its first corner, in lattice steps of its own level
     };
 
-    /// \throw InvalidInput for a grid of another dimension, with another branch factor than two,
-    ///        with masked cells, or with more than 2^31 steps along a side at its deepest level
+    /// \throw InvalidInput for a grid of another dimension, with another branch factor than two, or
+    ///        with more than 2^31 steps along a side at its deepest level
     explicit HyperTreeGrid(vtkHyperTreeGrid& grid)
         : grid_{&grid}, rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
         if (grid.GetDimension() != dim) {
@@ -49,14 +50,6 @@ public:
         if (grid.GetBranchFactor() != 2) {
             throw InvalidInput("the hyper tree grid has the branch factor " +
                                std::to_string(grid.GetBranchFactor()) + ", not 2");
-        }
-        if (grid.HasMask() && grid.GetMask()->GetNumberOfTuples() > 0) {
-            for (vtkIdType i = 0; i < grid.GetNumberOfVertices(); ++i) {
-                if (grid.GetMask()->GetTuple1(i) != 0) {
-                    throw InvalidInput("cell " + std::to_string(i) +
-                                       " of the hyper tree grid is masked, which is not supported");
-                }
-            }
         }
         depth_ = static_cast<int>(grid.GetNumberOfLevels()) - 1;
         const std::array<vtkDataArray*, 3> x{grid.GetXCoordinates(), grid.GetYCoordinates(),
@@ -76,6 +69,10 @@ public:
         }
         for (vtkIdType i = 0; i < grid.GetMaxNumberOfTrees(); ++i) {
             if (vtkHyperTree* tree = grid.GetTree(i)) trees_.push_back(tree);
+        }
+        if (grid.HasMask()) {
+            hidden_.resize(static_cast<std::size_t>(grid.GetNumberOfVertices()));
+            for (vtkHyperTree* tree : trees_) read_mask({tree, 0, 0, {}}, false);
         }
     }
 
@@ -121,10 +118,29 @@ public:
         }
     }
 
+    /// What is masked.
+    Hidden hidden(const Element& e) const {
+        return hidden_.empty() ? Hidden::not_at_all : hidden_[static_cast<std::size_t>(index(e))];
+    }
+
     /// Number of an element, leaf or not, in the arrays of cell data.
     vtkIdType index(const Element& e) const { return e.tree->GetGlobalIndexFromLocal(e.vertex); }
 
 private:
+    Hidden read_mask(const Element& e, bool masked) {
+        masked = masked || grid_->GetMask()->GetValue(index(e)) != 0;
+        Hidden result = masked ? Hidden::wholly : Hidden::not_at_all;
+        if (split(e) != nullptr) {
+            std::array<Element, max_children> child;
+            children(e, child);
+            result = read_mask(child[0], masked);
+            for (std::size_t c = 1; c < child.size(); ++c) {
+                if (read_mask(child[c], masked) != result) result = Hidden::partly;
+            }
+        }
+        return hidden_[static_cast<std::size_t>(index(e))] = result;
+    }
+
     /// A step in the directions in which corner, or child, k lies from the first one.
     Place step(Place from, std::size_t k) const {
         for (std::size_t a = 0; a < dim; ++a) from[axis_[a]] += k >> a & 1U;
@@ -143,6 +159,7 @@ private:
     std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
     std::array<std::vector<double>, 3> coordinates_;
     std::vector<vtkHyperTree*> trees_;
+    std::vector<Hidden> hidden_;  // by index; empty without a mask
 };
 
 }  // namespace nestgrid

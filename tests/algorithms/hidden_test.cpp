@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Hidden elements: nothing is drawn in them, and beside them what would be drawn without.
+#include <gtest/gtest.h>
+
+#include <nestgrid/algorithms/cell_data.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/project.hpp>
+#include <nestgrid/any_grid.hpp>
+#include <nestgrid/check_grid.hpp>
+
+#include "closedness.hpp"
+#include "forest.hpp"
+#include "thread_executor.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+/// A forest of which some leaves are hidden, or known to be and drawn all the same.
+template <int dim>
+class HidingForest : public Forest<dim> {
+public:
+    using Element = std::uint32_t;
+
+    HidingForest(Forest<dim> forest, std::mt19937& random)
+        : Forest<dim>(std::move(forest)), part_(this->cells.size()) {
+        for (std::size_t e = this->cells.size(); e-- > 0;) {
+            const auto& cell = this->cells[e];
+            if (cell.rule == nullptr) {
+                part_[e] = random() % 4 == 0 ? Hidden::wholly : Hidden::not_at_all;
+                continue;
+            }
+            part_[e] = part_[cell.first_child];
+            for (std::size_t k = 1; k < cell.rule->children.size(); ++k) {
+                if (part_[cell.first_child + k] != part_[e]) part_[e] = Hidden::partly;
+            }
+        }
+        hanging_ = derive_hanging_nodes(*this);
+    }
+    Hidden hidden(Element e) const {
+        return draws_all && part_[e] != Hidden::partly ? Hidden::not_at_all : part_[e];
+    }
+    NodeMask constrained(Element e) const {
+        const auto& cell = this->cells[e];
+        NodeMask mask = 0;
+        for (std::size_t n = topology(cell.shape).corners, k = 0; n < cell.nodes.size(); ++n, ++k) {
+            mask |= NodeMask{hanging_.contains(this->keys[cell.nodes[n]])} << k;
+        }
+        return mask;
+    }
+
+    bool draws_all = false;
+
+private:
+    std::vector<Hidden> part_;
+    HangingNodes hanging_;
+};
+
+/// The simplices of elements that are shown, by the positions of their corners.
+template <int dim, class Surface>
+std::vector<Point> shown(const HidingForest<dim>& grid, const Surface& surface) {
+    std::vector<Point> corners;
+    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
+        if (grid.hidden(surface.elements[surface.element_of[t]]) != Hidden::not_at_all) continue;
+        for (const auto v : surface.simplices[t]) corners.push_back(surface.vertices[v]);
+    }
+    return corners;
+}
+
+template <int dim>
+void expect_the_rest_unchanged(Forest<dim> forest, int steps) {
+    std::mt19937 random(7);
+    refine_randomly(forest, random, steps);
+    HidingForest<dim> grid(std::move(forest), random);
+    std::size_t simplices = 0;
+    std::size_t hidden = 0;
+    for (const NodalSamples& samples : catching_fields(grid.positions, 11)) {
+        SCOPED_TRACE(samples.name);
+        ForestField<dim> field(grid, [](const Point&) { return 0.0; });
+        field.values = samples.values;
+        const auto violation = check_grid(grid, field, CheckOptions{.hanging_values = false});
+        ASSERT_FALSE(violation) << violation->sentence;
+        const HierarchicalIndicator indicator(grid, field);
+        for (const double threshold : six_thresholds) {
+            SCOPED_TRACE(threshold);
+            const IsosurfaceOptions options{.threshold = threshold, .verify = true};
+            const auto surface = isosurface(grid, field, 0.0, indicator, options).surface;
+            grid.draws_all = true;
+            const auto all = isosurface(grid, field, 0.0, indicator, options).surface;
+            grid.draws_all = false;
+            std::vector<Point> corners;
+            for (const auto& s : surface.simplices) {
+                for (const auto v : s) corners.push_back(surface.vertices[v]);
+            }
+            ASSERT_EQ(shown(grid, surface), corners);  // nothing else is drawn
+            ASSERT_EQ(shown(grid, all), corners);
+            simplices += surface.simplices.size();
+            hidden += all.simplices.size() - surface.simplices.size();
+
+            const auto erased = isosurface(AnyGrid<dim>(grid), AnyField<double>(grid, field), 0.0,
+                                           indicator, options)
+                                    .surface;
+            EXPECT_EQ(erased.simplices, surface.simplices);
+            EXPECT_EQ(erased.vertices, surface.vertices);
+            const auto in_threads =
+                isosurface(grid, field, 0.0, indicator, options, ThreadExecutor(3)).surface;
+            EXPECT_EQ(in_threads.simplices, surface.simplices);
+            EXPECT_EQ(in_threads.vertices, surface.vertices);
+        }
+    }
+    EXPECT_GT(simplices, 1000U);
+    EXPECT_GT(hidden, 100U);
+}
+
+TEST(Hidden, ElementsDoNotChangeWhatIsDrawnBesideThem) {
+    std::mt19937 random(3);
+    expect_the_rest_unchanged(boxes<3>(random, 2), 60);
+    expect_the_rest_unchanged(kuhn<3>(3), 1500);
+    expect_the_rest_unchanged(kuhn<3>(0), 150);
+    expect_the_rest_unchanged(boxes<2>(random, 3), 200);
+    expect_the_rest_unchanged(kuhn<2>(2), 500);
+}
+
+/// Not even through the projection, and not where a hidden leaf is coarser.
+TEST(Hidden, LeavesConstrainNoNode) {
+    Forest<2> forest;
+    for (const Point& x : {Point{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}) {
+        forest.add_node(x);
+    }
+    forest.add_coarse(Shape::quadrilateral, {0, 1, 3, 4}, 1);
+    forest.add_coarse(Shape::quadrilateral, {1, 2, 4, 5}, 1);
+    forest.refine(0, dyadic_rule(Shape::quadrilateral));
+    EXPECT_EQ(derive_hanging_nodes(forest).size(), 1U);
+    bool found = false;
+    for (unsigned seed = 0; seed < 100 && !found; ++seed) {  // until leaf 1 alone is hidden
+        std::mt19937 random(seed);
+        const HidingForest<2> grid(forest, random);
+        if (grid.hidden(0) != Hidden::not_at_all || grid.hidden(1) != Hidden::wholly) continue;
+        found = true;
+        EXPECT_EQ(derive_hanging_nodes(grid).size(), 0U);
+        const ForestField<2> field(grid, [](const Point& x) { return x[0]; });
+        const Traversal<HidingForest<2>, ForestField<2>, Needs{.keys = true}> walk(grid, field);
+        std::size_t leaves = 0;
+        project(walk, Exact{}, [&](const auto&) { ++leaves; });
+        EXPECT_EQ(leaves, 4U);
+    }
+    EXPECT_TRUE(found);
+}
+
+}  // namespace
