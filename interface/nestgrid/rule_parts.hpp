@@ -163,6 +163,12 @@ inline void place_in_parts(Rule& rule) {
             }
         }
     }
+    NodeMask around = 0;
+    for (const RuleEdge& edge : rule.edges) around |= edge.inner;
+    for (const RuleFace& face : rule.faces) around |= face.inner;
+    if ((rule.all() & ~around) != 0) {
+        rule.inside = static_cast<std::uint8_t>(std::countr_zero(rule.all() & ~around));
+    }
     for (RuleFace& face : rule.faces) {
         if (face.divided && face.inner == 0) rule.divides_bare_faces = true;
         if (face.first == 0) face.first = face.inner;

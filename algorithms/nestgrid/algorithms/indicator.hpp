@@ -13,7 +13,8 @@
 //   - stop(corner) >= stop(new node) for every split element;
 //   - bound(corner) >= |U_delta(corner)| + bound(new node), for every split element, corners that
 //     are themselves new nodes of something;
-//   - both also for a parent of a new node that is a new node of the same split.
+//   - both also for a parent of a new node that is a new node of the same split;
+//   - bound(new node inside the element) >= bound(all its new nodes), so that one look tells.
 // A solver's own error indicator, one number per leaf, may take the place of the offsets in `stop`:
 // that of a node is then the largest of the leaves around it, saturated likewise. Bounds always
 // come from the data. Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is
@@ -63,6 +64,11 @@ public:
         std::uint16_t largest = 0;
         for (const NodeKey node : nodes) largest = std::max(largest, entry(node).bound);
         return bfloat16_value(largest);
+    }
+
+    /// The same for the new nodes of one split.
+    NESTGRID_INLINE float bound(const Rule& rule, std::span<const NodeKey> nodes) const {
+        return rule.inside == no_node ? bound(nodes) : bound(nodes[rule.inside]);
     }
 
     /// Whether elements that stop conform on a grid without hanging nodes, because each split makes
@@ -297,6 +303,10 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
                         }
                     }
                 }
+                if (const std::uint8_t inside = split.rule->inside; inside != no_node) {
+                    std::uint16_t& within = nodes[slot(split.keys[inside])].entry.bound;
+                    within = std::max(within, bfloat16_above(bound));
+                }
                 sweep.keys(s, corner_keys);
                 for (std::size_t i = 0; i < corners; ++i) raise(corner_keys[i], stop, bound);
             });
@@ -305,7 +315,8 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     }
 
     for (Node& node : nodes) {
-        node.entry.bound = bfloat16_above(sum_above(node.offset, node.finer));
+        node.entry.bound =
+            std::max(node.entry.bound, bfloat16_above(sum_above(node.offset, node.finer)));
     }
     node_count_ = nodes.size();
     if (dense) {

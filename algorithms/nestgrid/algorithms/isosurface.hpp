@@ -228,7 +228,13 @@ private:
     bool limited() const { return limit_ != std::numeric_limits<std::uint64_t>::max(); }
     unsigned pattern(const Real* value, std::size_t corners, const Layer& layer) const;
     bool of_interest(Real lo, Real hi, Real bound, bool also_below) const;
+    template <class Number>
+    static Real as_real(Number bound) {
+        if constexpr (sizeof(Number) <= sizeof(Real)) return bound;
+        return float_above(bound);
+    }
     Real bound_of(std::span<const NodeKey> nodes) const;
+    Real bound_of(const Split& split) const;
     bool joined(const State& s, const FaceTopology& face) const;
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s);

@@ -165,7 +165,7 @@ NESTGRID_VISITOR::look(const State& s, const Split& split) -> Decision {
         lo = std::min(lo, v);
         hi = std::max(hi, v);
     }
-    element_bound_ = split.rule == nullptr ? Real(0) : bound_of(split.keys);
+    element_bound_ = split.rule == nullptr ? Real(0) : bound_of(split);
     const bool capped = options_->cap && walk_->boundary(s) != 0;
     if (!of_interest(lo, hi, element_bound_, capped)) return {Visit::skip, 0};
     if (split.rule == nullptr) return {Visit::stop, 0};
@@ -178,11 +178,13 @@ NESTGRID_VISITOR::look(const State& s, const Split& split) -> Decision {
 template <class Grid, class Field, class S, class Indicator, class Sink>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::bound_of(
     std::span<const NodeKey> nodes) const -> Real {
-    const auto bound = indicator_->bound(nodes);
-    if constexpr (sizeof(bound) <= sizeof(Real)) {
-        return bound;
+    return as_real(indicator_->bound(nodes));
+}
+NESTGRID_VISITOR::bound_of(const Split& split) const -> Real {
+    if constexpr (requires { indicator_->bound(*split.rule, split.keys); }) {
+        return as_real(indicator_->bound(*split.rule, split.keys));
     } else {
-        return float_above(bound);
+        return bound_of(split.keys);
     }
 }
 
