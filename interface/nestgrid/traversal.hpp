@@ -89,6 +89,11 @@ bool sees_hidden(const Visitor& visitor) {
     if constexpr (requires { visitor.sees_hidden(); }) return visitor.sees_hidden();
     return false;
 }
+template <class Visitor, class State>
+NodeMask children_to_enter(const Visitor& visitor, const State& s) {
+    if constexpr (requires { visitor.children_to_enter(s); }) return visitor.children_to_enter(s);
+    return ~NodeMask{0};
+}
 }  // namespace detail
 
 /// An element on the way down.
@@ -136,6 +141,7 @@ struct ElementState {
 ///     void extract(const State&);              called for elements where it said stop, and leaves
 ///     bool passes_over_leaves() const;         optional: whether leaves around which nothing is
 ///                                              closed may be left out, unless coarse
+///     NodeMask children_to_enter(const State&) optional: one bit each, where it said descend
 ///     bool sees_hidden() const;                optional: whether it looks at hidden elements
 ///     void walk_bisections(const State&)       optional: takes the element and all below it in a
 ///                                              walk of its own (known_bisection.hpp), where

@@ -205,7 +205,9 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
     if constexpr (requires { visitor.passes_over_leaves(); }) {
         passes_over_leaves = parts == nullptr && visitor.passes_over_leaves();
     }
+    const NodeMask wanted = detail::children_to_enter(visitor, s);
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
+        if ((wanted >> c & 1U) == 0) continue;
         const Child& child = rule.children[c];
         if (passes_over_leaves && detail::call_split(*grid_, *s.context, elements[c]) == nullptr) {
             continue;

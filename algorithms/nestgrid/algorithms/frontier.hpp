@@ -90,6 +90,10 @@ private:
 
         bool sees_hidden() const { return detail::sees_hidden(*visitor); }
         template <class State>
+        NodeMask children_to_enter(const State& s) const {
+            return detail::children_to_enter(*visitor, s);
+        }
+        template <class State>
         Decision inspect(const State& s, const Split& split) {
             auto& items = frontier->items_;
             if (items.size() == std::numeric_limits<std::uint32_t>::max() ||
@@ -124,6 +128,10 @@ private:
         std::size_t item;  ///< the next one to be met
 
         bool sees_hidden() const { return detail::sees_hidden(*visitor); }
+        template <class State>
+        NodeMask children_to_enter(const State& s) const {
+            return detail::children_to_enter(*visitor, s);
+        }
         template <class State>
         Decision inspect(const State& s, const Split& split) {
             const auto& items = frontier->items_;

@@ -68,12 +68,16 @@ public:
 
     /// The same for the new nodes of one split.
     NESTGRID_INLINE float bound(const Rule& rule, std::span<const NodeKey> nodes) const {
-        return rule.inside == no_node ? bound(nodes) : bound(nodes[rule.inside]);
+        return rule.inside == no_new_node ? bound(nodes) : bound(nodes[rule.inside]);
     }
 
     /// Whether elements that stop conform on a grid without hanging nodes, because each split makes
     /// one new node at most (bisection): a saturated S stops all elements at it, or none.
     bool stops_conform() const { return largest_split_ <= 1; }
+
+    /// The deepest level, where every split divides all edges and faces of its element, so that what
+    /// lies on that level has no finer neighbour; else -1.
+    int finest_level() const { return finest_level_; }
 
     /// Nodes that hang, where the grid did not say so itself: hand them to every Traversal.
     const HangingNodes* hanging() const { return hanging_.size() > 0 ? &hanging_ : nullptr; }
@@ -138,6 +142,7 @@ private:
     std::size_t node_count_ = 0;
     std::uint64_t epoch_ = 0;
     std::size_t largest_split_ = 0;  // number of new nodes
+    int finest_level_ = -1;
     double hanging_violation_ = 0;
     bool own_errors_ = false;  // of leaves, instead of offsets
 };
@@ -188,6 +193,8 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     std::vector<Node> nodes(dense_key_count(grid));
     std::vector<std::uint8_t> made_on(nodes.size(), 0);  // 1 + level, modulo 255; 0: not known yet
     bool one_sweep = true;
+    bool all_divided = true;
+    finest_level_ = 0;
     KeyTable<NodeKey, std::size_t> slots;
     const bool dense = !nodes.empty();
     const auto slot = [&](NodeKey key) {
@@ -230,6 +237,8 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
         const Rule& rule = *split.rule;
         largest_split_ = std::max(largest_split_, rule.new_nodes.size());
         one_sweep = one_sweep && rule.steps == 1;
+        all_divided = all_divided && rule.divides_all;
+        finest_level_ = std::max(finest_level_, s.level + 1);
         std::array<Real, max_corners + max_new_nodes> value;
         std::array<Real, max_new_nodes * stride> given;
         for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];
@@ -272,6 +281,8 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
         }
     });
 
+    if (!all_divided) finest_level_ = -1;
+
     // Saturation and bounds: fine to coarse until nothing changes, since a node may be created on
     // different levels of the tree. Where none is, one sweep does it.
     const ZeroField<Grid> zero;
@@ -303,7 +314,7 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
                         }
                     }
                 }
-                if (const std::uint8_t inside = split.rule->inside; inside != no_node) {
+                if (const std::uint8_t inside = split.rule->inside; inside != no_new_node) {
                     std::uint16_t& within = nodes[slot(split.keys[inside])].entry.bound;
                     within = std::max(within, bfloat16_above(bound));
                 }

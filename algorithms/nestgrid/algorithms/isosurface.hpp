@@ -14,7 +14,9 @@
 // docs/closed_surfaces.md.
 //
 // Grids whose elements stop without conforming are walked twice: first what the finer sides draw on
-// closed faces is recorded (transition_contours.hpp), then everything is drawn.
+// closed faces is recorded (transition_contours.hpp), then everything is drawn. Where it is known
+// that nothing is finer than an element, it is drawn in the first walk, and the second one enters
+// only what leads to the others.
 #pragma once
 
 #include <functional>
@@ -154,7 +156,13 @@ public:
     Decision inspect(const State& s, const Split& split);
     void extract(const State& s);
     /// Where nothing is closed around a leaf it records nothing, and is only counted for a limit.
-    bool passes_over_leaves() const { return recording_ && !limited(); }
+    bool passes_over_leaves() const { return recording_ && !limited() && finest_ < 0; }
+    /// The second time, those that lead to what is not drawn yet.
+    NodeMask children_to_enter(const State& s) const {
+        if (recording_ || finest_ < 0) return ~NodeMask{0};
+        const NodeMask* children = enter_->find(path(s));
+        return children == nullptr ? 0 : *children;
+    }
     /// What hidden elements would draw on faces around them is recorded all the same.
     bool sees_hidden() const { return recording_; }
 
@@ -208,6 +216,7 @@ private:
         double fraction;
         Point around{0, 0, 0};  // area vectors of the triangles at it
     };
+    using Paths = KeyTable<NodeKey, NodeMask>;  // and children to enter below them
     struct Layer : Level {
         Real least_inside = 0;  // of the numbers that values can be
         Real greatest_outside = 0;
@@ -237,7 +246,10 @@ private:
     Real bound_of(const Split& split) const;
     bool joined(const State& s, const FaceTopology& face) const;
     static FaceTopology loop_of(const State& s, std::size_t face);
-    void load(const State& s);
+    void load(const State& s, bool draws);
+    bool counting() const { return recording_ == (finest_ >= 0); }
+    static NodeKey path(const State& s);
+    void leave_for_later(const State& s);
     void add_error(const State& s, Layer& layer) const;
     void load_gradients(const State& s);
     void record(const State& s, Layer& layer, unsigned pattern);
@@ -338,7 +350,12 @@ private:
     TraversalCounts counts_;
     bool recording_ = false;
     std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
-    std::uint64_t drawn_ = 0;   // simplices; elements while recording, which draw one at least
+    std::uint64_t drawn_ = 0;   // simplices
+    std::uint64_t later_ = 0;   // elements that are recorded and drawn later, one simplex at least
+    std::uint64_t looks_ = 0;   // calls of inspect()
+    int finest_ = -1;           // level on which no element has a finer neighbour; -1: not known
+    Paths later_below_;         // paths of what lies above those elements, or is a coarse one itself
+    const Paths* enter_ = nullptr;  // those of all tasks
     Real element_bound_ = 0;    // of the element inspected last
     int deepest_ = 0;
     NodeGradients gradients_;

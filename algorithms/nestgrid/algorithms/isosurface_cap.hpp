@@ -110,7 +110,7 @@ NESTGRID_VISITOR::cap_chain(const State& s, Layer& layer, const FaceTopology& fa
                             const CapPolygon& polygon, std::size_t side) -> std::vector<Number> {
     std::vector<Number> between;
     const std::uint8_t edge = polygon.edge[side];
-    if (edge == no_edge || layer.drawn_below->empty()) return between;
+    if (edge == no_edge || recording_ || layer.drawn_below->empty()) return between;
     const auto end = [&](const CapPoint& p) {
         const NodeKey key = key_[face.corner[p.from]];
         return layer.drawn_below->find(p.cut ? name(s, edge) : KeyPair(key, key));

@@ -40,13 +40,20 @@ NESTGRID_VISITOR::set_isovalues() -> void {
             std::nextafter(least_inside, -std::numeric_limits<Real>::infinity());
         layer.drawn_below = &layer.transitions;
     }
+    if constexpr (requires { indicator_->finest_level(); }) {
+        if (must_record()) finest_ = indicator_->finest_level();
+    }
+    enter_ = &later_below_;
     plainly_ = attribute_count == 0 && !options_->cap && !options_->normals && !options_->reference;
     bisects_ = plainly_ && knows_bisections_of_grid() && !must_record();
 }
 
 NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sink>& sinks) -> void {
-    restart();
     recording_ = false;  // where the last one was cancelled
+    counts_ = {};
+    drawn_ = 0;
+    later_ = 0;
+    later_below_.clear();
     deepest_ = 0;
     gradients_.clear();
     gradient_log_.clear();
@@ -89,7 +96,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& exe
         recording_ = true;
         walk(executor);
         recording_ = false;
-        restart();
+        later_ = 0;
         for (Layer& layer : layers_) layer.transitions.finish();
     }
     walk(executor);
@@ -102,7 +109,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& exe
 }
 
 NESTGRID_VISITOR::table_bytes() const -> std::size_t {
-    std::size_t bytes = gradients_.memory_bytes();
+    std::size_t bytes = gradients_.memory_bytes() + later_below_.memory_bytes();
     for (const Layer& layer : layers_) {
         bytes += layer.number_of.memory_bytes() + layer.number_within.memory_bytes() +
                  layer.transitions.memory_bytes() + layer.where.capacity() * sizeof(Where);
@@ -135,11 +142,30 @@ NESTGRID_INLINE bool IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::of_inte
 }
 
 NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
+    if ((++looks_ & 0xFFFFU) == 0) tick(0, 0);
+    if (!counting()) {
+        const bool coarse = s.father == nullptr;
+        if (finest_ >= 0 && coarse && enter_->find(path(s)) == nullptr) return {Visit::skip, 0};
+        return look(s, split);
+    }
     ++counts_.calls;
-    if ((counts_.calls & 0xFFFFU) == 0) tick(0, 0);
     const Decision decision = look(s, split);
     counts_.visited += decision.visit != Visit::skip;
     return decision;
+}
+
+/// A name for the way down to an element. Where two ways have the same, more is entered.
+NESTGRID_VISITOR::path(const State& s) -> NodeKey {
+    if (s.father == nullptr) return mix(static_cast<NodeKey>(s.coarse));
+    return mix(path(*s.father) + s.child + 1U);
+}
+
+NESTGRID_VISITOR::leave_for_later(const State& s) -> void {
+    if (s.father == nullptr) later_below_.insert(path(s), 0);
+    for (const State* at = &s; at->father != nullptr; at = at->father) {
+        NodeMask& children = *later_below_.insert(path(*at->father), 0).first;
+        if (std::exchange(children, children | NodeMask{1} << at->child) != 0) break;
+    }
 }
 
 NESTGRID_VISITOR::count(std::uint64_t calls, std::uint64_t visited) -> void {
@@ -189,7 +215,10 @@ NESTGRID_VISITOR::bound_of(const Split& split) const -> Real {
 }
 
 NESTGRID_VISITOR::extract(const State& s) -> void {
-    if (recording_ && !s.closed.any && !limited()) return;
+    if (recording_ && finest_ < 0 && !s.closed.any && !limited()) return;
+    if (!recording_ && s.level == finest_) return;
+    const bool shown = !recording_ || !is_hidden(walk_->grid(), *s.context, s.element);
+    const bool draws = !recording_ || (shown && s.level == finest_);
     const auto corners = static_cast<std::size_t>(s.corner_count());
     const unsigned all = (1U << corners) - 1;
     const unsigned boundary = options_->cap ? walk_->boundary(s) : 0U;
@@ -197,23 +226,23 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
     for (Layer& layer : layers_) {
         const unsigned bits = pattern(s.value.data(), corners, layer);
         if (bits == 0 || (bits == all && boundary == 0)) continue;
-        load(s);
+        if (shown && !draws) {
+            if (bits != all && drawn_ + ++later_ > limit_) throw OverLimit{};
+            if (finest_ >= 0) leave_for_later(s);
+        }
+        if (!draws && !s.closed.any) continue;
+        load(s, draws);
         for (std::size_t i = 0; i < corners; ++i) {
             u_[i] = static_cast<double>(s.value[i * State::components]) - layer.isovalue;
         }
         state_ = &s;
         layer_ = &layer;
-        if (recording_) {
-            if (bits != all && !is_hidden(walk_->grid(), *s.context, s.element) &&
-                ++drawn_ > limit_) {
-                throw OverLimit{};
-            }
-            if (!s.closed.any) continue;
+        if (recording_ && s.closed.any) {
             if (bits != all) record(s, layer, bits);
             if (boundary != 0) record_cap(s, layer, bits);
-            continue;
         }
-        recorded_ = recorded_edges(s, layer, bits);
+        if (!draws) continue;
+        recorded_ = recording_ ? 0 : recorded_edges(s, layer, bits);
         if (plainly_ && !s.closed.any && recorded_ == 0) {
             if (const Contour* contour = plain_contour(s.shape, bits)) {
                 draw_plainly(s, layer, contour, bits);
@@ -233,13 +262,14 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
     }
 }
 
-NESTGRID_VISITOR::load(const State& s) -> void {
+/// Keys and positions of the corners, and their gradients where the element is drawn.
+NESTGRID_VISITOR::load(const State& s, bool draws) -> void {
     if (loaded_) return;
     loaded_ = true;
     walk_->keys(s, key_);
     walk_->positions(s, x_);
     deepest_ = std::max(deepest_, s.level);
-    if (options_->normals && !recording_) load_gradients(s);
+    if (options_->normals && draws) load_gradients(s);
 }
 
 NESTGRID_VISITOR::add_error(const State& s, Layer& layer) const -> void {

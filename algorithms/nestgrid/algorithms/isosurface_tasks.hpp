@@ -48,11 +48,14 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk(const Executor& ex
 }
 
 NESTGRID_VISITOR::restart() -> void {
-    counts_ = {};
-    drawn_ = 0;
+    if (counting()) counts_ = {};
 }
 
-NESTGRID_VISITOR::undo() -> void { --counts_.calls; --counts_.visited; }
+NESTGRID_VISITOR::undo() -> void {
+    if (!counting()) return;
+    --counts_.calls;
+    --counts_.visited;
+}
 
 /// A visitor for a task, with the memory of an earlier one where there is one.
 NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
@@ -78,6 +81,7 @@ NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
     }
     task->recording_ = recording_;
     task->limit_ = limit_;
+    task->enter_ = enter_;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         task->layers_[i].drawn_below = layers_[i].drawn_below;
     }
@@ -88,7 +92,10 @@ NESTGRID_VISITOR::add_task(const Task& task) -> void {
     counts_.calls += task.counts_.calls;
     counts_.visited += task.counts_.visited;
     deepest_ = std::max(deepest_, task.deepest_);
-    if (recording_ && (drawn_ += task.drawn_) > limit_) throw OverLimit{};
+    if (drawn_ + (later_ += task.later_) > limit_) throw OverLimit{};
+    task.later_below_.for_each([&](NodeKey path, NodeMask children) {
+        *later_below_.insert(path, 0).first |= children;
+    });
     std::vector<Number> slot;
     for (const NodeKey node : task.gradients_.nodes()) slot.push_back(gradients_.slot(node));
     for (const auto& [at, g] : task.gradient_log_) add_gradient(slot[at], g);
@@ -97,11 +104,8 @@ NESTGRID_VISITOR::add_task(const Task& task) -> void {
         const auto& part = task.layers_[i];
         layer.extracted += part.extracted;
         layer.error_bound = std::max(layer.error_bound, part.error_bound);
-        if (recording_) {
-            layer.transitions.append(part.transitions);
-        } else {
-            repeat(layer, part.sink);
-        }
+        if (recording_) layer.transitions.append(part.transitions);
+        repeat(layer, part.sink);
     }
     if (options_->progress && !options_->progress(counts_)) throw Cancelled{};
 }
