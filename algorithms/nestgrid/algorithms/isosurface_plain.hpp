@@ -3,7 +3,7 @@
 //
 // Drawing elements of which nothing is special; included by isosurface_steps.hpp.
 //
-// That is: no edge or face around them is closed, no signs on a face alternate, no loop is filled
+// That is: no finer side drew on a face of theirs, no signs on a face alternate, no loop is filled
 // around its middle, and nothing but vertices and triangles is asked for. Most elements are like
 // that, and what is drawn of them, and in which order, is what draw() draws, to the last bit.
 #pragma once
@@ -39,7 +39,12 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
         const std::size_t n = loop.count;
         std::array<Vertex, simplices ? 4 : max_edges> v;
         for (std::size_t i = 0; i < n; ++i) {
-            const auto& [a, b] = t.edge[loop.edge[i]];
+            const std::uint8_t edge = loop.edge[i];
+            if (s.closed.any && s.closed.edge[edge] != nullptr) {
+                v[i] = add(name(s, edge), [&] { return make_cut(s, layer, edge); });
+                continue;
+            }
+            const auto& [a, b] = t.edge[edge];
             const bool falls = (bits >> a & 1U) != 0;
             const std::size_t low = falls ? b : a;
             const std::size_t high = falls ? a : b;

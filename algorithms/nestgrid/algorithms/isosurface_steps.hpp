@@ -243,7 +243,7 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
         }
         if (!draws) continue;
         recorded_ = recording_ ? 0 : recorded_edges(s, layer, bits);
-        if (plainly_ && !s.closed.any && recorded_ == 0) {
+        if (plainly_ && recorded_ == 0) {
             if (const Contour* contour = plain_contour(s.shape, bits)) {
                 draw_plainly(s, layer, contour, bits);
                 add_error(s, layer);
