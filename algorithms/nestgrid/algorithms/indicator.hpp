@@ -19,7 +19,8 @@
 // that of a node is then the largest of the leaves around it, saturated likewise. Bounds always
 // come from the data. Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is
 // monotone, so the first invariant survives it exactly, and the second stays on the safe side.
-// Memory: O(nodes), 4 bytes (plus 16 to 48 for a hash table where node keys are not dense).
+// Memory: O(nodes), 4 bytes (plus 16 to 48 for a hash table where node keys are not dense); while
+// it is built 13 bytes more, and 4 for each node of each split.
 #pragma once
 
 #include <bit>
@@ -75,8 +76,8 @@ public:
     /// one new node at most (bisection): a saturated S stops all elements at it, or none.
     bool stops_conform() const { return largest_split_ <= 1; }
 
-    /// The deepest level, where every split divides all edges and faces of its element, so that what
-    /// lies on that level has no finer neighbour; else -1.
+    /// The deepest level, where every split divides all edges and faces of its element, so that
+    /// what lies on that level has no finer neighbour; else -1.
     int finest_level() const { return finest_level_; }
 
     /// Nodes that hang, where the grid did not say so itself: hand them to every Traversal.
@@ -131,6 +132,7 @@ private:
     void add_values(const Field& field);
     template <class Grid, class Field>
     void sweep_stars(const Grid& grid, const Field& field);
+    // indicator_levels.hpp
     template <class Grid, class Field, class LeafError>
     void sweep_levels(const Grid& grid, const Field& field, const LeafError& leaf_error);
 
@@ -181,164 +183,7 @@ HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& fiel
     sweep_levels(grid, field, leaf_error);
 }
 
-template <class Grid, class Field, class LeafError>
-void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
-                                         [[maybe_unused]] const LeafError& leaf_error) {
-    constexpr bool of_leaves = !std::is_same_v<LeafError, detail::Nothing>;
-    using Real = typename Field::value_type;
-    constexpr double limit = std::numeric_limits<Real>::max() / 8;
-    constexpr auto stride = static_cast<std::size_t>(detail::components_of<Field>());
-    const Traversal<Grid, Field, Needs{.keys = true}> walk(grid, field, hanging());
-    int levels = 1;
-    std::vector<Node> nodes(dense_key_count(grid));
-    std::vector<std::uint8_t> made_on(nodes.size(), 0);  // 1 + level, modulo 255; 0: not known yet
-    bool one_sweep = true;
-    bool all_divided = true;
-    finest_level_ = 0;
-    KeyTable<NodeKey, std::size_t> slots;
-    const bool dense = !nodes.empty();
-    const auto slot = [&](NodeKey key) {
-        if (dense) return static_cast<std::size_t>(key);
-        const auto [at, is_new] = slots.insert(key, nodes.size());
-        if (is_new) {
-            nodes.emplace_back();
-            made_on.push_back(0);
-        }
-        return *at;
-    };
-    std::array<NodeKey, max_corners> corner_keys;
-
-    // Offsets, from the true values.
-    for_each_element<!of_leaves>(walk, [&](const auto& s, const Split& split) {
-        const auto corners = static_cast<std::size_t>(s.corner_count());
-        levels = std::max(levels, s.level + 1);
-        if (s.level == 0) {
-            walk.keys(s, corner_keys);
-            for (std::size_t i = 0; i < corners; ++i) {
-                add_value(s.value[i * stride], limit);
-                slot(corner_keys[i]);
-            }
-        }
-        if (split.rule == nullptr) {
-            if constexpr (of_leaves) {
-                const double error = leaf_error(s.element);
-                if (!(error >= 0)) {
-                    throw InvalidInput("the error of a leaf is not a usable number: " +
-                                       std::to_string(error));
-                }
-                walk.keys(s, corner_keys);
-                for (std::size_t i = 0; i < corners; ++i) {
-                    std::uint16_t& stop = nodes[slot(corner_keys[i])].entry.stop;
-                    stop = std::max(stop, bfloat16_above(float_above(error)));
-                }
-            }
-            return;
-        }
-        const Rule& rule = *split.rule;
-        largest_split_ = std::max(largest_split_, rule.new_nodes.size());
-        one_sweep = one_sweep && rule.steps == 1;
-        all_divided = all_divided && rule.divides_all;
-        finest_level_ = std::max(finest_level_, s.level + 1);
-        std::array<Real, max_corners + max_new_nodes> value;
-        std::array<Real, max_new_nodes * stride> given;
-        for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];
-        const NodeMask which = rule.all() & ~split.constrained;
-        const NodeMask missing =
-            detail::call_new_values(field, *s.context, s.element, rule.all(),
-                                    std::span<Real>(given.data(), rule.new_nodes.size() * stride));
-        if ((missing & which) != 0) {
-            throw GridError("the field has no value at new node " +
-                            std::to_string(std::countr_zero(missing & which)) +
-                            " of an element on level " + std::to_string(s.level) +
-                            " below coarse element " + std::to_string(s.coarse));
-        }
-        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-            const Stencil& stencil = rule.new_nodes[n];
-            const std::size_t at = slot(split.keys[n]);
-            Node& node = nodes[at];
-            const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
-            one_sweep = one_sweep && (made_on[at] == 0 || made_on[at] == level);
-            made_on[at] = level;
-            if ((which >> n & 1U) == 0) {
-                value[corners + n] = detail::interpolate(stencil, value.data(), 1);
-                if ((missing >> n & 1U) == 0) {
-                    const double off = std::abs(static_cast<double>(given[n * stride]) -
-                                                static_cast<double>(value[corners + n]));
-                    if (!(off <= hanging_violation_)) hanging_violation_ = off;
-                }
-            } else {
-                value[corners + n] = given[n * stride];
-                add_value(given[n * stride], limit);
-                node.offset =
-                    std::max(node.offset,
-                             detail::offset_above(value[corners + n],
-                                                  detail::interpolate(stencil, value.data(), 1)));
-            }
-            const std::uint16_t own = (split.outside >> n & 1U) != 0 ? bfloat16_infinity
-                                      : of_leaves                    ? std::uint16_t{0}
-                                                                     : bfloat16_above(node.offset);
-            node.entry.stop = std::max(node.entry.stop, own);
-        }
-    });
-
-    if (!all_divided) finest_level_ = -1;
-
-    // Saturation and bounds: fine to coarse until nothing changes, since a node may be created on
-    // different levels of the tree. Where none is, one sweep does it.
-    const ZeroField<Grid> zero;
-    const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> sweep(grid, zero);
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (int level = levels - 1; level >= 0; --level) {
-            for_each_on_level<true>(sweep, level, [&](const auto& s, const Split& split) {
-                if (split.rule == nullptr) return;
-                const auto raise = [&](NodeKey key, std::uint16_t stop, float bound) {
-                    Node& node = nodes[slot(key)];
-                    if (node.entry.stop < stop || node.finer < bound) changed = true;
-                    node.entry.stop = std::max(node.entry.stop, stop);
-                    node.finer = std::max(node.finer, bound);
-                };
-                const auto corners = static_cast<std::size_t>(s.corner_count());
-                std::uint16_t stop = 0;
-                float bound = 0;
-                for (std::size_t n = split.keys.size(); n-- > 0;) {
-                    const Node node = nodes[slot(split.keys[n])];
-                    const float below = sum_above(node.offset, node.finer);
-                    stop = std::max(stop, node.entry.stop);
-                    bound = std::max(bound, below);
-                    // A parent that is a new node itself is to this one as a corner is.
-                    const Stencil& stencil = split.rule->new_nodes[n];
-                    for (std::size_t i = 0; i < stencil.count; ++i) {
-                        if (stencil.parent[i] >= corners) {
-                            raise(split.keys[stencil.parent[i] - corners], node.entry.stop, below);
-                        }
-                    }
-                }
-                if (const std::uint8_t inside = split.rule->inside; inside != no_new_node) {
-                    std::uint16_t& within = nodes[slot(split.keys[inside])].entry.bound;
-                    within = std::max(within, bfloat16_above(bound));
-                }
-                sweep.keys(s, corner_keys);
-                for (std::size_t i = 0; i < corners; ++i) raise(corner_keys[i], stop, bound);
-            });
-        }
-        changed = changed && !one_sweep;
-    }
-
-    for (Node& node : nodes) {
-        node.entry.bound =
-            std::max(node.entry.bound, bfloat16_above(sum_above(node.offset, node.finer)));
-    }
-    node_count_ = nodes.size();
-    if (dense) {
-        dense_ = std::make_unique<Entry[]>(nodes.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i) dense_[i] = nodes[i].entry;
-    } else {
-        sparse_.reserve(slots.size());
-        slots.for_each([&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });
-    }
-}
-
 }  // namespace nestgrid
 
+#include <nestgrid/algorithms/indicator_levels.hpp>
 #include <nestgrid/algorithms/indicator_stars.hpp>
