@@ -285,6 +285,7 @@ void GridChecker<Grid, Field>::walk(const State& s) {
 
 template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_hanging() {
+    probe_.finish();
     for (const Leaf& leaf : leaves_) probe_.probe_leaf(leaf.shape, leaf.keys);
     const HangingNodes hanging = probe_.take();
     place_of_derived_.for_each([&](NodeKey derived, NodeKey place) {

@@ -11,6 +11,7 @@
 // Costs O(nodes) memory while it runs, and keeps the keys of hanging nodes.
 #pragma once
 
+#include <nestgrid/key_filter.hpp>
 #include <nestgrid/levels.hpp>
 
 namespace nestgrid {
@@ -45,6 +46,12 @@ public:
         }
     }
 
+    /// Between the last add_nodes() and the first probe_leaf().
+    void finish() {
+        parents_.reset(nodes_.size());
+        nodes_.for_each([&](NodeKey parents, NodeKey) { parents_.add(hash(parents)); });
+    }
+
     void probe_leaf(Shape shape, std::span<const NodeKey> k) {
         const Topology& t = topology(shape);
         for (std::size_t e = 0; e < t.edges; ++e) probe_edge(k[t.edge[e][0]], k[t.edge[e][1]]);
@@ -67,7 +74,8 @@ private:
     /// each is mixed first.
     template <class... Keys>
     Found middle(Keys... of) const {
-        return nodes_.find(mean_key((mix(of) + ...), sizeof...(of)));
+        const NodeKey parents = mean_key((mix(of) + ...), sizeof...(of));
+        return parents_.perhaps(hash(parents)) ? nodes_.find(parents) : nullptr;
     }
 
     void probe_edge(NodeKey a, NodeKey b) {
@@ -80,18 +88,20 @@ private:
 
     /// Bisected or refined into four, along any of its edges.
     void probe_triangle(NodeKey a, NodeKey b, NodeKey c) {
-        if (!triangles_.insert(mean_key(mix(a) + mix(b) + mix(c), 3), {}).second) return;
-        const std::array<std::array<NodeKey, 3>, 3> turns{{{a, b, c}, {b, c, a}, {c, a, b}}};
-        for (const auto& [p, q, r] : turns) {
-            const Found m = middle(p, q);
-            if (m == nullptr) continue;
-            probe_edge(*m, r);
-            probe_triangle(p, *m, r);
-            probe_triangle(*m, q, r);
-        }
         const Found ab = middle(a, b);
         const Found bc = middle(b, c);
         const Found ca = middle(c, a);
+        if (ab == nullptr && bc == nullptr && ca == nullptr) return;
+        if (!triangles_.insert(mean_key(mix(a) + mix(b) + mix(c), 3), {}).second) return;
+        const auto bisected = [&](Found m, NodeKey p, NodeKey q, NodeKey r) {
+            if (m == nullptr) return;
+            probe_edge(*m, r);
+            probe_triangle(p, *m, r);
+            probe_triangle(*m, q, r);
+        };
+        bisected(ab, a, b, c);
+        bisected(bc, b, c, a);
+        bisected(ca, c, a, b);
         if (ab == nullptr || bc == nullptr || ca == nullptr) return;
         probe_edge(*ab, *bc);
         probe_edge(*bc, *ca);
@@ -133,6 +143,7 @@ private:
     }
 
     KeyTable<NodeKey, NodeKey> nodes_;  // by their parents
+    KeyFilter parents_;
     KeyTable<NodeKey, Present> triangles_;
     HangingNodes hanging_;
 };
@@ -151,6 +162,7 @@ HangingNodes derive_hanging_nodes(const Grid& grid) {
         walk.keys(s, keys);
         probe.add_nodes(*split.rule, keys, split.keys);
     });
+    probe.finish();
     for_each_element(walk, [&](const auto& s, const Split& split) {
         if (split.rule != nullptr || is_hidden(grid, *s.context, s.element)) return;
         walk.keys(s, keys);

@@ -10,11 +10,11 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
 #include <nestgrid/closed.hpp>
+#include <nestgrid/key_filter.hpp>
 #include <nestgrid/key_table.hpp>
 
 namespace nestgrid {
@@ -82,12 +82,8 @@ public:
             const auto here = static_cast<Index>(i);
             segments_on_.insert(segments_[i].face, {here, here}).first->last = here + 1;
         }
-        // At least 16 bits for each vertex, so that most names without one are told by one bit.
-        perhaps_.assign(std::bit_ceil(std::max<std::size_t>(cuts_.size() / 4, 16)), 0);
-        vertex_of_.for_each([&](const KeyPair& name, Index) {
-            const auto [word, bit] = place(name);
-            perhaps_[word] |= bit;
-        });
+        names_.reset(cuts_.size());
+        vertex_of_.for_each([&](const KeyPair& name, Index) { names_.add(hash(name)); });
     }
 
     const std::vector<Gap>& gaps() const { return gaps_; }
@@ -96,8 +92,7 @@ public:
 
     /// The recorded vertex with a name, or null.
     const Index* find(const KeyPair& name) const {
-        const auto [word, bit] = place(name);
-        return (perhaps_[word] & bit) != 0 ? vertex_of_.find(name) : nullptr;
+        return names_.perhaps(hash(name)) ? vertex_of_.find(name) : nullptr;
     }
 
     const Cut& cut(Index vertex) const { return cuts_[vertex]; }
@@ -132,8 +127,7 @@ public:
 
     std::size_t memory_bytes() const {
         return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Cut) +
-               perhaps_.capacity() * sizeof(perhaps_[0]) + vertex_of_.memory_bytes() +
-               segments_on_.memory_bytes();
+               names_.memory_bytes() + vertex_of_.memory_bytes() + segments_on_.memory_bytes();
     }
 
 private:
@@ -155,11 +149,6 @@ private:
     void note_split(NodeKey face, const Split& split) {
         const auto [first, is_new] = split_of_.insert(face, split);
         if (first->by != split.by) conflicts_.insert(face, first->owner);
-    }
-
-    std::pair<std::size_t, std::uint64_t> place(const KeyPair& name) const {
-        const std::uint64_t bits = hash(name);
-        return {bits >> 32U & (perhaps_.size() - 1), std::uint64_t{1} << (bits >> 26U & 63U)};
     }
 
     static bool before(const Segment& a, const Segment& b) {
@@ -201,7 +190,7 @@ private:
     std::vector<Cut> cuts_;
     KeyTable<KeyPair, Index> vertex_of_;
     KeyTable<NodeKey, Range> segments_on_;
-    std::vector<std::uint64_t> perhaps_;  // bits of the names there are
+    KeyFilter names_;
 };
 
 }  // namespace nestgrid

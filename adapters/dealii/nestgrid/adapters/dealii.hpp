@@ -97,7 +97,8 @@ private:
     Point position(const Cell& c, unsigned corner) const;
     std::vector<PlacedChild> simplex_children(const Cell& c) const;
     template <class Object>
-    void mark(const Object& line_or_face);
+    void mark(const Object& line_or_face, int level, bool lines_too,
+              const std::vector<std::uint8_t>& finest);
     void update();
 
     const Triangulation* triangulation_;

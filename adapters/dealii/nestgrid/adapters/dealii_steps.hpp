@@ -108,20 +108,28 @@ std::vector<PlacedChild> DealiiGrid<dim, spacedim>::simplex_children(const Cell&
     return children;
 }
 
-/// The vertices inside a line or face of a leaf, where it is refined on another side.
+/// Marks the vertices inside a line or face of a leaf, where it is refined on another side.
+/// \param finest level around each vertex: where it tells that nothing is refined twice, the middle
+///        of a line, and of a face whose lines are marked already, is all there is
 template <int dim, int spacedim>
 template <class Object>
-void DealiiGrid<dim, spacedim>::mark(const Object& object) {
-    if constexpr (Object::AccessorType::structure_dimension == 2) {
-        for (unsigned l = 0; l < object->n_lines(); ++l) mark(object->line(l));
+void DealiiGrid<dim, spacedim>::mark(const Object& object, int level, bool lines_too,
+                                     const std::vector<std::uint8_t>& finest) {
+    constexpr bool is_line = Object::AccessorType::structure_dimension == 1;
+    if constexpr (!is_line) {
+        for (unsigned l = 0; lines_too && l < object->n_lines(); ++l) {
+            mark(object->line(l), level, true, finest);
+        }
     }
     if (!object->has_children()) return;
-    if constexpr (Object::AccessorType::structure_dimension == 1) {
-        hangs_[object->child(0)->vertex_index(1)] = true;
-    } else if (object->n_vertices() == 4) {
-        hangs_[object->child(0)->vertex_index(3)] = true;
+    if (is_line || object->n_vertices() == 4) {
+        const unsigned middle = object->child(0)->vertex_index(is_line ? 1 : 3);
+        hangs_[middle] = true;
+        if (finest[middle] <= level + 1) return;
     }
-    for (unsigned i = 0; i < object->n_children(); ++i) mark(object->child(i));
+    for (unsigned i = 0; i < object->n_children(); ++i) {
+        mark(object->child(i), level + 1, true, finest);
+    }
 }
 
 template <int dim, int spacedim>
@@ -144,13 +152,32 @@ void DealiiGrid<dim, spacedim>::update() {
     }
     if (simplex_rules_.size() > 1) only_simplex_rule_ = nullptr;
     for (const auto& c : triangulation_->active_cell_iterators()) {
-        // Where an edge is refined on another side, so is a cell at its ends.
-        const auto is_finer = [&](unsigned k) { return finest[c->vertex_index(k)] > c->level(); };
-        if (dim == 1 || std::ranges::none_of(c->vertex_indices(), is_finer)) continue;
-        if constexpr (dim == 2) {
-            for (unsigned l = 0; l < c->n_lines(); ++l) mark(c->line(l));
-        } else if constexpr (dim == 3) {
-            for (unsigned f = 0; f < c->n_faces(); ++f) mark(c->face(f));
+        // Where an edge or a face is refined on another side, so are cells at all its corners.
+        std::array<bool, max_corners> finer{};
+        bool any = false;
+        for (const unsigned k : c->vertex_indices()) {
+            finer[k] = finest[c->vertex_index(k)] > c->level();
+            any = any || finer[k];
+        }
+        if (dim == 1 || !any) continue;
+        const bool simplex = c->n_vertices() != unsigned{max_corners};
+        using Cube = dealii::GeometryInfo<dim>;
+        if constexpr (dim > 1) {
+            for (unsigned l = 0; l < c->n_lines(); ++l) {
+                if (simplex || (finer[Cube::line_to_cell_vertices(l, 0)] &&
+                                finer[Cube::line_to_cell_vertices(l, 1)])) {
+                    mark(c->line(l), c->level(), true, finest);
+                }
+            }
+        }
+        if constexpr (dim > 2) {
+            for (unsigned f = 0; f < c->n_faces(); ++f) {
+                bool all = true;
+                for (unsigned k = 0; !simplex && k < Cube::vertices_per_face; ++k) {
+                    all = all && finer[Cube::face_to_cell_vertices(f, k)];
+                }
+                if (all) mark(c->face(f), c->level(), false, finest);
+            }
         }
     }
 }
