@@ -98,8 +98,8 @@ struct Rule {
     std::vector<RuleEdge> edges{};  // derived: first those of the parent, as in its topology
     std::vector<RuleFace> faces{};  // derived: likewise; none in two dimensions
     int steps = 1;  // derived: the longest chain of new nodes that are parents of each other
-    std::uint8_t inside = no_new_node;  // derived: a new node in no face or edge of the parent, so in
-                                    // no other element
+    std::uint8_t inside = no_new_node;  // derived: a new node in no face or edge of the parent, so
+                                        // in no other element
     bool divides_all = false;  // derived: every edge and every face of the parent, the latter not
                                // one way
     bool divides_bare_faces = false;  // derived: some face is divided without a node in it

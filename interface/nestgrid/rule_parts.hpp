@@ -175,11 +175,11 @@ inline void place_in_parts(Rule& rule) {
         face.one_way = face.divided && face.corners == 4 && std::popcount(face.first) <= 2;
     }
     const Topology& t = topology(rule.parent);
-    rule.divides_all =
-        std::all_of(rule.edges.begin(), rule.edges.begin() + t.edges,
-                    [](const RuleEdge& edge) { return edge.inner != 0; }) &&
-        std::all_of(rule.faces.begin(), rule.faces.end(),
-                    [](const RuleFace& face) { return face.divided && !face.one_way; });
+    rule.divides_all = std::all_of(rule.edges.begin(), rule.edges.begin() + t.edges,
+                                   [](const RuleEdge& edge) { return edge.inner != 0; }) &&
+                       std::all_of(rule.faces.begin(), rule.faces.end(), [](const RuleFace& face) {
+                           return face.divided && !face.one_way;
+                       });
 }
 
 }  // namespace nestgrid::detail

@@ -159,7 +159,7 @@ public:
     bool passes_over_leaves() const { return recording_ && !limited() && finest_ < 0; }
     /// The second time, those that lead to what is not drawn yet.
     NodeMask children_to_enter(const State& s) const {
-        if (recording_ || finest_ < 0) return ~NodeMask{0};
+        if (!finishing_) return ~NodeMask{0};
         const NodeMask* children = enter_->find(path(s));
         return children == nullptr ? 0 : *children;
     }
@@ -197,7 +197,7 @@ public:
     /// What is known beside surface i.
     template <class Result>
     void report(std::size_t i, Result& result) const {
-        result.counts = counts_;
+        result.counts = finishing_ ? all_counts_ : counts_;
         result.counts.extracted = layers_[i].extracted;
         result.error_bound = layers_[i].error_bound;
         result.table_bytes = table_bytes();
@@ -247,7 +247,6 @@ private:
     bool joined(const State& s, const FaceTopology& face) const;
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s, bool draws);
-    bool counting() const { return recording_ == (finest_ >= 0); }
     static NodeKey path(const State& s);
     void leave_for_later(const State& s);
     void add_error(const State& s, Layer& layer) const;
@@ -274,6 +273,7 @@ private:
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);
     void draw_plainly(const State& s, Layer& layer, const Contour* contour, unsigned bits);
+    NESTGRID_NOINLINE Vertex add_closed(const State& s, std::uint8_t edge);
     template <class Vertices>
     void put_triangle(const Vertices& v, const std::array<std::uint8_t, 3>& corner, bool mirrored);
     template <class Vertices>
@@ -348,13 +348,14 @@ private:
     std::array<const ContourTable*, shape_count> table_{};
     std::vector<Layer> layers_;
     TraversalCounts counts_;
-    bool recording_ = false;
+    TraversalCounts all_counts_;  // of the first walk, where it meets everything
+    bool recording_ = false;      // the first walk of two
+    bool finishing_ = false;      // the second one, where the first one has drawn what it could
     std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t drawn_ = 0;   // simplices
     std::uint64_t later_ = 0;   // elements that are recorded and drawn later, one simplex at least
-    std::uint64_t looks_ = 0;   // calls of inspect()
     int finest_ = -1;           // level on which no element has a finer neighbour; -1: not known
-    Paths later_below_;         // paths of what lies above those elements, or is a coarse one itself
+    Paths later_below_;         // paths of what lies above those elements, or is a coarse one
     const Paths* enter_ = nullptr;  // those of all tasks
     Real element_bound_ = 0;    // of the element inspected last
     int deepest_ = 0;

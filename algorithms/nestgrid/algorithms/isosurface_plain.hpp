@@ -41,7 +41,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
         for (std::size_t i = 0; i < n; ++i) {
             const std::uint8_t edge = loop.edge[i];
             if (s.closed.any && s.closed.edge[edge] != nullptr) {
-                v[i] = add(name(s, edge), [&] { return make_cut(s, layer, edge); });
+                v[i] = add_closed(s, edge);
                 continue;
             }
             const auto& [a, b] = t.edge[edge];
@@ -69,6 +69,11 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
         }
         if constexpr (indexed) put_boundary(v, n, loop.face, walk_->boundary(s));
     }
+}
+
+/// A vertex on a closed edge.
+NESTGRID_VISITOR::add_closed(const State& s, std::uint8_t edge) -> Vertex {
+    return add(name(s, edge), [&] { return make_cut(s, *layer_, edge); });
 }
 
 /// Three vertices of a loop; a segment of its first two in two dimensions.

@@ -40,6 +40,7 @@ NESTGRID_VISITOR::set_isovalues() -> void {
             std::nextafter(least_inside, -std::numeric_limits<Real>::infinity());
         layer.drawn_below = &layer.transitions;
     }
+    finest_ = -1;
     if constexpr (requires { indicator_->finest_level(); }) {
         if (must_record()) finest_ = indicator_->finest_level();
     }
@@ -50,7 +51,8 @@ NESTGRID_VISITOR::set_isovalues() -> void {
 
 NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sink>& sinks) -> void {
     recording_ = false;  // where the last one was cancelled
-    counts_ = {};
+    finishing_ = false;
+    restart();
     drawn_ = 0;
     later_ = 0;
     later_below_.clear();
@@ -96,6 +98,9 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& exe
         recording_ = true;
         walk(executor);
         recording_ = false;
+        finishing_ = finest_ >= 0;
+        all_counts_ = counts_;
+        restart();
         later_ = 0;
         for (Layer& layer : layers_) layer.transitions.finish();
     }
@@ -142,13 +147,11 @@ NESTGRID_INLINE bool IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::of_inte
 }
 
 NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
-    if ((++looks_ & 0xFFFFU) == 0) tick(0, 0);
-    if (!counting()) {
-        const bool coarse = s.father == nullptr;
-        if (finest_ >= 0 && coarse && enter_->find(path(s)) == nullptr) return {Visit::skip, 0};
-        return look(s, split);
-    }
     ++counts_.calls;
+    if ((counts_.calls & 0xFFFFU) == 0) tick(0, 0);
+    if (finishing_ && s.father == nullptr && enter_->find(path(s)) == nullptr) {
+        return {Visit::skip, 0};
+    }
     const Decision decision = look(s, split);
     counts_.visited += decision.visit != Visit::skip;
     return decision;
@@ -216,7 +219,7 @@ NESTGRID_VISITOR::bound_of(const Split& split) const -> Real {
 
 NESTGRID_VISITOR::extract(const State& s) -> void {
     if (recording_ && finest_ < 0 && !s.closed.any && !limited()) return;
-    if (!recording_ && s.level == finest_) return;
+    if (finishing_ && s.level == finest_) return;
     const bool shown = !recording_ || !is_hidden(walk_->grid(), *s.context, s.element);
     const bool draws = !recording_ || (shown && s.level == finest_);
     const auto corners = static_cast<std::size_t>(s.corner_count());

@@ -48,11 +48,10 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk(const Executor& ex
 }
 
 NESTGRID_VISITOR::restart() -> void {
-    if (counting()) counts_ = {};
+    counts_ = {};
 }
 
 NESTGRID_VISITOR::undo() -> void {
-    if (!counting()) return;
     --counts_.calls;
     --counts_.visited;
 }
@@ -80,6 +79,7 @@ NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
                                       *indicator_, idle_.silent);
     }
     task->recording_ = recording_;
+    task->finishing_ = finishing_;
     task->limit_ = limit_;
     task->enter_ = enter_;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
