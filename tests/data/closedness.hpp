@@ -96,7 +96,7 @@ inline std::vector<NodalSamples> catching_fields(const std::vector<Point>& nodes
         int sum = 0;  // of the coordinates on the coarsest lattice that has the node
         for (const double at : x) {
             double q = at;
-            while (q != std::floor(q) && q < 4096) q *= 2;
+            while (q != std::floor(q) && std::abs(q) < 4096) q *= 2;
             sum += static_cast<int>(q);
         }
         return (sum % 2 == 0 ? -1 : 1) * (0.1 + uniform(random));
