@@ -275,6 +275,11 @@ TEST(HyperTreeGrid, MasksMayHideEverything) {
 TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
     const vtkNew<vtkHyperTreeGrid> flat = random_trees({3, 3, 1}, 1, 1);
     expect_refused([&] { HyperTreeGrid<3> grid(*flat); }, "has dimension 2, not 3");
+    const vtkNew<vtkHyperTreeGrid> masked = random_trees({3, 3, 3}, 1, 1);
+    const vtkNew<vtkBitArray> mask;
+    for (vtkIdType i = 1; i < masked->GetNumberOfVertices(); ++i) mask->InsertNextValue(0);
+    masked->SetMask(mask);
+    expect_refused([&] { HyperTreeGrid<3> grid(*masked); }, "entries for 72 cells");
     vtkNew<vtkHyperTreeGrid> thirds;
     thirds->SetDimensions(2, 2, 2);
     thirds->SetBranchFactor(3);

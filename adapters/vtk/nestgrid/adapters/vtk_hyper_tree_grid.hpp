@@ -38,8 +38,9 @@ public:
         Place place{};  ///< of its first corner, in lattice steps of its own level
     };
 
-    /// \throw InvalidInput for a grid of another dimension, with another branch factor than two, or
-    ///        with more than 2^31 steps along a side at its deepest level
+    /// \throw InvalidInput for a grid of another dimension, with another branch factor than two,
+    ///        with more than 2^31 steps along a side at its deepest level, or with a mask that is
+    ///        too short
     explicit HyperTreeGrid(vtkHyperTreeGrid& grid)
         : grid_{&grid}, rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
         if (grid.GetDimension() != dim) {
@@ -70,8 +71,14 @@ public:
         for (vtkIdType i = 0; i < grid.GetMaxNumberOfTrees(); ++i) {
             if (vtkHyperTree* tree = grid.GetTree(i)) trees_.push_back(tree);
         }
-        if (grid.HasMask()) {
-            hidden_.resize(static_cast<std::size_t>(grid.GetNumberOfVertices()));
+        if (grid.HasMask() && grid.GetMask()->GetNumberOfValues() > 0) {
+            const vtkIdType cells = grid.GetGlobalNodeIndexMax() + 1;
+            if (grid.GetMask()->GetNumberOfValues() < cells) {
+                throw InvalidInput("the mask of the hyper tree grid has " +
+                                   std::to_string(grid.GetMask()->GetNumberOfValues()) +
+                                   " entries for " + std::to_string(cells) + " cells");
+            }
+            hidden_.resize(static_cast<std::size_t>(cells));
             for (vtkHyperTree* tree : trees_) read_mask({tree, 0, 0, {}}, false);
         }
     }
