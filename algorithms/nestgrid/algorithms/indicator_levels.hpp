@@ -40,8 +40,8 @@ public:
         auto high = from.high.begin();
         std::array<std::size_t, max_corners + max_new_nodes> nodes;
         for (const Rule* rule : from.rules) {
-            const auto count =
-                static_cast<std::size_t>(rule->corner_count() + rule->new_node_count());
+            const std::size_t count =
+                static_cast<std::size_t>(rule->corner_count()) + rule->new_nodes.size();
             for (std::size_t i = 0; i < count; ++i) {
                 nodes[i] = *low++;
                 if (wide_) nodes[i] |= std::size_t{*high++} << 32U;
