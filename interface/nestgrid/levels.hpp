@@ -49,8 +49,8 @@ struct EachVisitor {
 
 }  // namespace detail
 
-/// Calls function(state, split) for every element on a level, leaves and hidden ones included
-/// (split.rule is null for leaves), with the true values at the corners, hanging nodes interpolated
+/// Calls function(state, split) for every element on a level, leaves (split.rule is null there) and
+/// hidden ones included, with the true values at the corners, hanging nodes interpolated.
 /// \tparam splits_only pass over leaves, those of the coarse grid excepted
 template <bool splits_only = false, class Walk, class Function>
 void for_each_on_level(const Walk& walk, int level, Function&& function) {

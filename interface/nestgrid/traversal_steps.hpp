@@ -31,6 +31,15 @@ Real interpolate(const Stencil& s, const Real* value, std::size_t stride, std::s
     return ordered_sum(std::span<Real>(product.data(), s.count), lo, hi);
 }
 
+/// \throw GridError where one of these new nodes of an element has no value
+template <class State>
+void require_no_missing(NodeMask missing, const State& s) {
+    if (missing == 0) return;
+    throw GridError("the field has no value at new node " +
+                    std::to_string(std::countr_zero(missing)) + " of an element on level " +
+                    std::to_string(s.level) + " below coarse element " + std::to_string(s.coarse));
+}
+
 inline Point interpolate(const Stencil& s, const Point* position) {
     const double* x = position->data();
     return {interpolate(s, x, 3, 0), interpolate(s, x, 3, 1), interpolate(s, x, 3, 2)};
@@ -274,12 +283,7 @@ void Traversal<Grid, Field, needs>::project(const State& s, const Split& split,
         const NodeMask missing = detail::call_new_values(
             *field_, *s.context, s.element, which,
             std::span<Real>(value + corners * c_count, rule.new_nodes.size() * c_count));
-        if ((missing & which) != 0) {
-            throw GridError("the field has no value at new node " +
-                            std::to_string(std::countr_zero(missing & which)) +
-                            " of an element on level " + std::to_string(s.level) +
-                            " below coarse element " + std::to_string(s.coarse));
-        }
+        detail::require_no_missing(missing & which, s);
     }
     if ((mean & rule.all()) == 0) return;
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {

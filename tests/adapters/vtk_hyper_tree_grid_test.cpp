@@ -260,7 +260,7 @@ TEST(HyperTreeGrid, HidesWhatIsMasked) {
     expect_laws_beside_a_mask<2>(*random_trees({9, 8, 1}, 6, 2), 3);
 }
 
-/// All of it, or a tree.
+/// No leaf is left to take a mean of.
 TEST(HyperTreeGrid, MasksMayHideEverything) {
     const vtkNew<vtkHyperTreeGrid> trees = random_trees({3, 3, 3}, 3, 1);
     const vtkNew<vtkBitArray> mask;

@@ -4,7 +4,6 @@
 // Hidden elements: nothing is drawn in them, and beside them what would be drawn without.
 #include <gtest/gtest.h>
 
-#include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/project.hpp>
 #include <nestgrid/any_grid.hpp>

@@ -146,12 +146,7 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
         const NodeMask missing =
             detail::call_new_values(field, *s.context, s.element, rule.all(),
                                     std::span<Real>(given.data(), rule.new_nodes.size() * stride));
-        if ((missing & which) != 0) {
-            throw GridError("the field has no value at new node " +
-                            std::to_string(std::countr_zero(missing & which)) +
-                            " of an element on level " + std::to_string(s.level) +
-                            " below coarse element " + std::to_string(s.coarse));
-        }
+        detail::require_no_missing(missing & which, s);
         const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             const Stencil& stencil = rule.new_nodes[n];
