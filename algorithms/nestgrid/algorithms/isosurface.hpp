@@ -247,18 +247,20 @@ private:
     bool joined(const State& s, const FaceTopology& face) const;
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s, bool draws);
-    static NodeKey path(const State& s);
-    void leave_for_later(const State& s);
     void add_error(const State& s, Layer& layer) const;
     void load_gradients(const State& s);
-    void record(const State& s, Layer& layer, unsigned pattern);
     void draw(const State& s, Layer& layer, unsigned pattern);
+    void set_normals(Layer& layer);
+
+    // isosurface_transitions.hpp
+    void record(const State& s, Layer& layer, unsigned pattern);
     unsigned recorded_edges(const State& s, const Layer& layer, unsigned pattern) const;
     unsigned choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating);
     bool adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
                unsigned signs, bool& is_joined);
     void fill_gaps(Layer& layer);
-    void set_normals(Layer& layer);
+    static NodeKey path(const State& s);
+    void leave_for_later(const State& s);
 
     // isosurface_bisections.hpp
     bool knows_bisections_of_grid() const;

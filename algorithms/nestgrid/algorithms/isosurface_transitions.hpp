@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where elements stop without conforming: what the first walk records of finer elements and leaves
+// for the second one, and how coarser elements adopt it; included by isosurface_steps.hpp.
+#pragma once
+
+#include <nestgrid/algorithms/isosurface.hpp>
+
+#define NESTGRID_VISITOR                                                     \
+    template <class Grid, class Field, class S, class Indicator, class Sink> \
+    auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>
+
+namespace nestgrid::detail {
+
+NESTGRID_VISITOR::must_record() const -> bool {
+    if constexpr (dimension == 2) {
+        return false;
+    } else {
+        const bool hanging = offers(walk_->grid(), Feature::constrained) ||
+                             indicator_->hanging() != nullptr;
+        if (hanging) return true;
+        if (std::is_same_v<S, Exact>) return false;
+        if (offers(walk_->grid(), Feature::hidden)) return true;
+        if constexpr (requires { indicator_->stops_conform(); }) {
+            return !indicator_->stops_conform();
+        } else {
+            return true;
+        }
+    }
+}
+
+/// A name for the way down to an element. Where two ways have the same, more is entered.
+NESTGRID_VISITOR::path(const State& s) -> NodeKey {
+    if (s.father == nullptr) return mix(static_cast<NodeKey>(s.coarse));
+    return mix(path(*s.father) + s.child + 1U);
+}
+
+NESTGRID_VISITOR::leave_for_later(const State& s) -> void {
+    if (s.father == nullptr) later_below_.insert(path(s), 0);
+    for (const State* at = &s; at->father != nullptr; at = at->father) {
+        NodeMask& children = *later_below_.insert(path(*at->father), 0).first;
+        if (std::exchange(children, children | NodeMask{1} << at->child) != 0) break;
+    }
+}
+
+NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void {
+    const Topology& t = topology(s.shape);
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        if (s.closed.face[f] == nullptr) continue;
+        const FaceTopology& face = t.face[f];
+        unsigned signs = 0;
+        for (std::size_t i = 0; i < face.corners; ++i) signs |= (pattern >> face.corner[i] & 1U) << i;
+        const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
+        const FaceContour contour =
+            face_contour(face.corners, signs, alternating && joined(s, face));
+        const auto end = [&](std::uint8_t side) {
+            const std::uint8_t edge = edge_between(s.shape, face.corner[side],
+                                                   face.corner[(side + 1U) % face.corners]);
+            return layer.transitions.vertex(name(s, edge),
+                                            [&] { return make_cut(s, layer, edge); });
+        };
+        for (std::size_t i = 0; i < contour.count; ++i) {
+            const Number from = end(contour.segment[i].falls);
+            const Number to = end(contour.segment[i].rises);
+            // A mirrored element sees its faces, and the segments on them, the other way round.
+            if (s.orientation > 0) {
+                layer.transitions.record(s.closed.face[f], from, to, {s.element, s.shape, s.level});
+            } else {
+                layer.transitions.record(s.closed.face[f], to, from, {s.element, s.shape, s.level});
+            }
+        }
+    }
+}
+
+NESTGRID_VISITOR::recorded_edges(const State& s, const Layer& layer, unsigned pattern) const
+    -> unsigned {
+    if (dimension == 2 || layer.drawn_below->empty()) return 0;
+    const Topology& t = topology(s.shape);
+    unsigned edges = 0;
+    for (std::uint8_t e = 0; e < t.edges; ++e) {
+        const auto& [a, b] = t.edge[e];
+        if (((pattern >> a ^ pattern >> b) & 1U) == 0) continue;
+        edges |= unsigned{layer.drawn_below->find(name(s, e)) != nullptr} << e;
+    }
+    return edges;
+}
+
+/// What the finer side draws on a face from the cut of one of its sides, if anything.
+/// \return whether there was something; is_joined is set by it on a face whose signs alternate
+NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
+                        unsigned signs, bool& is_joined) -> bool {
+    const std::size_t n = face.corners;
+    const auto edge_at = [&](std::size_t i) {
+        return edge_between(s.shape, face.corner[i], face.corner[(i + 1) % n]);
+    };
+    if ((recorded_ >> edge_at(side) & 1U) == 0) return false;
+    const Number* from = layer.drawn_below->find(name(s, edge_at(side)));
+    std::array<Number, 2> ends{none, none};
+    std::array<std::size_t, 2> sides{};
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const unsigned there = signs >> i & 1U;
+        const unsigned beyond = signs >> ((i + 1) % n) & 1U;
+        if (there == beyond || there == (signs >> side & 1U)) continue;
+        const Number* end = layer.drawn_below->find(name(s, edge_at(i)));
+        if (end == nullptr) return false;
+        sides[count] = i;
+        ends[count++] = *end;
+    }
+    std::array<NodeKey, 4> keys;
+    for (std::size_t i = 0; i < n; ++i) keys[i] = key_[face.corner[i]];
+    std::vector<Number> between;
+    std::size_t end = 0;
+    const bool found = layer.drawn_below->follow(
+        face_key(std::span<const NodeKey>(keys.data(), n)), *from,
+        [&](Number v) {
+            if (v != ends[0] && v != ends[1]) return false;
+            end = sides[v == ends[0] ? 0 : 1];
+            return true;
+        },
+        [&](Number v) { between.push_back(v); });
+    if (!found) return false;
+    // Loops run from where the sign rises to where it falls.
+    const bool mirrored = s.orientation < 0;
+    const std::size_t rises = mirrored ? end : side;
+    const std::size_t falls = mirrored ? side : end;
+    if (!between.empty()) {
+        if (mirrored) std::reverse(between.begin(), between.end());
+        for (Number& v : between) v = recorded(v, face);
+        chained_ |= static_cast<std::uint16_t>(1U << edge_at(rises));
+        chain_[edge_at(rises)] = std::move(between);
+    }
+    is_joined = (falls + 1) % n == rises;
+    return true;
+}
+
+/// Which alternating faces join their corners with U >= C, one bit each; loads the chains that the
+/// finer sides drew.
+NESTGRID_VISITOR::choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating)
+    -> unsigned {
+    unsigned joins = 0;
+    for (unsigned left = alternating; left != 0; left &= left - 1) {
+        const auto f = static_cast<std::size_t>(std::countr_zero(left));
+        if (joined(s, loop_of(s, f))) joins |= 1U << f;
+    }
+    if (recorded_ == 0) return joins;
+    const Topology& t = topology(s.shape);
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        const FaceTopology& face = t.face[f];
+        unsigned signs = 0;
+        unsigned known = 0;
+        for (std::size_t i = 0; i < face.corners; ++i) {
+            signs |= (pattern >> face.corner[i] & 1U) << i;
+            known += recorded_ >> edge_between(s.shape, face.corner[i],
+                                               face.corner[(i + 1U) % face.corners]) & 1U;
+        }
+        if (known < 2) continue;
+        for (std::size_t i = 0; i < face.corners; ++i) {
+            // The finer side draws from where our segment comes back to where it leaves.
+            const unsigned there = signs >> i & 1U;
+            const unsigned beyond = signs >> ((i + 1U) % face.corners) & 1U;
+            if (there == beyond || (there != 0) != (s.orientation < 0)) continue;
+            bool is_joined = false;
+            if (adopt(s, layer, face, i, signs, is_joined) && (alternating >> f & 1U) != 0) {
+                joins = (joins & ~(1U << f)) | (unsigned{is_joined} << f);
+            }
+        }
+    }
+    return joins;
+}
+
+/// Around a vertex in the middle, so that no edge is one of an element.
+NESTGRID_VISITOR::fill_gaps(Layer& layer) -> void {
+    layer_ = &layer;
+    state_ = nullptr;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& gap : layer.transitions.gaps()) {
+        local_.clear();
+        reference_.clear();
+        layer.sink.add_element(gap.owner.element, gap.owner.shape, gap.owner.level);
+        Point x{0, 0, 0};
+        std::array<double, attribute_count> attributes{};
+        const double weight = 1.0 / static_cast<double>(gap.loop.size());
+        for (const Number v : gap.loop) {
+            const Cut& cut = layer.transitions.cut(v);
+            number_of(add({cut.node[0], cut.node[1]}, [&] { return cut; }), {unknown, unknown, unknown});
+            x = x + weight * cut.x;
+            for (std::size_t i = 0; i < attribute_count; ++i) {
+                attributes[i] += weight * cut.attributes[i];
+            }
+        }
+        const auto n = static_cast<Number>(local_.size());
+        if (n == 3) {
+            triangle(0, 1, 2);
+            continue;
+        }
+        number_of(add_unnamed(x, attributes), {unknown, unknown, unknown});
+        for (Number i = 0; i < n; ++i) triangle(i, (i + 1) % n, n);
+    }
+}
+
+}  // namespace nestgrid::detail
+
+#undef NESTGRID_VISITOR
