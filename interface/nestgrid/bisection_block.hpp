@@ -113,6 +113,38 @@ inline constexpr auto block_of = [] {
         Grid::bisections, Grid::bisections.size() - 1);
 }();
 
+/// Parts of a block in the order of the traversal: what stops, and the ends that are entered.
+template <std::size_t ends>
+struct BlockOrder {
+    std::array<std::uint8_t, ends> part{};
+    std::uint8_t count = 0;
+};
+
+/// By the parts 2 ... ends - 1 that are entered, one bit each from bit 0, and, in the bits above,
+/// those that stop. Only such as are reached.
+template <const auto& pattern>
+inline constexpr auto block_orders = [] {
+    constexpr std::size_t ends = pattern.ends;
+    constexpr std::size_t bits = ends - 2;
+    std::array<BlockOrder<ends>, std::size_t{1} << 2 * bits> result{};
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const auto is_set = [&](std::size_t part, std::size_t from) {
+            return part < ends && (i >> (part - 2 + from) & 1U) != 0;
+        };
+        for (std::size_t end = 0; end < ends; ++end) {
+            // Down to the end, as far as it goes; a part is listed at the first end in it.
+            std::size_t depth = pattern.height - 1;
+            while (is_set((ends + end) >> depth, 0)) --depth;
+            const std::size_t part = (ends + end) >> depth;
+            if (part < ends && (!is_set(part, bits) || end % (std::size_t{1} << depth) != 0)) {
+                continue;
+            }
+            result[i].part[result[i].count++] = static_cast<std::uint8_t>(part);
+        }
+    }
+    return result;
+}();
+
 /// Those of Maubach's bisections.
 template <int dim>
 inline constexpr auto maubach_block =

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Walks over bisections known at compile time (bisection_walk.hpp) with grid and visitor on either
-// side of a table: one call for an element that is looked at, or for all those within a block, and
-// one that hands over all there is to know of what is to be extracted.
+// side of a table: one call for an element that is looked at, or for eight, and one that
+// hands over all there is to know of what is to be extracted.
 #pragma once
 
 #include <cstring>
@@ -14,38 +14,47 @@
 
 namespace nestgrid::detail {
 
-/// A BisectedBlock of maubach_block.
+/// A BlockBatch of maubach_block.
 template <int dim, class Real>
-class ErasedBlock {
+class ErasedBlocks {
 public:
     static constexpr const auto& pattern = maubach_block<dim>;
 
-    virtual Point position(std::size_t i) const = 0;
-    virtual void all_positions(std::array<Point, pattern.nodes>& x) const = 0;
-    virtual nestgrid_element element(std::size_t part) const = 0;
-    virtual unsigned boundary(std::size_t part) const = 0;
+    virtual Point position(std::size_t b, std::size_t node) const = 0;
+    virtual void all_positions(std::size_t b, std::array<Point, pattern.nodes>& x) const = 0;
+    virtual nestgrid_element element(std::size_t b, std::size_t part) const = 0;
+    virtual unsigned boundary(std::size_t b, std::size_t part) const = 0;
 
-    const std::array<NodeKey, pattern.nodes>& key;
-    const std::array<Real, pattern.nodes>& value;
-    const std::array<SubtreeFaces, pattern.nodes>& faces;
+    NodeKey key(std::size_t b, std::size_t node) const { return keys_[room_ * node + b]; }
+    Real value(std::size_t b, std::size_t node) const { return values_[room_ * node + b]; }
+    const Real* row(std::size_t node) const { return values_ + room_ * node; }
+    SubtreeFaces faces(std::size_t b, std::size_t node) const { return sides_[room_ * node + b]; }
+    bool mirrored(std::size_t b) const { return orientations_[b] != 0; }
+
     const int level;
-    const int orientation;
 
 protected:
-    template <class Block>
-    explicit ErasedBlock(const Block& block)
-        : key{block.key},
-          value{block.value},
-          faces{block.faces},
-          level{block.level},
-          orientation{block.orientation} {}
-    ~ErasedBlock() = default;
+    template <class Batch>
+    explicit ErasedBlocks(const Batch& batch)
+        : level{batch.level},
+          room_{Batch::room},
+          keys_{batch.keys[0].data()},
+          values_{batch.values[0].data()},
+          sides_{batch.sides[0].data()},
+          orientations_{batch.orientations.data()} {}
+    ~ErasedBlocks() = default;
+
+private:
+    std::size_t room_;
+    const NodeKey* keys_;
+    const Real* values_;
+    const SubtreeFaces* sides_;
+    const std::uint8_t* orientations_;
 };
 
 template <int dim, class Real>
 class ErasedBisectionVisitor {
 public:
-    static constexpr std::size_t interior = maubach_block<dim>.ends - 2;
     struct Glance {
         Visit visit;
         Real bound;
@@ -56,12 +65,12 @@ public:
     virtual bool glance_at_leaf(Real lo, Real hi) = 0;
     virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
-    virtual BlockGlance<Real, interior> glance_within(
-        const BlockInterior<Real, interior>& elements) = 0;
-    virtual void begin_subtree() = 0;
-    virtual void extract_part(const ErasedBlock<dim, Real>& block, std::size_t part,
-                              Real bound) = 0;
-    virtual unsigned extract_block(const ErasedBlock<dim, Real>& block, unsigned entered) = 0;
+    virtual PackedGlance<Real> glance(const PackedElements<Real>& e) = 0;
+    virtual void begin_subtrees() = 0;
+    virtual void extract_part(const ErasedBlocks<dim, Real>& blocks, std::size_t b,
+                              std::size_t part, Real bound) = 0;
+    virtual unsigned extract_blocks(const ErasedBlocks<dim, Real>& blocks, std::size_t first,
+                                    std::size_t end, const std::uint8_t* entered) = 0;
 
 protected:
     ErasedBisectionVisitor() = default;
@@ -89,34 +98,38 @@ public:
     }
     bool glance_at_leaf(Real lo, Real hi) { return to_->glance_at_leaf(lo, hi); }
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
-    void begin_subtree() { to_->begin_subtree(); }
-
-    template <std::size_t count>
-    auto glance_within(const BlockInterior<Real, count>& elements) {
-        return to_->glance_within(elements);
+    void begin_subtrees() { to_->begin_subtrees(); }
+    PackedGlance<Real> glance(const PackedElements<Real>& e) { return to_->glance(e); }
+    template <class Batch>
+    void extract_part(const Batch& batch, std::size_t b, std::size_t part, Real bound) {
+        to_->extract_part(Blocks<Batch>(batch), b, part, bound);
     }
-    void extract_part(const BisectedBlock<Grid, Real>& block, std::size_t part, Real bound) {
-        to_->extract_part(Block(block), part, bound);
-    }
-    unsigned extract_block(const BisectedBlock<Grid, Real>& block, unsigned entered) {
-        return to_->extract_block(Block(block), entered);
+    template <class Batch>
+    unsigned extract_blocks(const Batch& batch, std::size_t first, std::size_t end,
+                            const std::uint8_t* entered) {
+        return to_->extract_blocks(Blocks<Batch>(batch), first, end, entered);
     }
 
 private:
-    struct Block final : ErasedBlock<dim, Real> {
-        using Original = BisectedBlock<Grid, Real>;
-        explicit Block(const Original& block) : ErasedBlock<dim, Real>(block), of{&block} {}
+    template <class Batch>
+    struct Blocks final : ErasedBlocks<dim, Real> {
+        explicit Blocks(const Batch& batch) : ErasedBlocks<dim, Real>(batch), of{&batch} {}
 
-        Point position(std::size_t i) const override { return of->position(i); }
-        void all_positions(std::array<Point, Original::pattern.nodes>& x) const override {
-            of->all_positions(x);
+        Point position(std::size_t b, std::size_t node) const override {
+            return of->position(b, node);
         }
-        nestgrid_element element(std::size_t part) const override {
-            return erased(of->element(part));
+        void all_positions(std::size_t b, std::array<Point, Batch::pattern.nodes>& x)
+            const override {
+            of->all_positions(b, x);
         }
-        unsigned boundary(std::size_t part) const override { return of->boundary(part); }
+        nestgrid_element element(std::size_t b, std::size_t part) const override {
+            return erased(of->element(b, part));
+        }
+        unsigned boundary(std::size_t b, std::size_t part) const override {
+            return of->boundary(b, part);
+        }
 
-        const Original* of;
+        const Batch* of;
     };
 
     const Grid* grid_;

@@ -10,6 +10,8 @@
 // both hold at the new nodes, and likewise where one of them does.
 #pragma once
 
+#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/pack.hpp>
 #include <nestgrid/traversal.hpp>
 
 namespace nestgrid {
@@ -42,6 +44,16 @@ struct Threshold {
             if (indicator->stop(nodes.keys[i]) <= epsilon) mask |= NodeMask{1} << i;
         }
         return mask & ~nodes.outside;
+    }
+    /// At which of eight nodes, none of them outside.
+    /// \param known what `by` knows of them
+    template <class Known>
+        requires std::same_as<decltype(std::declval<Known>().stop()), Pack<float>>
+    NESTGRID_INLINE Pack<std::uint32_t> holds(const NodeKey* nodes, const Indicator& by,
+                                              const Known& known) const {
+        const Pack<float> stop =
+            indicator == &by ? known.stop() : indicator->look_up(nodes).stop();
+        return at_most(stop, Pack<float>::all(float_below(epsilon)));
     }
 };
 

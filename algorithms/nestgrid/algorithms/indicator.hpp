@@ -67,6 +67,45 @@ public:
         return bfloat16_value(largest);
     }
 
+    /// It will be asked for.
+    NESTGRID_INLINE void prefetch(NodeKey node) const {
+#if defined(__GNUC__)
+        if (dense_ != nullptr) __builtin_prefetch(dense_.get() + static_cast<std::size_t>(node));
+#else
+        static_cast<void>(node);
+#endif
+    }
+
+    /// Both of eight nodes.
+    class Known {
+    public:
+        explicit Known(const Pack<std::uint32_t>& bits) : bits_{bits} {}
+        NESTGRID_INLINE Pack<float> stop() const { return (bits_ << 16).as<float>(); }
+        NESTGRID_INLINE Pack<float> bound() const {
+            return (bits_ & Pack<std::uint32_t>::all(0xFFFF0000U)).as<float>();
+        }
+
+    private:
+        Pack<std::uint32_t> bits_;  // the stop below the bound
+    };
+    NESTGRID_INLINE Known look_up(const NodeKey* nodes) const {
+        const auto bits = [](const Entry& e) NESTGRID_INLINE_LAMBDA {
+            if constexpr (std::endian::native == std::endian::little) {
+                return std::bit_cast<std::uint32_t>(e);
+            } else {
+                return e.stop | std::uint32_t{e.bound} << 16U;
+            }
+        };
+        if (dense_ != nullptr) {
+            const Entry* const entry = dense_.get();
+            return Known(Pack<std::uint32_t>::make([&](auto i) NESTGRID_INLINE_LAMBDA {
+                return bits(entry[static_cast<std::size_t>(nodes[i])]);
+            }));
+        }
+        return Known(Pack<std::uint32_t>::make(
+            [&](auto i) NESTGRID_INLINE_LAMBDA { return bits(sparse_entry(nodes[i])); }));
+    }
+
     /// The same for the new nodes of one split.
     NESTGRID_INLINE float bound(const Rule& rule, std::span<const NodeKey> nodes) const {
         return rule.inside == no_new_node ? bound(nodes) : bound(nodes[rule.inside]);

@@ -175,17 +175,23 @@ public:
     };
     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside);
     bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
-    template <class Interior>
-    typename Interior::Glance glance_within(const Interior& elements);
-    void begin_subtree()
+    PackedGlance<Real> glance(const PackedElements<Real>& e);
+    /// It will be glanced at.
+    NESTGRID_INLINE void expect(NodeKey node) const
+        requires requires(const Indicator& i) { i.prefetch(NodeKey{}); }
+    {
+        indicator_->prefetch(node);
+    }
+    void begin_subtrees()
         requires(indexed)
     {
         for (Layer& layer : layers_) layer.number_within.clear();
     }
-    template <class Block>
-    unsigned extract_block(const Block& block, unsigned entered);
-    template <class Block>
-    void extract_part(const Block& block, std::size_t part, Real bound);
+    template <class Blocks>
+    unsigned extract_blocks(const Blocks& blocks, std::size_t first, std::size_t end,
+                            const std::uint8_t* entered);
+    template <class Blocks>
+    void extract_part(const Blocks& blocks, std::size_t b, std::size_t part, Real bound);
     void tick(std::uint64_t calls, std::uint64_t visited) const;
     void count(std::uint64_t calls, std::uint64_t visited);
 
@@ -227,6 +233,7 @@ private:
         std::vector<Where> where{};
         Number vertex_count = 0;
         const BlockContours::Contour* contour = nullptr;  // of the block being drawn
+        std::array<MaskOf<Real>, most_blocks> signs{};     // of blocks
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
     static constexpr Number none = std::numeric_limits<Number>::max();
@@ -264,20 +271,23 @@ private:
 
     // isosurface_bisections.hpp
     bool knows_bisections_of_grid() const;
-    template <class Block>
-    using NodePositions = std::array<Point, indexed ? 1 : Block::pattern.nodes>;
-    template <class Block>
-    Vertex cut_in(const Block& block, const Layer& layer, const BlockContours::Cut& ends,
-                  const NodePositions<Block>& x);
-    template <class Block>
-    void draw_block(const Block& block, Layer& layer, const BlockContours& contours);
+    template <class Blocks>
+    void set_signs(const Blocks& blocks, std::size_t end, Layer& layer);
+    template <class Blocks>
+    using NodePositions = std::array<Point, indexed ? 1 : Blocks::pattern.nodes>;
+    template <class Blocks>
+    Vertex cut_in(const Blocks& blocks, std::size_t b, const Layer& layer,
+                  const BlockContours::Cut& ends, const NodePositions<Blocks>& x);
+    template <class Blocks>
+    void draw_block(const Blocks& blocks, std::size_t b, Layer& layer,
+                    const BlockContours& contours);
 
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);
     void draw_plainly(const State& s, Layer& layer, const Contour* contour, unsigned bits);
     NESTGRID_NOINLINE Vertex add_closed(const State& s, std::uint8_t edge);
     template <class Vertices>
-    void put_triangle(const Vertices& v, const std::array<std::uint8_t, 3>& corner, bool mirrored);
+    void put_triangle(const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored);
     template <class Vertices>
     void put_loop(const Vertices& v, std::size_t count, bool mirrored);
     template <class Vertices, class Faces>

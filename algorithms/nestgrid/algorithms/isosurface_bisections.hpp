@@ -32,20 +32,19 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 return {visit, bound};
             }
             bool glance_at_leaf(Real lo, Real hi) override { return to->glance_at_leaf(lo, hi); }
-            BlockGlance<Real, Erased::interior> glance_within(
-                const BlockInterior<Real, Erased::interior>& elements) override {
-                return to->glance_within(elements);
+            PackedGlance<Real> glance(const PackedElements<Real>& e) override {
+                return to->glance(e);
             }
-            void extract_part(const ErasedBlock<dimension, Real>& block, std::size_t part,
-                              Real bound) override {
-                to->extract_part(block, part, bound);
+            void extract_part(const ErasedBlocks<dimension, Real>& blocks, std::size_t b,
+                              std::size_t part, Real bound) override {
+                to->extract_part(blocks, b, part, bound);
             }
-            void begin_subtree() override {
-                if constexpr (indexed) to->begin_subtree();
+            void begin_subtrees() override {
+                if constexpr (indexed) to->begin_subtrees();
             }
-            unsigned extract_block(const ErasedBlock<dimension, Real>& block,
-                                   unsigned entered) override {
-                return to->extract_block(block, entered);
+            unsigned extract_blocks(const ErasedBlocks<dimension, Real>& blocks, std::size_t first,
+                                    std::size_t end, const std::uint8_t* entered) override {
+                return to->extract_blocks(blocks, first, end, entered);
             }
             void tick(std::uint64_t calls, std::uint64_t visited) override {
                 to->tick(calls, visited);
@@ -75,147 +74,183 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
     return {mask != 0 ? Visit::stop : Visit::descend, bound};
 }
 
-/// The same of each element within a block, without a branch.
+/// The same of eight, without a branch.
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Interior>
-NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance_within(
-    const Interior& e) -> typename Interior::Glance {
-    constexpr std::size_t count = Interior::size;
-    typename Interior::Glance result;
-    unsigned interest = 0;
-    unrolled<count>([&](auto i) NESTGRID_INLINE_LAMBDA {
-        const std::span<const NodeKey> key(&e.key[i], 1);
-        result.bound[i] = bound_of(key);
-        const NodeMask mask = (*criterion_)(NewNodes{*e.rule[i], key, e.level[i] + 1, 0});
-        result.stop |= unsigned{mask != 0} << i;
-    });
-    for (const Layer& layer : layers_) {
-        unrolled<count>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            const Real off =
-                std::max(layer.least_inside - e.hi[i], e.lo[i] - layer.greatest_outside);
-            interest |= unsigned{off <= result.bound[i]} << i;
+NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
+    const PackedElements<Real>& e) -> PackedGlance<Real> {
+    using Reals = Pack<Real>;
+    using Mask = typename Reals::Mask;
+    PackedGlance<Real> result;
+    Mask holds;
+    if constexpr (requires(const S& s) {
+                      { s.holds(e.node, *indicator_, indicator_->look_up(e.node)) }
+                          -> std::same_as<Mask>;
+                  }) {
+        const auto known = indicator_->look_up(e.node);
+        result.bound = known.bound();
+        holds = criterion_->holds(e.node, *indicator_, known);
+    } else {
+        const auto key = [&](auto i) NESTGRID_INLINE_LAMBDA {
+            return std::span<const NodeKey>(e.node + i, 1);
+        };
+        result.bound =
+            Reals::make([&](auto i) NESTGRID_INLINE_LAMBDA { return bound_of(key(i)); });
+        holds = Mask::make([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const NodeMask mask = (*criterion_)(NewNodes{e.rule, key(i), e.level + 1, 0});
+            return mask != 0 ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         });
     }
-    result.stop &= interest;
-    result.descend = interest & ~result.stop;
+    auto interest = Mask::all(0);
+    for (const Layer& layer : layers_) {
+        interest = interest | at_most(max(Reals::all(layer.least_inside) - e.hi,
+                                          e.lo - Reals::all(layer.greatest_outside)),
+                                      result.bound);
+    }
+    result.descend = without(interest, holds);
+    result.stop = interest & holds;
     return result;
+}
+
+/// Which nodes of the first blocks have U >= C.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::set_signs(
+    const Blocks& blocks, std::size_t end, Layer& layer) {
+    using Bits = Pack<MaskOf<Real>>;
+    const auto least_inside = Pack<Real>::all(layer.least_inside);
+    for (std::size_t b = 0; b < end; b += pack) {
+        auto signs = Bits::all(0);
+        unrolled<Blocks::pattern.nodes>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const auto value = Pack<Real>::load(blocks.row(i) + b);
+            signs = signs | (at_most(least_inside, value) & Bits::all(MaskOf<Real>{1} << i));
+        });
+        signs.store(layer.signs.data() + b);
+    }
 }
 
 /// Those of the ends entered which a level passes through.
 /// \return how many
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Block>
-NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_block(
-    const Block& block, unsigned entered) {
-    const BlockContours& contours = BlockContours::of<Block::pattern>();
+template <class Blocks>
+NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_blocks(
+    const Blocks& blocks, std::size_t first, std::size_t end, const std::uint8_t* entered) {
+    const BlockContours& contours = BlockContours::of<Blocks::pattern>();
     const auto count_ends = [](unsigned bits) {  // at most 8 of them
         bits = (bits & 0x55U) + (bits >> 1U & 0x55U);
         bits = (bits & 0x33U) + (bits >> 2U & 0x33U);
         return (bits & 0xFU) + (bits >> 4U);
     };
-    unsigned ends = 0;
-    for (Layer& layer : layers_) {
-        layer.contour = &contours.at(at_least(block.value, layer.least_inside));
-        ends |= layer.contour->ends;
-    }
-    if (ends == 0) return 0;
-    bool plainly = (ends & ~entered) == 0;
-    if constexpr (indexed) plainly = plainly && block.boundary(1) == 0;
-    if (!plainly) {
-        ends &= entered;
-        for (unsigned left = ends; left != 0; left &= left - 1) {
-            const auto end = static_cast<unsigned>(std::countr_zero(left));
-            extract_part(block, Block::pattern.ends + end, Real(0));
+    unsigned extracted = 0;
+    for (Layer& layer : layers_) set_signs(blocks, end, layer);
+    for (std::size_t b = first; b < end; ++b) {
+        unsigned ends = 0;
+        for (Layer& layer : layers_) {
+            layer.contour = &contours.at(static_cast<unsigned>(layer.signs[b]));
+            ends |= layer.contour->ends;
         }
-        return count_ends(ends);
+        if (ends == 0) continue;
+        bool plainly = (ends & ~entered[b]) == 0;
+        if constexpr (indexed) plainly = plainly && blocks.boundary(b, 1) == 0;
+        if (!plainly) {
+            ends &= entered[b];
+            for (unsigned left = ends; left != 0; left &= left - 1) {
+                const auto part = static_cast<unsigned>(std::countr_zero(left));
+                extract_part(blocks, b, Blocks::pattern.ends + part, Real(0));
+            }
+        } else {
+            deepest_ = std::max(deepest_, blocks.level + static_cast<int>(Blocks::pattern.height));
+            for (Layer& layer : layers_) draw_block(blocks, b, layer, contours);
+        }
+        extracted += count_ends(ends);
     }
-    deepest_ = std::max(deepest_, block.level + static_cast<int>(Block::pattern.height));
-    for (Layer& layer : layers_) draw_block(block, layer, contours);
-    return count_ends(ends);
+    return extracted;
 }
 
 /// One element of a block, of which no more than its corners need be known.
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Block>
+template <class Blocks>
 NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_part(
-    const Block& block, std::size_t p, Real bound) {
-    const auto& part = Block::pattern.part[p];
-    const BlockContours& contours = BlockContours::of<Block::pattern>();
-    const int level = block.level + part.depth;
+    const Blocks& blocks, std::size_t b, std::size_t p, Real bound) {
+    const auto& part = Blocks::pattern.part[p];
+    const BlockContours& contours = BlockContours::of<Blocks::pattern>();
+    const int level = blocks.level + part.depth;
     for (Layer& layer : layers_) {
         unsigned bits = 0;
-        for (std::size_t i = 0; i < Block::pattern.corners; ++i) {
-            bits |= unsigned{block.value[part.corner[i]] >= layer.least_inside} << i;
+        for (std::size_t i = 0; i < Blocks::pattern.corners; ++i) {
+            bits |= unsigned{blocks.value(b, part.corner[i]) >= layer.least_inside} << i;
         }
-        if (bits == 0 || bits + 1 == 1U << Block::pattern.corners) continue;
+        if (bits == 0 || bits + 1 == 1U << Blocks::pattern.corners) continue;
         layer_ = &layer;
         deepest_ = std::max(deepest_, level);
         layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
         ++layer.extracted;
         const BlockContours::Piece& piece = contours.piece(p, bits);
-        [[maybe_unused]] NodePositions<Block> x;
+        [[maybe_unused]] NodePositions<Blocks> x;
         if constexpr (!indexed) {
-            for (std::size_t i = 0; i < Block::pattern.corners; ++i) {
-                x[part.corner[i]] = block.position(part.corner[i]);
+            for (std::size_t i = 0; i < Blocks::pattern.corners; ++i) {
+                x[part.corner[i]] = blocks.position(b, part.corner[i]);
             }
         }
         std::array<Vertex, 4> v;
-        for (std::size_t i = 0; i < piece.count; ++i) v[i] = cut_in(block, layer, piece.cut[i], x);
+        for (std::size_t i = 0; i < piece.count; ++i) v[i] = cut_in(blocks, b, layer, piece.cut[i], x);
         if (keeps_elements(layer.sink)) {
-            layer.sink.add_element(block.element(p), simplex_shape, level);
+            layer.sink.add_element(blocks.element(b, p), simplex_shape, level);
         }
-        put_loop(v, piece.count, part.mirrored != (block.orientation < 0));
-        if constexpr (indexed) put_boundary(v, piece.count, piece.face, block.boundary(p));
+        put_loop(v, piece.count, part.mirrored != (blocks.mirrored(b)));
+        if constexpr (indexed) put_boundary(v, piece.count, piece.face, blocks.boundary(b, p));
     }
 }
 
 /// All of the ends that a level passes through.
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Block>
+template <class Blocks>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_block(
-    const Block& block, Layer& layer, const BlockContours& contours) {
-    constexpr std::size_t nodes = Block::pattern.nodes;
+    const Blocks& blocks, std::size_t b, Layer& layer, const BlockContours& contours) {
+    constexpr std::size_t nodes = Blocks::pattern.nodes;
     const BlockContours::Contour& contour = *layer.contour;
     layer_ = &layer;
     layer.extracted += contour.loop_count;
-    [[maybe_unused]] NodePositions<Block> x;
-    if constexpr (!indexed) block.all_positions(x);
+    [[maybe_unused]] NodePositions<Blocks> x;
+    if constexpr (!indexed) blocks.all_positions(b, x);
     std::array<Vertex, nodes*(nodes - 1) / 2> v;
     std::size_t count = 0;
     for (const BlockContours::Cut& cut : contours.cuts(contour)) {
-        v[count++] = cut_in(block, layer, cut, x);
+        v[count++] = cut_in(blocks, b, layer, cut, x);
     }
-    const int level = block.level + static_cast<int>(Block::pattern.height);
+    const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
     for (const BlockContours::Loop& loop : contours.loops(contour)) {
         if (keeps_elements(layer.sink)) {
-            layer.sink.add_element(block.element(Block::pattern.ends + loop.end), simplex_shape,
+            layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end), simplex_shape,
                                    level);
         }
-        const auto vertex = [&](std::size_t i) { return v[loop.cut[i]]; };
-        const bool mirrored = (loop.mirrored != 0) != (block.orientation < 0);
-        put_loop(std::array{vertex(0), vertex(1), vertex(2), vertex(3)}, loop.count, mirrored);
+        struct {
+            const Vertex* vertex;
+            const std::uint8_t* cut;
+            NESTGRID_INLINE const Vertex& operator[](std::size_t i) const { return vertex[cut[i]]; }
+        } const corners{v.data(), loop.cut.data()};
+        put_loop(corners, loop.count, (loop.mirrored != 0) != blocks.mirrored(b));
     }
 }
 
 /// The vertex on an edge of a block.
 /// \param x positions of its ends, where there are no indices
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Block>
+template <class Blocks>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
-    const Block& block, const Layer& layer, const BlockContours::Cut& ends,
-    [[maybe_unused]] const NodePositions<Block>& x) -> Vertex {
+    const Blocks& blocks, std::size_t b, const Layer& layer, const BlockContours::Cut& ends,
+    [[maybe_unused]] const NodePositions<Blocks>& x) -> Vertex {
     const std::size_t low = ends.low;
     const std::size_t high = ends.high;
     const auto fraction = [&] {
-        return cut_fraction(layer.isovalue, static_cast<double>(block.value[low]),
-                            static_cast<double>(block.value[high]));
+        return cut_fraction(layer.isovalue, static_cast<double>(blocks.value(b, low)),
+                            static_cast<double>(blocks.value(b, high)));
     };
     if constexpr (indexed) {
-        const KeyPair name{block.key[low], block.key[high]};
-        const SubtreeFaces faces = block.faces[low] & block.faces[high];
+        const KeyPair name{blocks.key(b, low), blocks.key(b, high)};
+        const SubtreeFaces faces = blocks.faces(b, low) & blocks.faces(b, high);
         return add_within(name, faces, [&] {
-            Cut cut{block.position(low), {block.key[low], block.key[high]}, fraction(), {}};
-            cut.x = cut.x + cut.fraction * (block.position(high) - cut.x);
+            Cut cut{blocks.position(b, low), {blocks.key(b, low), blocks.key(b, high)}, fraction(), {}};
+            cut.x = cut.x + cut.fraction * (blocks.position(b, high) - cut.x);
             return cut;
         });
     } else {

@@ -64,7 +64,8 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
             put_loop(v, n, mirrored);
         } else {
             for (std::size_t i = 0; i < loop.triangle_count; ++i) {
-                put_triangle(v, loop.triangle[i], mirrored);
+                const auto& corner = loop.triangle[i];
+                put_triangle(v, {corner[0], corner[1], corner[2]}, mirrored);
             }
         }
         if constexpr (indexed) put_boundary(v, n, loop.face, walk_->boundary(s));
@@ -80,7 +81,7 @@ NESTGRID_VISITOR::add_closed(const State& s, std::uint8_t edge) -> Vertex {
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Vertices>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_triangle(
-    const Vertices& v, const std::array<std::uint8_t, 3>& corner, bool mirrored) {
+    const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored) {
     const Vertex& a = v[corner[mirrored ? 1 : 0]];
     const Vertex& b = v[corner[mirrored ? 0 : 1]];
     if constexpr (dimension == 2) {
@@ -95,21 +96,18 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Vertices>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_loop(
     const Vertices& v, std::size_t count, bool mirrored) {
-    if (count < 4) return put_triangle(v, {0, 1, 2}, mirrored);
-    const auto position = [&](std::size_t i) {
+    const auto position = [&](std::size_t i) -> decltype(auto) {
         if constexpr (indexed) {
             return layer_->sink.position(v[i]);
         } else {
-            return v[i];
+            return (v[i]);
         }
     };
-    if (shorter(position(0), position(2), position(1), position(3))) {
-        put_triangle(v, {0, 1, 2}, mirrored);
-        put_triangle(v, {2, 3, 0}, mirrored);
-    } else {
-        put_triangle(v, {1, 2, 3}, mirrored);
-        put_triangle(v, {3, 0, 1}, mirrored);
-    }
+    const bool two = count == 4;
+    const std::size_t first =
+        two && !shorter(position(0), position(2), position(1), position(3)) ? 1 : 0;
+    put_triangle(v, {first, first + 1, first + 2}, mirrored);
+    if (two) put_triangle(v, {first + 2, (first + 3) % 4, first}, mirrored);
 }
 
 /// The sides of a loop that lie on the boundary of the domain.

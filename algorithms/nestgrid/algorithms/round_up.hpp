@@ -18,6 +18,12 @@ inline float float_above(double x) {
                                       : f;
 }
 
+/// The greatest float that is not above x >= 0.
+inline float float_below(double x) {
+    const auto f = static_cast<float>(x);
+    return static_cast<double>(f) > x ? std::nextafter(f, 0.0F) : f;
+}
+
 /// Rounding error of the sum a + b = s: exactly a + b - s (two-sum, Knuth).
 inline double sum_error(double a, double b, double s) {
     const double b_part = s - a;

@@ -85,9 +85,16 @@ public:
     }
     NESTGRID_INLINE const Rule& rule(std::size_t number) const { return *rules_[number + 1]; }
     NESTGRID_INLINE bool halved(Node a, Node b) const { return ((a ^ b) & unit_) == 0; }
-    NESTGRID_INLINE Node middle(Node a, Node b) const { return (a + b) >> 1U; }
+    // Of a Pack, too.
+    template <class Nodes>
+    NESTGRID_INLINE Nodes middle(const Nodes& a, const Nodes& b) const {
+        return (a + b) >> 1;
+    }
     NESTGRID_INLINE NodeKey key(Node n) const { return node(n); }
-    NESTGRID_INLINE NodeKey middle_key(NodeKey a, NodeKey b) const { return (a + b) / 2; }
+    template <class Keys>
+    NESTGRID_INLINE Keys middle_key(const Keys& a, const Keys& b) const {
+        return (a + b) >> 1;
+    }
     using Lattice<dim>::whole;
 
     bool conforming() const { return true; }
