@@ -10,6 +10,7 @@
 
 #include <nestgrid/bisection_block.hpp>
 #include <nestgrid/pack.hpp>
+#include <nestgrid/wide_point.hpp>
 
 namespace nestgrid {
 
@@ -111,9 +112,17 @@ struct BlockBatch {
         return grid->position(nodes[node][b]);
     }
     NESTGRID_INLINE void all_positions(std::size_t b,
-                                       std::array<Point, pattern.nodes>& x) const {
+                                       std::array<WidePoint, pattern.nodes>& x) const {
         unrolled<pattern.nodes>(
-            [&](auto i) NESTGRID_INLINE_LAMBDA { x[i] = grid->position(nodes[i][b]); });
+            [&](auto i) NESTGRID_INLINE_LAMBDA { x[i] = WidePoint(grid->position(nodes[i][b])); });
+    }
+    /// Of the corners of a part alone.
+    NESTGRID_INLINE void corner_positions(std::size_t b, std::size_t part,
+                                          std::array<WidePoint, pattern.nodes>& x) const {
+        unrolled<pattern.corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const std::size_t node = pattern.part[part].corner[i];
+            x[node] = WidePoint(grid->position(nodes[node][b]));
+        });
     }
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(std::size_t b, std::size_t part) const {

@@ -21,7 +21,9 @@ public:
     static constexpr const auto& pattern = maubach_block<dim>;
 
     virtual Point position(std::size_t b, std::size_t node) const = 0;
-    virtual void all_positions(std::size_t b, std::array<Point, pattern.nodes>& x) const = 0;
+    virtual void all_positions(std::size_t b, std::array<WidePoint, pattern.nodes>& x) const = 0;
+    virtual void corner_positions(std::size_t b, std::size_t part,
+                                  std::array<WidePoint, pattern.nodes>& x) const = 0;
     virtual nestgrid_element element(std::size_t b, std::size_t part) const = 0;
     virtual unsigned boundary(std::size_t b, std::size_t part) const = 0;
 
@@ -118,9 +120,13 @@ private:
         Point position(std::size_t b, std::size_t node) const override {
             return of->position(b, node);
         }
-        void all_positions(std::size_t b, std::array<Point, Batch::pattern.nodes>& x)
+        void all_positions(std::size_t b, std::array<WidePoint, Batch::pattern.nodes>& x)
             const override {
             of->all_positions(b, x);
+        }
+        void corner_positions(std::size_t b, std::size_t part,
+                              std::array<WidePoint, Batch::pattern.nodes>& x) const override {
+            of->corner_positions(b, part, x);
         }
         nestgrid_element element(std::size_t b, std::size_t part) const override {
             return erased(of->element(b, part));

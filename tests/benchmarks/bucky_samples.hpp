@@ -57,8 +57,10 @@ struct Bucky {
                           const Executor& executor = {}) {
         Triangle* to = soup.data();
         const auto put = [&to](const std::array<nestgrid::Point, 3>& x) {
-            for (std::size_t i = 0; i < 9; ++i) (*to)[i] = static_cast<float>(x[i / 3][i % 3]);
-            ++to;
+            const auto narrow = [](double number) { return static_cast<float>(number); };
+            *to++ = {narrow(x[0][0]), narrow(x[0][1]), narrow(x[0][2]),
+                     narrow(x[1][0]), narrow(x[1][1]), narrow(x[1][2]),
+                     narrow(x[2][0]), narrow(x[2][1]), narrow(x[2][2])};
         };
         using Sink = nestgrid::SimplexStream<3, decltype(put)>;
         const double isovalue = bucky_isovalue;

@@ -35,6 +35,7 @@ public:
         std::uint32_t first_loop = 0;
         std::uint8_t cut_count = 0;
         std::uint8_t loop_count = 0;
+        std::uint8_t simplex_count = 0;
         std::uint8_t ends = 0;  ///< that have a loop, one bit each
     };
 
@@ -111,6 +112,8 @@ BlockContours::BlockContours(const Pattern& pattern) : pieces_(32 * Pattern::end
             }
             loops_.push_back(loop);
             ++contour.loop_count;
+            if (loop.count == 4) ++contour.simplex_count;
+            ++contour.simplex_count;
             contour.ends |= static_cast<std::uint8_t>(1U << end);
         }
         contours_.push_back(contour);

@@ -16,7 +16,8 @@
 namespace nestgrid {
 
 /// Whether the diagonal from a to c is no longer than that from b to d.
-inline bool shorter(const Point& a, const Point& c, const Point& b, const Point& d) {
+template <class P>
+NESTGRID_INLINE bool shorter(const P& a, const P& c, const P& b, const P& d) {
     return dot(c - a, c - a) <= dot(d - b, d - b);
 }
 

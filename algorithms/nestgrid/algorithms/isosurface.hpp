@@ -241,6 +241,10 @@ private:
     // isosurface_steps.hpp
     void set_isovalues();
     std::size_t table_bytes() const;
+    void count_simplices(std::size_t more) {
+        drawn_ += more;
+        if (drawn_ > limit_) throw OverLimit{};
+    }
     bool limited() const { return limit_ != std::numeric_limits<std::uint64_t>::max(); }
     unsigned pattern(const Real* value, std::size_t corners, const Layer& layer) const;
     bool of_interest(Real lo, Real hi, Real bound, bool also_below) const;
@@ -274,9 +278,10 @@ private:
     template <class Blocks>
     void set_signs(const Blocks& blocks, std::size_t end, Layer& layer);
     template <class Blocks>
-    using NodePositions = std::array<Point, indexed ? 1 : Blocks::pattern.nodes>;
+    using NodePositions = std::array<WidePoint, indexed ? 1 : Blocks::pattern.nodes>;
+    using BlockVertex = std::conditional_t<indexed, Number, WidePoint>;
     template <class Blocks>
-    Vertex cut_in(const Blocks& blocks, std::size_t b, const Layer& layer,
+    BlockVertex cut_in(const Blocks& blocks, std::size_t b, const Layer& layer,
                   const BlockContours::Cut& ends, const NodePositions<Blocks>& x);
     template <class Blocks>
     void draw_block(const Blocks& blocks, std::size_t b, Layer& layer,

@@ -184,20 +184,25 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
         deepest_ = std::max(deepest_, level);
         layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
         ++layer.extracted;
-        const BlockContours::Piece& piece = contours.piece(p, bits);
-        [[maybe_unused]] NodePositions<Blocks> x;
-        if constexpr (!indexed) {
-            for (std::size_t i = 0; i < Blocks::pattern.corners; ++i) {
-                x[part.corner[i]] = blocks.position(b, part.corner[i]);
-            }
-        }
-        std::array<Vertex, 4> v;
-        for (std::size_t i = 0; i < piece.count; ++i) v[i] = cut_in(blocks, b, layer, piece.cut[i], x);
         if (keeps_elements(layer.sink)) {
             layer.sink.add_element(blocks.element(b, p), simplex_shape, level);
         }
-        put_loop(v, piece.count, part.mirrored != (blocks.mirrored(b)));
-        if constexpr (indexed) put_boundary(v, piece.count, piece.face, blocks.boundary(b, p));
+        [[maybe_unused]] NodePositions<Blocks> x;
+        if constexpr (!indexed) blocks.corner_positions(b, p, x);
+        const BlockContours::Piece& piece = contours.piece(p, bits);
+        const auto draw = [&](auto count) {
+            std::array<BlockVertex, count> v;
+            unrolled<count>([&](auto i) { v[i] = cut_in(blocks, b, layer, piece.cut[i], x); });
+            count_simplices(count < 4 ? 1 : 2);
+            put_loop(v, count, part.mirrored != blocks.mirrored(b));
+            if constexpr (indexed) put_boundary(v, count, piece.face, blocks.boundary(b, p));
+        };
+        constexpr auto least = static_cast<std::size_t>(dimension);
+        if (piece.count == least) {
+            draw(std::integral_constant<std::size_t, least>{});
+        } else {
+            draw(std::integral_constant<std::size_t, 4>{});
+        }
     }
 }
 
@@ -210,9 +215,10 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bl
     const BlockContours::Contour& contour = *layer.contour;
     layer_ = &layer;
     layer.extracted += contour.loop_count;
+    count_simplices(contour.simplex_count);
     [[maybe_unused]] NodePositions<Blocks> x;
     if constexpr (!indexed) blocks.all_positions(b, x);
-    std::array<Vertex, nodes*(nodes - 1) / 2> v;
+    std::array<BlockVertex, nodes*(nodes - 1) / 2> v;
     std::size_t count = 0;
     for (const BlockContours::Cut& cut : contours.cuts(contour)) {
         v[count++] = cut_in(blocks, b, layer, cut, x);
@@ -224,9 +230,11 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bl
                                    level);
         }
         struct {
-            const Vertex* vertex;
+            const BlockVertex* vertex;
             const std::uint8_t* cut;
-            NESTGRID_INLINE const Vertex& operator[](std::size_t i) const { return vertex[cut[i]]; }
+            NESTGRID_INLINE const BlockVertex& operator[](std::size_t i) const {
+                return vertex[cut[i]];
+            }
         } const corners{v.data(), loop.cut.data()};
         put_loop(corners, loop.count, (loop.mirrored != 0) != blocks.mirrored(b));
     }
@@ -238,7 +246,7 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
     const Blocks& blocks, std::size_t b, const Layer& layer, const BlockContours::Cut& ends,
-    [[maybe_unused]] const NodePositions<Blocks>& x) -> Vertex {
+    [[maybe_unused]] const NodePositions<Blocks>& x) -> BlockVertex {
     const std::size_t low = ends.low;
     const std::size_t high = ends.high;
     const auto fraction = [&] {

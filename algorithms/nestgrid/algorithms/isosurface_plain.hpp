@@ -60,6 +60,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
             v[i] = add({key_[low], key_[high]}, make);
         }
         if (l == 0) layer.sink.add_element(s.element, s.shape, s.level);
+        count_simplices(n <= 3 ? 1 : n - 2);
         if (n <= 3 || loop.any_diagonal) {
             put_loop(v, n, mirrored);
         } else {
@@ -82,12 +83,12 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Vertices>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_triangle(
     const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored) {
-    const Vertex& a = v[corner[mirrored ? 1 : 0]];
-    const Vertex& b = v[corner[mirrored ? 0 : 1]];
+    const Vertex a(v[corner[mirrored ? 1 : 0]]);
+    const Vertex b(v[corner[mirrored ? 0 : 1]]);
     if constexpr (dimension == 2) {
         put_simplex({a, b}, {});
     } else {
-        put_simplex({a, b, v[corner[2]]}, {});
+        put_simplex({a, b, Vertex(v[corner[2]])}, {});
     }
 }
 
@@ -103,11 +104,10 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_loo
             return (v[i]);
         }
     };
-    const bool two = count == 4;
-    const std::size_t first =
-        two && !shorter(position(0), position(2), position(1), position(3)) ? 1 : 0;
+    if (count < 4) return put_triangle(v, {0, 1, 2}, mirrored);
+    const std::size_t first = shorter(position(0), position(2), position(1), position(3)) ? 0 : 1;
     put_triangle(v, {first, first + 1, first + 2}, mirrored);
-    if (two) put_triangle(v, {first + 2, (first + 3) % 4, first}, mirrored);
+    put_triangle(v, {first + 2, (first + 3) % 4, first}, mirrored);
 }
 
 /// The sides of a loop that lie on the boundary of the domain.

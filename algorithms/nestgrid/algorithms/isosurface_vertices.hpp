@@ -260,6 +260,7 @@ NESTGRID_VISITOR::simplex(const std::array<Number, static_cast<std::size_t>(dime
         v[i] = local_[locals[from]];
         if (options_->reference) reference[i] = reference_[locals[from]];
     }
+    count_simplices(1);
     put_simplex(v, options_->reference ? std::span<const Point>(reference)
                                        : std::span<const Point>());
 }
@@ -268,7 +269,6 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_simplex(
     const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
     std::span<const Point> reference) {
-    if (++drawn_ > limit_) throw OverLimit{};
     layer_->sink.add_simplex(v, reference);
     if constexpr (indexed && !logs && dimension == 3) {
         if (options_->normals) {
