@@ -68,6 +68,7 @@ public:
     virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual PackedGlance<Real> glance(const PackedElements<Real>& e) = 0;
+    virtual void expect(const NodeKey* nodes) const = 0;
     virtual void begin_subtrees() = 0;
     virtual void extract_part(const ErasedBlocks<dim, Real>& blocks, std::size_t b,
                               std::size_t part, Real bound) = 0;
@@ -102,6 +103,7 @@ public:
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
     void begin_subtrees() { to_->begin_subtrees(); }
     PackedGlance<Real> glance(const PackedElements<Real>& e) { return to_->glance(e); }
+    void expect(const NodeKey* nodes) const { to_->expect(nodes); }
     template <class Batch>
     void extract_part(const Batch& batch, std::size_t b, std::size_t part, Real bound) {
         to_->extract_part(Blocks<Batch>(batch), b, part, bound);

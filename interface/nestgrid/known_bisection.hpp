@@ -12,7 +12,8 @@
 //     Element element(std::size_t number, const std::array<Node, dimension + 1>&)
 //     const Rule& rule(std::size_t number)
 //     bool halved(Node a, Node b)                      whether an edge to be bisected is
-//     Node middle(Node a, Node b)                      its new node
+//     Node middle(Node a, Node b)                      its new node; where nodes are numbers, best
+//                                                      of a Pack of them as well
 //     NodeKey key(Node)
 //     Point position(Node)
 //     bool whole()                                     that nothing is masked or outside
@@ -22,10 +23,10 @@
 // Nothing hangs in such a grid, and it knows keys, positions and boundary faces by heart. It may
 // also offer
 //     static constexpr std::size_t block_height        2 or 3
-//     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two
+//     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two; likewise
 // which says that an element split by the last of the bisections is split that many times over,
 // into elements of the last bisection again, of which either all are split or none; then those are
-// looked at together (bisection_walk.hpp).
+// looked at together (block_walk.hpp).
 #pragma once
 
 #include <array>

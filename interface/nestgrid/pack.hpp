@@ -25,8 +25,10 @@ constexpr std::size_t packed(std::size_t count) { return (count + pack - 1) / pa
 template <class T>
 using MaskOf = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 
-/// T is of 4 or 8 bytes.
 template <class T>
+concept Packable = std::is_arithmetic_v<T> && (sizeof(T) == 4 || sizeof(T) == 8);
+
+template <Packable T>
 class Pack {
 #if defined(__AVX512F__) && defined(__AVX512VL__)
     static constexpr std::size_t widest_ = 64;
@@ -35,7 +37,6 @@ class Pack {
 #else
     static constexpr std::size_t widest_ = 16;
 #endif
-    static_assert(sizeof(T) == 4 || sizeof(T) == 8);
 #if defined(__GNUC__)
     static constexpr std::size_t bytes_ = std::min(widest_, pack * sizeof(T));
     using Vector [[gnu::vector_size(bytes_)]] = T;
@@ -84,8 +85,8 @@ public:
     }
     /// The same bits as numbers of another type.
     template <class U>
+        requires(sizeof(U) == sizeof(T))
     NESTGRID_INLINE Pack<U> as() const {
-        static_assert(sizeof(U) == sizeof(T));
         Pack<U> p;
         unrolled<vectors_>([&](auto v) NESTGRID_INLINE_LAMBDA {
             std::memcpy(&p.v_[v].of, &v_[v].of, sizeof(Vector));
@@ -151,7 +152,7 @@ public:
     }
 
 private:
-    template <class>
+    template <Packable>
     friend class Pack;
 
     template <class Function>

@@ -67,12 +67,13 @@ public:
         return bfloat16_value(largest);
     }
 
-    /// It will be asked for.
-    NESTGRID_INLINE void prefetch(NodeKey node) const {
+    /// Eight nodes will be asked for.
+    NESTGRID_INLINE void prefetch([[maybe_unused]] const NodeKey* nodes) const {
 #if defined(__GNUC__)
-        if (dense_ != nullptr) __builtin_prefetch(dense_.get() + static_cast<std::size_t>(node));
-#else
-        static_cast<void>(node);
+        if (dense_ == nullptr) return;
+        for (std::size_t i = 0; i < pack; ++i) {
+            __builtin_prefetch(dense_.get() + static_cast<std::size_t>(nodes[i]));
+        }
 #endif
     }
 

@@ -23,7 +23,6 @@
 #include <memory>
 #include <mutex>
 
-#include <nestgrid/algorithms/at_least.hpp>
 #include <nestgrid/algorithms/block_contours.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/executor.hpp>
@@ -176,11 +175,8 @@ public:
     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside);
     bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
     PackedGlance<Real> glance(const PackedElements<Real>& e);
-    /// It will be glanced at.
-    NESTGRID_INLINE void expect(NodeKey node) const
-        requires requires(const Indicator& i) { i.prefetch(NodeKey{}); }
-    {
-        indicator_->prefetch(node);
+    NESTGRID_INLINE void expect(const NodeKey* nodes) const {
+        if constexpr (requires { indicator_->prefetch(nodes); }) indicator_->prefetch(nodes);
     }
     void begin_subtrees()
         requires(indexed)

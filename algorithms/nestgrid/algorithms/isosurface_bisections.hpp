@@ -35,6 +35,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
             PackedGlance<Real> glance(const PackedElements<Real>& e) override {
                 return to->glance(e);
             }
+            void expect(const NodeKey* nodes) const override { to->expect(nodes); }
             void extract_part(const ErasedBlocks<dimension, Real>& blocks, std::size_t b,
                               std::size_t part, Real bound) override {
                 to->extract_part(blocks, b, part, bound);
