@@ -110,8 +110,30 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
         NodeKey key{};
         call_new_keys(grid_, context_, s.element, std::span<NodeKey>(&key, 1));
         demand(grid_.key(z) == key, "the new node");
+        const auto halves_packs = [&](auto from, auto to, auto between, const auto& middle) {
+            using T = decltype(from);
+            if constexpr (Packable<T>) {
+                if constexpr (std::is_invocable_v<decltype(middle), Pack<T>, Pack<T>>) {
+                    const auto all = middle(Pack<T>::all(from), Pack<T>::all(to)).numbers();
+                    return std::ranges::count(all, between) == std::ssize(all);
+                }
+            }
+            return true;
+        };
+        demand(halves_packs(a, b, z,
+                            [&](const auto& from, const auto& to)
+                                -> decltype(grid_.middle(from, to)) {
+                                return grid_.middle(from, to);
+                            }),
+               "the middle of a pack of nodes");
         if constexpr (KnowsBlocks<Grid>) {
             demand(grid_.middle_key(grid_.key(a), grid_.key(b)) == key, "the key between two");
+            demand(halves_packs(grid_.key(a), grid_.key(b), key,
+                                [&](const auto& from, const auto& to)
+                                    -> decltype(grid_.middle_key(from, to)) {
+                                    return grid_.middle_key(from, to);
+                                }),
+                   "the middle of a pack of keys");
             if (number + 1 == Grid::bisections.size()) {
                 std::size_t split = 0;
                 const std::size_t ends = count_block_ends(s.element, Grid::block_height, split);

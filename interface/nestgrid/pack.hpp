@@ -151,6 +151,12 @@ public:
         return mask;
     }
 
+    NESTGRID_INLINE std::array<T, pack> numbers() const {
+        std::array<T, pack> result;
+        store(result.data());
+        return result;
+    }
+
 private:
     template <Packable>
     friend class Pack;

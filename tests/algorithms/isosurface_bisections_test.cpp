@@ -99,7 +99,7 @@ TEST(KnownBisections, DrawWhatThePlainTraversalDraws) {
     }
 }
 
-enum class Mistake { none, orientation, corner, leaf, node, position, key, block };
+enum class Mistake { none, orientation, corner, leaf, node, position, key, block, nodes, keys };
 
 /// One whose bisections at compile time are not those of split() and children().
 template <Mistake mistake>
@@ -121,6 +121,12 @@ struct Mistaken : LatticeBisection<3> {
     using LatticeBisection<3>::middle;
     NodeKey middle_key(NodeKey a, NodeKey b) const {
         return mistake == Mistake::key ? a : LatticeBisection<3>::middle_key(a, b);
+    }
+    Pack<Node> middle(const Pack<Node>& a, const Pack<Node>& b) const {
+        return mistake == Mistake::nodes ? a : LatticeBisection<3>::middle(a, b);
+    }
+    Pack<NodeKey> middle_key(const Pack<NodeKey>& a, const Pack<NodeKey>& b) const {
+        return mistake == Mistake::keys ? a : LatticeBisection<3>::middle_key(a, b);
     }
     Point position(Node n) const {
         const Point x = LatticeBisection<3>::position(n);
@@ -152,6 +158,66 @@ TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {
     EXPECT_NE(complaint<Mistake::position>().find("the position"), std::string::npos);
     EXPECT_NE(complaint<Mistake::key>().find("the key between"), std::string::npos);
     EXPECT_NE(complaint<Mistake::block>().find("of a block"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::nodes>().find("pack of nodes"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::keys>().find("pack of keys"), std::string::npos);
+}
+
+/// Blocks of the finest level are leaves in half of the domain.
+template <bool known>
+struct HalfAsDeep : LatticeBisection<3> {
+    using LatticeBisection<3>::LatticeBisection;
+    static constexpr auto bisections = [] {
+        if constexpr (known) return maubach_bisections<3>();
+        if constexpr (!known) return Nothing{};
+    }();
+    /// The edge of a tetrahedron that begins a block is the diagonal of a cube.
+    bool halved(Node a, Node b) const {
+        const auto steps = [&](std::size_t d) {
+            return at(a, d) < at(b, d) ? at(b, d) - at(a, d) : at(a, d) - at(b, d);
+        };
+        const bool last = steps(0) == 2 && steps(1) == 2 && steps(2) == 2;
+        return LatticeBisection<3>::halved(a, b) &&
+               !(last && at(a, 0) + at(b, 0) < static_cast<std::uint32_t>(samples(0)));
+    }
+    const Rule* split(const Element& e) const {
+        return halved(e.corner[0], e.corner[e.tag]) ? LatticeBisection<3>::split(e) : nullptr;
+    }
+};
+
+template <class Known, class Unknown>
+void expect_same_walks(const Samples& n, const SampledField& data) {
+    const Known known({.samples = n});
+    const Unknown unknown({.samples = n});
+    const LatticeField known_field(known, std::span<const float>(data.values));
+    const LatticeField unknown_field(unknown, std::span<const float>(data.values));
+    static_assert(KnowsBisections<Known, decltype(known_field)> && KnowsBlocks<Known>);
+    static_assert(!KnowsBisections<Unknown, decltype(unknown_field)>);
+    const HierarchicalIndicator indicator(known, known_field);
+    for (const double threshold : {0.0, 0.003, 0.02, 0.1}) {
+        SCOPED_TRACE("threshold " + std::to_string(threshold));
+        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold * data.range};
+        const auto a = isosurface(known, known_field, data.isovalue, criterion, indicator);
+        const auto b = isosurface(unknown, unknown_field, data.isovalue, criterion, indicator);
+        EXPECT_GT(a.surface.simplices.size(), 0U);
+        expect_same(a, b);
+    }
+}
+
+TEST(KnownBisections, MayEndOnSeveralLevels) {
+    const Samples n{17, 17, 17};
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        expect_same_walks<HalfAsDeep<true>, HalfAsDeep<false>>(n, data);
+    }
+}
+
+/// More blocks on a level, and more that stops, than are walked at once.
+TEST(KnownBisections, FillWhatIsWalkedAtOnce) {
+    const Samples n{33, 33, 33};
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        expect_same_walks<LatticeBisection<3>, Unknown<3>>(n, data);
+    }
 }
 
 /// A stream has no indices: its triangles are those of the surface, corner by corner.
