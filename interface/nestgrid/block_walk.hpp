@@ -138,8 +138,7 @@ private:
         return !grid_->halved(batch.nodes[first.corner[next.parent[0]]][b],
                               batch.nodes[first.corner[next.parent[1]]][b]);
     }
-    void extract_leaves(Queue& batch, const Interior& interior, std::size_t first,
-                        std::size_t end);
+    void extract_leaves(Queue& batch, const Interior& interior, std::size_t first, std::size_t end);
     void extract_some_leaves(const Batch& batch, const Interior& interior, std::size_t b);
     void enter(Queue& batch, const Interior& interior, std::size_t first, std::size_t end,
                Queue& next);
@@ -148,8 +147,8 @@ private:
     void look_at_ends(const Batch& batch, Steps& steps) const;
     static void copy_corners(const Batch& batch, std::size_t b, std::size_t part, Queue& next);
     static const auto& order_of(const Interior& interior, std::size_t b) {
-        return block_orders<pattern_>[static_cast<std::size_t>(
-            interior.descend[b] | interior.stop[b] << (ends_ - 2))];
+        return block_orders<pattern_>[static_cast<std::size_t>(interior.descend[b] |
+                                                               interior.stop[b] << (ends_ - 2))];
     }
     NESTGRID_INLINE static std::pair<Real, Real> range_within(const Batch& batch, std::size_t b,
                                                               std::size_t part) {

@@ -27,7 +27,8 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     const auto [lo, hi] = range_of(u);
     const NodeKey middle =
         grid_->middle_key(first.keys[rule.parent[0]][0], first.keys[rule.parent[1]][0]);
-    const auto [visit, bound] = visitor_->glance(lo, hi, grid_->rule(last_), middle, path / 2, false);
+    const auto [visit, bound] =
+        visitor_->glance(lo, hi, grid_->rule(last_), middle, path / 2, false);
     if (visit == Visit::stop) extract(first, 0, 1, bound);
     if (visit == Visit::descend) walk(first);
 }
@@ -105,11 +106,15 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
     };
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
         halve(batch.nodes, at, first,
-              [&](const auto& a, const auto& b) NESTGRID_INLINE_LAMBDA
-              -> decltype(grid_->middle(a, b)) { return grid_->middle(a, b); });
+              [&](const auto& a, const auto& b)
+                  NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle(a, b)) {
+                      return grid_->middle(a, b);
+                  });
         halve(batch.keys, at, first,
-              [&](const auto& a, const auto& b) NESTGRID_INLINE_LAMBDA
-              -> decltype(grid_->middle_key(a, b)) { return grid_->middle_key(a, b); });
+              [&](const auto& a, const auto& b)
+                  NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
+                      return grid_->middle_key(a, b);
+                  });
         if constexpr (requires { visitor_->expect(batch.keys[at].data()); }) {
             visitor_->expect(batch.keys[at].data() + first);
         }
@@ -141,10 +146,10 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(const Batch& b
                 return Pack<Real>::load(batch.values[part.corner[corner]].data() + first);
             };
             const Pack<Real> u0 = value(0), u1 = value(1), u2 = value(2), u3 = value(3);
-            const PackedGlance<Real> glance = visitor_->glance(PackedElements<Real>{
-                grid_->rule(part.bisection), batch.level + part.depth,
-                batch.keys[part.middle].data() + first, min(min(u0, u1), min(u2, u3)),
-                max(max(u0, u1), max(u2, u3))});
+            const PackedGlance<Real> glance = visitor_->glance(
+                PackedElements<Real>{grid_->rule(part.bisection), batch.level + part.depth,
+                                     batch.keys[part.middle].data() + first,
+                                     min(min(u0, u1), min(u2, u3)), max(max(u0, u1), max(u2, u3))});
             const auto bit = Bits::all(MaskOf<Real>{1} << i);
             descend = descend | (glance.descend & bit);
             stop = stop | (glance.stop & bit);
@@ -224,7 +229,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const 
         const MaskOf<Real> ended = is_end ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         const MaskOf<Real> descends = steps.descend[next_end] & ended;
         const MaskOf<Real> stops = steps.stop[next_end] | ~ended;
-        const Real* const bound = is_end ? &steps.bound[next_end] : &interior.bound[part % ends_][b];
+        const Real* const bound =
+            is_end ? &steps.bound[next_end] : &interior.bound[part % ends_][b];
         next_end += is_end ? 1 : 0;
         copy_corners(batch, b, part, next);
         next.stopped[next.stopped_count] = {&batch, static_cast<std::uint8_t>(b),

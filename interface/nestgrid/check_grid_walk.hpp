@@ -120,17 +120,17 @@ void GridChecker<Grid, Field>::check_known_bisection([[maybe_unused]] const Stat
             }
             return true;
         };
-        demand(halves_packs(a, b, z,
-                            [&](const auto& from, const auto& to)
-                                -> decltype(grid_.middle(from, to)) {
-                                return grid_.middle(from, to);
-                            }),
-               "the middle of a pack of nodes");
+        demand(
+            halves_packs(a, b, z,
+                         [&](const auto& from, const auto& to) -> decltype(grid_.middle(from, to)) {
+                             return grid_.middle(from, to);
+                         }),
+            "the middle of a pack of nodes");
         if constexpr (KnowsBlocks<Grid>) {
             demand(grid_.middle_key(grid_.key(a), grid_.key(b)) == key, "the key between two");
             demand(halves_packs(grid_.key(a), grid_.key(b), key,
-                                [&](const auto& from, const auto& to)
-                                    -> decltype(grid_.middle_key(from, to)) {
+                                [&](const auto& from,
+                                    const auto& to) -> decltype(grid_.middle_key(from, to)) {
                                     return grid_.middle_key(from, to);
                                 }),
                    "the middle of a pack of keys");

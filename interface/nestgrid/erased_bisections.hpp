@@ -122,8 +122,8 @@ private:
         Point position(std::size_t b, std::size_t node) const override {
             return of->position(b, node);
         }
-        void all_positions(std::size_t b, std::array<WidePoint, Batch::pattern.nodes>& x)
-            const override {
+        void all_positions(std::size_t b,
+                           std::array<WidePoint, Batch::pattern.nodes>& x) const override {
             of->all_positions(b, x);
         }
         void corner_positions(std::size_t b, std::size_t part,

@@ -50,6 +50,7 @@ class Pack {
 public:
     using Mask = Pack<MaskOf<T>>;
 
+    // Vector by vector: a copy of all of them goes through narrower ones, and waits for those.
     NESTGRID_INLINE static Pack load(const T* from) {
         Pack p;
         unrolled<vectors_>([&](auto v) NESTGRID_INLINE_LAMBDA {
@@ -64,7 +65,7 @@ public:
     }
     NESTGRID_INLINE static Pack all(T x) {
         Pack p;
-        for (Part& part : p.v_) part.of = x - Vector{};
+        for (Part& part : p.v_) part.of = x - Vector{};  // -0 stays what it is
         return p;
     }
     /// function(std::integral_constant<std::size_t, i>) for each of them.
@@ -105,36 +106,39 @@ public:
         });
     }
     NESTGRID_INLINE friend Pack operator-(const Pack& a, const Pack& b) {
-        return combine(a, b, [](const Vector& x, const Vector& y)
-                                 NESTGRID_INLINE_LAMBDA -> Vector { return x - y; });
+        return combine(a, b, [](const Vector& x, const Vector& y) NESTGRID_INLINE_LAMBDA -> Vector {
+            return x - y;
+        });
     }
     NESTGRID_INLINE friend Pack operator&(const Pack& a, const Pack& b) {
-        return combine(a, b, [](const Vector& x, const Vector& y)
-                                 NESTGRID_INLINE_LAMBDA -> Vector { return x & y; });
+        return combine(a, b, [](const Vector& x, const Vector& y) NESTGRID_INLINE_LAMBDA -> Vector {
+            return x & y;
+        });
     }
     NESTGRID_INLINE friend Pack operator|(const Pack& a, const Pack& b) {
-        return combine(a, b, [](const Vector& x, const Vector& y)
-                                 NESTGRID_INLINE_LAMBDA -> Vector { return x | y; });
+        return combine(a, b, [](const Vector& x, const Vector& y) NESTGRID_INLINE_LAMBDA -> Vector {
+            return x | y;
+        });
     }
     /// The bits of a that are not in b.
     NESTGRID_INLINE friend Pack without(const Pack& a, const Pack& b) {
-        return combine(a, b, [](const Vector& x, const Vector& y)
-                                 NESTGRID_INLINE_LAMBDA -> Vector { return x & ~y; });
+        return combine(a, b, [](const Vector& x, const Vector& y) NESTGRID_INLINE_LAMBDA -> Vector {
+            return x & ~y;
+        });
     }
     NESTGRID_INLINE friend Pack operator+(const Pack& a, const Pack& b) {
-        return combine(a, b, [](const Vector& x, const Vector& y)
-                                 NESTGRID_INLINE_LAMBDA -> Vector { return x + y; });
+        return combine(a, b, [](const Vector& x, const Vector& y) NESTGRID_INLINE_LAMBDA -> Vector {
+            return x + y;
+        });
     }
     NESTGRID_INLINE Pack operator<<(int bits) const {
         Pack p;
-        unrolled<vectors_>(
-            [&](auto v) NESTGRID_INLINE_LAMBDA { p.v_[v].of = v_[v].of << bits; });
+        unrolled<vectors_>([&](auto v) NESTGRID_INLINE_LAMBDA { p.v_[v].of = v_[v].of << bits; });
         return p;
     }
     NESTGRID_INLINE Pack operator>>(int bits) const {
         Pack p;
-        unrolled<vectors_>(
-            [&](auto v) NESTGRID_INLINE_LAMBDA { p.v_[v].of = v_[v].of >> bits; });
+        unrolled<vectors_>([&](auto v) NESTGRID_INLINE_LAMBDA { p.v_[v].of = v_[v].of >> bits; });
         return p;
     }
     /// Where a <= b.

@@ -247,6 +247,12 @@ void compare(std::size_t rounds) {
                      [&] { linear_triangles = contour(linear.Get(), double{bucky_isovalue}); });
     unstructured.add("contour3dlineargrid_spanspace",
                      [&] { contour(with_tree.Get(), double{bucky_isovalue}); });
+    unstructured.add("soup_ours", [&] { bucky.draw_soup(bucky.grid, bucky.field, 0.0F); });
+    unstructured.add("contour3dlineargrid_spanspace_soup", [&] {
+        with_tree->MergePointsOff();
+        contour(with_tree.Get(), double{bucky_isovalue});
+        with_tree->MergePointsOn();
+    });
     unstructured.add("contourgrid", [&] { contour(grid_filter.Get(), double{bucky_isovalue}); });
     unstructured.run();
     unstructured.print_times();
@@ -256,6 +262,8 @@ void compare(std::size_t rounds) {
         print(std::string(name) + "_over_ours",
               unstructured.time(name) / unstructured.time("ours"));
     }
+    print("contour3dlineargrid_spanspace_soup_over_ours",
+          unstructured.time("contour3dlineargrid_spanspace_soup") / unstructured.time("soup_ours"));
 }
 
 }  // namespace

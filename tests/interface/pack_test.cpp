@@ -27,7 +27,8 @@ std::array<T, pack> random_numbers(std::mt19937_64& random) {
     std::array<T, pack> result;
     for (T& x : result) {
         if constexpr (std::is_floating_point_v<T>) {
-            const std::array<T, 6> special{0,  -T{0}, 1, std::numeric_limits<T>::infinity(),
+            const std::array<T, 6> special{0,  -T{0},
+                                           1,  std::numeric_limits<T>::infinity(),
                                            -1, std::numeric_limits<T>::denorm_min()};
             x = random() % 4 == 0 ? special[random() % special.size()]
                                   : std::uniform_real_distribution<T>(-2, 2)(random);
@@ -124,8 +125,9 @@ void expect_order() {
             if ((entered & stops) != 0 || ((entered | stops) & ~seen) != 0) continue;
             ++met;
             const auto& known = block_orders<pattern>[entered | stops << parts];
-            EXPECT_EQ(std::vector<std::size_t>(known.part.begin(), known.part.begin() + known.count),
-                      order);
+            EXPECT_EQ(
+                std::vector<std::size_t>(known.part.begin(), known.part.begin() + known.count),
+                order);
         }
     }
     EXPECT_EQ(met, parts == 2 ? 9U : 121U);  // 3^2; (2 + 3^2)^2

@@ -229,7 +229,7 @@ private:
         std::vector<Where> where{};
         Number vertex_count = 0;
         const BlockContours::Contour* contour = nullptr;  // of the block being drawn
-        std::array<MaskOf<Real>, most_blocks> signs{};     // of blocks
+        std::array<MaskOf<Real>, most_blocks> signs{};    // of blocks
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
     static constexpr Number none = std::numeric_limits<Number>::max();
@@ -278,7 +278,7 @@ private:
     using BlockVertex = std::conditional_t<indexed, Number, WidePoint>;
     template <class Blocks>
     BlockVertex cut_in(const Blocks& blocks, std::size_t b, const Layer& layer,
-                  const BlockContours::Cut& ends, const NodePositions<Blocks>& x);
+                       const BlockContours::Cut& ends, const NodePositions<Blocks>& x);
     template <class Blocks>
     void draw_block(const Blocks& blocks, std::size_t b, Layer& layer,
                     const BlockContours& contours);
