@@ -230,6 +230,8 @@ private:
         Number vertex_count = 0;
         const BlockContours::Contour* contour = nullptr;  // of the block being drawn
         std::array<MaskOf<Real>, most_blocks> signs{};    // of blocks
+        std::vector<VertexNumbers::Name> names{};         // of their vertices
+        std::array<std::size_t, most_blocks> first_name{};
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
     static constexpr Number none = std::numeric_limits<Number>::max();
@@ -274,11 +276,15 @@ private:
     template <class Blocks>
     void set_signs(const Blocks& blocks, std::size_t end, Layer& layer);
     template <class Blocks>
+    void name_vertices(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
+                       const BlockContours& contours);
+    template <class Blocks>
     using NodePositions = std::array<WidePoint, indexed ? 1 : Blocks::pattern.nodes>;
     using BlockVertex = std::conditional_t<indexed, Number, WidePoint>;
     template <class Blocks>
     BlockVertex cut_in(const Blocks& blocks, std::size_t b, const Layer& layer,
-                       const BlockContours::Cut& ends, const NodePositions<Blocks>& x);
+                       const BlockContours::Cut& ends, const NodePositions<Blocks>& x,
+                       const VertexNumbers::Name* name);
     template <class Blocks>
     void draw_block(const Blocks& blocks, std::size_t b, Layer& layer,
                     const BlockContours& contours);
@@ -320,7 +326,7 @@ private:
     template <class Make>
     Vertex add(const KeyPair& name, Make&& make);
     template <class Make>
-    Vertex add_within(const KeyPair& name, SubtreeFaces faces, Make&& make);
+    Number add_within(const VertexNumbers::Name& name, SubtreeFaces faces, Make&& make);
     Number add_new(const Cut& cut);
     Vertex add_unnamed(const Point& x, std::span<const double> attributes);
     Number number_of(const Vertex& vertex, const Point& reference);

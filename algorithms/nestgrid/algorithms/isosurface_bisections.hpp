@@ -129,6 +129,28 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::set_sig
     }
 }
 
+/// The names of all vertices of these blocks, and what tables know of them on its way.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::name_vertices(
+    const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
+    const BlockContours& contours) {
+    layer.names.clear();
+    for (std::size_t b = first; b < end; ++b) {
+        const auto& contour = contours.at(static_cast<unsigned>(layer.signs[b]));
+        std::size_t at = layer.names.size();
+        layer.first_name[b] = at;
+        layer.names.resize(at + contour.cut_count);
+        for (const BlockContours::Cut& cut : contours.cuts(contour)) {
+            const auto name =
+                layer.number_of.name({blocks.key(b, cut.low), blocks.key(b, cut.high)});
+            layer.names[at++] = name;
+            const bool within = (blocks.faces(b, cut.low) & blocks.faces(b, cut.high)) == 0;
+            if (!within) layer.number_of.prefetch(name);
+        }
+    }
+}
+
 /// Those of the ends entered which a level passes through.
 /// \return how many
 template <class Grid, class Field, class S, class Indicator, class Sink>
@@ -142,7 +164,10 @@ NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::ext
         return (bits & 0xFU) + (bits >> 4U);
     };
     unsigned extracted = 0;
-    for (Layer& layer : layers_) set_signs(blocks, end, layer);
+    for (Layer& layer : layers_) {
+        set_signs(blocks, end, layer);
+        if constexpr (indexed) name_vertices(blocks, first, end, layer, contours);
+    }
     for (std::size_t b = first; b < end; ++b) {
         unsigned ends = 0;
         for (Layer& layer : layers_) {
@@ -193,7 +218,16 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
         const BlockContours::Piece& piece = contours.piece(p, bits);
         const auto draw = [&](auto count) {
             std::array<BlockVertex, count> v;
-            unrolled<count>([&](auto i) { v[i] = cut_in(blocks, b, layer, piece.cut[i], x); });
+            unrolled<count>([&](auto i) {
+                if constexpr (indexed) {
+                    const auto& [low, high] = piece.cut[i];
+                    const auto name =
+                        layer.number_of.name({blocks.key(b, low), blocks.key(b, high)});
+                    v[i] = cut_in(blocks, b, layer, piece.cut[i], x, &name);
+                } else {
+                    v[i] = cut_in(blocks, b, layer, piece.cut[i], x, nullptr);
+                }
+            });
             count_simplices(count < 4 ? 1 : 2);
             put_loop(v, count, part.mirrored != blocks.mirrored(b));
             if constexpr (indexed) put_boundary(v, count, piece.face, blocks.boundary(b, p));
@@ -221,8 +255,11 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bl
     if constexpr (!indexed) blocks.all_positions(b, x);
     std::array<BlockVertex, nodes*(nodes - 1) / 2> v;
     std::size_t count = 0;
+    [[maybe_unused]] const VertexNumbers::Name* const name =
+        layer.names.data() + layer.first_name[b];
     for (const BlockContours::Cut& cut : contours.cuts(contour)) {
-        v[count++] = cut_in(blocks, b, layer, cut, x);
+        v[count] = cut_in(blocks, b, layer, cut, x, name + count);
+        ++count;
     }
     const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
     for (const BlockContours::Loop& loop : contours.loops(contour)) {
@@ -247,7 +284,8 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
     const Blocks& blocks, std::size_t b, const Layer& layer, const BlockContours::Cut& ends,
-    [[maybe_unused]] const NodePositions<Blocks>& x) -> BlockVertex {
+    [[maybe_unused]] const NodePositions<Blocks>& x,
+    [[maybe_unused]] const VertexNumbers::Name* name) -> BlockVertex {
     const std::size_t low = ends.low;
     const std::size_t high = ends.high;
     const auto fraction = [&] {
@@ -255,9 +293,8 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
                             static_cast<double>(blocks.value(b, high)));
     };
     if constexpr (indexed) {
-        const KeyPair name{blocks.key(b, low), blocks.key(b, high)};
         const SubtreeFaces faces = blocks.faces(b, low) & blocks.faces(b, high);
-        return add_within(name, faces, [&] {
+        return add_within(*name, faces, [&] {
             Cut cut{blocks.position(b, low), {blocks.key(b, low), blocks.key(b, high)}, fraction(), {}};
             cut.x = cut.x + cut.fraction * (blocks.position(b, high) - cut.x);
             return cut;

@@ -80,7 +80,11 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Make>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(const KeyPair& name,
                                                                             Make&& make) -> Vertex {
-    return add_within(name, no_subtree, make);
+    if constexpr (!indexed) {
+        return make().x;
+    } else {
+        return add_within(layer_->number_of.name(name), no_subtree, make);
+    }
 }
 
 /// The same in a walk of bisections.
@@ -89,33 +93,29 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(con
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Make>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_within(
-    const KeyPair& name, SubtreeFaces faces, Make&& make) -> Vertex {
-    if constexpr (!indexed) {
-        return make().x;
-    } else {
-        Layer& layer = *layer_;
-        bool is_new = false;
-        const auto make_number = [&] {
-            is_new = true;
-            const Cut cut = make();
-            if constexpr (logs) {
-                if (layer.vertex_count == none) throw_too_many_vertices();
-                layer.sink.add_cut(cut, faces == 0);
-                return layer.vertex_count++;
-            } else {
-                return add_new(cut);
-            }
-        };
-        const auto make_on_face = [&] { return layer.number_of.find(name, make_number); };
-        const Number number = faces == 0            ? layer.number_within.find(name, make_number)
-                              : faces == no_subtree ? make_on_face()
-                                                    : layer.number_within.find(name, make_on_face);
-        if (options_->verify && !is_new && layer.sink.position(number) != make().x) {
-            throw GridError("two elements put the vertex " + std::to_string(number) +
-                            " at different places");
+    const VertexNumbers::Name& name, SubtreeFaces faces, Make&& make) -> Number {
+    Layer& layer = *layer_;
+    bool is_new = false;
+    const auto make_number = [&] {
+        is_new = true;
+        const Cut cut = make();
+        if constexpr (logs) {
+            if (layer.vertex_count == none) throw_too_many_vertices();
+            layer.sink.add_cut(cut, faces == 0);
+            return layer.vertex_count++;
+        } else {
+            return add_new(cut);
         }
-        return number;
+    };
+    const auto make_on_face = [&] { return layer.number_of.find(name, make_number); };
+    const Number number = faces == 0            ? layer.number_within.find(name, make_number)
+                          : faces == no_subtree ? make_on_face()
+                                                : layer.number_within.find(name, make_on_face);
+    if (options_->verify && !is_new && layer.sink.position(number) != make().x) {
+        throw GridError("two elements put the vertex " + std::to_string(number) +
+                        " at different places");
     }
+    return number;
 }
 
 NESTGRID_VISITOR::add_new(const Cut& cut) -> Number {

@@ -24,16 +24,32 @@ public:
     /// \param small_keys all keys are below 2^32
     explicit VertexNumbers(bool small_keys = false) : small_keys_{small_keys} {}
 
-    /// The number of the vertex between two nodes; make() gives it where it is new.
-    template <class Make>
-    NESTGRID_INLINE Number find(const KeyPair& nodes, Make&& make) {
-        if (8 * size_ >= 5 * slots_.size()) grow();
+    /// What is asked for, the same for all tables with keys of one kind.
+    struct Name {
+        NodeKey word;
+        std::size_t hash;
+    };
+    NESTGRID_INLINE Name name(const KeyPair& nodes) const {
         const NodeKey word = small_keys_ ? (nodes.low << 32U | nodes.high)
                                          : detail::mix(detail::mix(nodes.low) + nodes.high);
-        Slot* slot = place(word);
+        return {word, hash(word)};
+    }
+
+    /// It will be asked for soon.
+    NESTGRID_INLINE void prefetch([[maybe_unused]] const Name& name) const {
+#if defined(__GNUC__)
+        __builtin_prefetch(slots_.data() + (name.hash & mask_));
+#endif
+    }
+
+    /// The number of the vertex between two nodes; make() gives it where it is new.
+    template <class Make>
+    NESTGRID_INLINE Number find(const Name& name, Make&& make) {
+        if (8 * size_ >= 5 * slots_.size()) grow();
+        Slot* slot = place(name);
         if (slot->round == round_) return slot->number;
         const Number number = make();
-        *slot = {word, number, round_};
+        *slot = {name.word, number, round_};
         ++size_;
         return number;
     }
@@ -55,12 +71,15 @@ private:
         std::uint32_t round = 0;  // in which it was used; what is older counts as empty
     };
 
-    NESTGRID_INLINE Slot* place(NodeKey word) {
+    NESTGRID_INLINE static std::size_t hash(NodeKey word) {
         auto bits = static_cast<std::uint64_t>(word);
         bits = (bits ^ bits >> 32U) * 0x9e3779b97f4a7c15ULL;
+        return static_cast<std::size_t>(bits ^ bits >> 32U);
+    }
+    NESTGRID_INLINE Slot* place(const Name& name) {
         Slot* const slots = slots_.data();
-        std::size_t at = (bits ^ bits >> 32U) & mask_;
-        while (slots[at].round == round_ && slots[at].word != word) at = (at + 1) & mask_;
+        std::size_t at = name.hash & mask_;
+        while (slots[at].round == round_ && slots[at].word != name.word) at = (at + 1) & mask_;
         return slots + at;
     }
 
@@ -71,7 +90,7 @@ private:
         old.swap(slots_);
         mask_ = slots_.size() - 1;
         for (const Slot& slot : old) {
-            if (slot.round == round_) *place(slot.word) = slot;
+            if (slot.round == round_) *place({slot.word, hash(slot.word)}) = slot;
         }
     }
 
