@@ -6,59 +6,12 @@
 // (paper, section 2). Included by indicator.hpp.
 #pragma once
 
-#include <deque>
-
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/splits_by_level.hpp>
 
 namespace nestgrid {
 
 namespace detail {
-
-/// The splits of a hierarchy by level, each as its rule and the numbers of its corners and new
-/// nodes: what the sweeps need to know of it. 4 bytes a number, 5 where there are more than 2^32.
-class SplitsByLevel {
-public:
-    explicit SplitsByLevel(bool wide) : wide_{wide} {}
-
-    void add(std::size_t level, const Rule& rule, std::span<const std::size_t> nodes) {
-        if (level >= levels_.size()) levels_.resize(level + 1);
-        Level& to = levels_[level];
-        to.rules.push_back(&rule);
-        for (const std::size_t node : nodes) {
-            to.low.push_back(static_cast<std::uint32_t>(node));
-            if (wide_) to.high.push_back(static_cast<std::uint8_t>(node >> 32U));
-        }
-    }
-
-    std::size_t levels() const { return levels_.size(); }
-
-    /// Calls function(rule, numbers) for the splits of elements on a level.
-    template <class Function>
-    void for_each(std::size_t level, Function&& function) const {
-        const Level& from = levels_[level];
-        auto low = from.low.begin();
-        auto high = from.high.begin();
-        std::array<std::size_t, max_corners + max_new_nodes> nodes;
-        for (const Rule* rule : from.rules) {
-            const std::size_t count =
-                static_cast<std::size_t>(rule->corner_count()) + rule->new_nodes.size();
-            for (std::size_t i = 0; i < count; ++i) {
-                nodes[i] = *low++;
-                if (wide_) nodes[i] |= std::size_t{*high++} << 32U;
-            }
-            function(*rule, std::span<const std::size_t>(nodes).first(count));
-        }
-    }
-
-private:
-    struct Level {
-        std::deque<const Rule*> rules;
-        std::deque<std::uint32_t> low;
-        std::deque<std::uint8_t> high;
-    };
-    bool wide_;
-    std::vector<Level> levels_;
-};
 
 /// A field on its way through a walk whose visitor has fetched the values at new nodes itself.
 template <class Grid, class Field>
@@ -93,8 +46,7 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     const Traversal<Grid, Fetched, Needs{.keys = true}> walk(grid, fetched, hanging());
     std::vector<Node> nodes(dense_key_count(grid));
     std::vector<std::uint8_t> made_on(nodes.size(), 0);  // 1 + level, modulo 255; 0: not known yet
-    constexpr std::size_t narrow = std::size_t{1} << 32U;
-    detail::SplitsByLevel splits(nodes.size() > narrow);
+    SplitsByLevel splits(nodes.size());
     bool one_sweep = true;
     bool all_divided = true;
     finest_level_ = 0;
@@ -104,7 +56,6 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
         if (dense) return static_cast<std::size_t>(key);
         const auto [at, is_new] = slots.insert(key, nodes.size());
         if (is_new) {
-            if (nodes.size() == narrow) throw GridError("the grid has more than 2^32 nodes");
             nodes.emplace_back();
             made_on.push_back(0);
         }

@@ -10,11 +10,16 @@
 //     S = S_out and (S_in or not in the region)
 // is saturated, for where both (one) of two saturated criteria hold(s) at a corner, the same hold
 // at the new nodes.
-// Memory: a byte a node (a key a node where keys are not dense). Cost: one pass over the stars,
-// where the grid offers them, else a few walks.
+// Memory: a byte a node (a key a node where keys are not dense); while it is made without stars, 4
+// bytes for each node of each split. Cost: one pass over the stars, where the grid offers them,
+// else one walk and a few sweeps over its splits.
 #pragma once
 
+#include <algorithm>
+#include <utility>
+
 #include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/splits_by_level.hpp>
 #include <nestgrid/derive_hanging.hpp>
 #include <nestgrid/key_table.hpp>
 #include <nestgrid/levels.hpp>
@@ -55,7 +60,7 @@ private:
     void sweep_stars(const Grid& grid, Inside&& inside) {
         for (std::size_t i = 0; i < grid.node_count(); ++i) {
             const auto node = static_cast<NodeKey>(i);
-            if (inside(grid.node_position(node))) add(node);
+            if (inside(grid.node_position(node))) dense_[i] = 1;
         }
         grid.for_each_star_row([&](const StarRow& row) {
             for (std::size_t i = 0; i < row.count; ++i) {
@@ -72,46 +77,59 @@ private:
         const ZeroField<Grid> zero;
         using Walk = Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}>;
         const Walk walk(grid, zero);
+        std::vector<std::uint8_t> marks(dense_.size(), 0);  // by number
+        KeyTable<NodeKey, std::size_t> numbers;
+        const auto number = [&](NodeKey key) {
+            if (!dense_.empty()) return static_cast<std::size_t>(key);
+            const auto [at, is_new] = numbers.insert(key, marks.size());
+            if (is_new) marks.push_back(0);
+            return *at;
+        };
+        SplitsByLevel splits(marks.size());
         std::array<NodeKey, max_corners> keys;
-        int levels = 0;
-        for_each_element(walk, [&](const auto& s, const Split&) {
-            levels = std::max(levels, s.level + 1);
+        std::array<Point, max_corners> x;
+        std::array<std::size_t, max_corners + max_new_nodes> nodes;
+        for_each_element(walk, [&](const auto& s, const Split& split) {
+            const auto corners = static_cast<std::size_t>(s.corner_count());
             walk.keys(s, keys);
-            std::array<Point, max_corners> x;
             walk.positions(s, x);
-            for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-                if (inside(x[i])) add(keys[i]);
+            for (std::size_t i = 0; i < corners; ++i) {
+                nodes[i] = number(keys[i]);
+                if (inside(x[i])) marks[nodes[i]] = 1;
             }
+            if (split.rule == nullptr) return;
+            std::ranges::transform(split.keys, nodes.begin() + corners, number);
+            splits.add(static_cast<std::size_t>(s.level), *split.rule,
+                       std::span(nodes).first(corners + split.keys.size()));
         });
-        for (bool changed = true; changed;) {
-            changed = false;
-            for (int level = levels - 1; level >= 0; --level) {
-                for_each_on_level<true>(walk, level, [&](const auto& s, const Split& split) {
-                    if (split.rule == nullptr) return;
-                    const auto corners = static_cast<std::size_t>(s.corner_count());
-                    bool below = false;
-                    for (std::size_t n = split.keys.size(); n-- > 0;) {
-                        if (!contains(split.keys[n])) continue;
-                        below = true;
-                        // A parent that is a new node itself is to this one as a corner is.
-                        const Stencil& stencil = split.rule->new_nodes[n];
-                        for (std::size_t i = 0; i < stencil.count; ++i) {
-                            if (stencil.parent[i] < corners) continue;
-                            changed = add(split.keys[stencil.parent[i] - corners]) || changed;
-                        }
-                    }
-                    if (!below) return;
-                    walk.keys(s, keys);
-                    for (std::size_t i = 0; i < corners; ++i) changed = add(keys[i]) || changed;
-                });
+        bool changed = true;
+        const auto mark = [&](std::size_t node) {
+            changed = std::exchange(marks[node], std::uint8_t{1}) == 0 || changed;
+        };
+        const auto spread = [&](const Rule& rule, std::span<const std::size_t> of) {
+            const auto corners = static_cast<std::size_t>(rule.corner_count());
+            bool below = false;
+            for (std::size_t n = of.size(); n-- > corners;) {
+                if (marks[of[n]] == 0) continue;
+                below = true;
+                // A parent that is a new node itself is to this one as a corner is.
+                const Stencil& stencil = rule.new_nodes[n - corners];
+                for (std::size_t i = 0; i < stencil.count; ++i) {
+                    if (stencil.parent[i] >= corners) mark(of[stencil.parent[i]]);
+                }
             }
+            if (below) std::ranges::for_each(of.first(corners), mark);
+        };
+        while (std::exchange(changed, false)) {
+            for (std::size_t level = splits.levels(); level-- > 0;) splits.for_each(level, spread);
         }
-    }
-
-    /// \return whether it is new
-    bool add(NodeKey node) {
-        if (dense_.empty()) return sparse_.insert(node, {}).second;
-        return std::exchange(dense_[static_cast<std::size_t>(node)], std::uint8_t{1}) == 0;
+        if (!dense_.empty()) {
+            dense_ = std::move(marks);
+        } else {
+            numbers.for_each([&](NodeKey key, std::size_t of) {
+                if (marks[of] != 0) sparse_.insert(key, {});
+            });
+        }
     }
 
     std::vector<std::uint8_t> dense_;
