@@ -259,6 +259,37 @@ TEST(KnownBisections, TellInsideFromOutsideInTheirOwnType) {
     }
 }
 
+/// Thresholds at a number of the indicator's type, and beside it.
+TEST(KnownBisections, AskForEightNodesWhatTheyAskForOne) {
+    const Samples n{9, 9, 9};
+    const std::vector<float> values = sampled_fields(n)[0].values;
+    const LatticeBisection<3> grid({.samples = n});
+    const LatticeField field(grid, std::span<const float>(values));
+    const HierarchicalIndicator indicator(grid, field);
+    const HierarchicalIndicator another(grid, field);
+    const double exact = indicator.stop(100);
+    EXPECT_GT(exact, 0);
+    const double least = std::numeric_limits<double>::denorm_min();
+    for (const double epsilon : {exact, std::nextafter(exact, 0), std::nextafter(exact, 1), 0.0,
+                                 least, -least, 1e300, std::nan("")}) {
+        const Threshold<HierarchicalIndicator> criterion{&indicator, epsilon};
+        for (NodeKey first = 0; first + pack <= grid.node_count(); ++first) {
+            std::array<NodeKey, pack> nodes;
+            for (std::size_t i = 0; i < pack; ++i) nodes[i] = first + i;
+            for (const HierarchicalIndicator* by : {&indicator, &another}) {
+                const auto known = by->look_up(nodes.data());
+                const auto holds = criterion.holds(nodes.data(), *by, known).numbers();
+                for (std::size_t i = 0; i < pack; ++i) {
+                    const std::span<const NodeKey> one(&nodes[i], 1);
+                    const NodeMask mask = criterion({grid.rule(0), one, 1, 0});
+                    ASSERT_EQ(holds[i], mask != 0 ? ~0U : 0U) << epsilon;
+                    ASSERT_EQ(known.bound().numbers()[i], by->bound(nodes[i]));
+                }
+            }
+        }
+    }
+}
+
 TEST(KnownBisections, ReportProgressAndStop) {
     const Samples n{65, 65, 65};
     const SampledField data = sampled_fields(n)[1];

@@ -255,17 +255,19 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bl
     if constexpr (!indexed) blocks.all_positions(b, x);
     std::array<BlockVertex, nodes*(nodes - 1) / 2> v;
     std::size_t count = 0;
-    [[maybe_unused]] const VertexNumbers::Name* const name =
-        layer.names.data() + layer.first_name[b];
     for (const BlockContours::Cut& cut : contours.cuts(contour)) {
-        v[count] = cut_in(blocks, b, layer, cut, x, name + count);
+        if constexpr (indexed) {
+            v[count] = cut_in(blocks, b, layer, cut, x, &layer.names[layer.first_name[b] + count]);
+        } else {
+            v[count] = cut_in(blocks, b, layer, cut, x, nullptr);
+        }
         ++count;
     }
     const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
     for (const BlockContours::Loop& loop : contours.loops(contour)) {
         if (keeps_elements(layer.sink)) {
-            layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end), simplex_shape,
-                                   level);
+            layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end),
+                                   simplex_shape, level);
         }
         struct {
             const BlockVertex* vertex;
@@ -280,6 +282,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bl
 
 /// The vertex on an edge of a block.
 /// \param x positions of its ends, where there are no indices
+/// \param name where there are
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
@@ -295,7 +298,10 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
     if constexpr (indexed) {
         const SubtreeFaces faces = blocks.faces(b, low) & blocks.faces(b, high);
         return add_within(*name, faces, [&] {
-            Cut cut{blocks.position(b, low), {blocks.key(b, low), blocks.key(b, high)}, fraction(), {}};
+            Cut cut{blocks.position(b, low),
+                    {blocks.key(b, low), blocks.key(b, high)},
+                    fraction(),
+                    {}};
             cut.x = cut.x + cut.fraction * (blocks.position(b, high) - cut.x);
             return cut;
         });

@@ -131,6 +131,7 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
             if constexpr (indexed) {
                 for (auto& corner : corners) corner = vertices[corner];
             }
+            to->count_simplices(1);
             to->put_simplex(corners, reference);
         }
         void boundary(typename Log::Ridge corners) {

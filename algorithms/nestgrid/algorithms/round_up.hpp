@@ -18,10 +18,11 @@ inline float float_above(double x) {
                                       : f;
 }
 
-/// The greatest float that is not above x >= 0.
+/// The greatest float that is not above x.
 inline float float_below(double x) {
     const auto f = static_cast<float>(x);
-    return static_cast<double>(f) > x ? std::nextafter(f, 0.0F) : f;
+    return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity())
+                                      : f;
 }
 
 /// Rounding error of the sum a + b = s: exactly a + b - s (two-sum, Knuth).
