@@ -46,7 +46,7 @@ public:
 private:
     static constexpr std::size_t last_ = Grid::bisections.size() - 1;
     static constexpr bool in_blocks_ = [] {
-        if constexpr (whole && KnowsBlocks<Grid>) {
+        if constexpr (whole && KnowsBlocks<Grid> && Packable<Real>) {
             return requires(Visitor & v, const PackedElements<Real>& e) { v.glance(e); };
         }
         return false;

@@ -19,7 +19,7 @@ namespace nestgrid {
 using SubtreeFaces = std::uint8_t;
 inline constexpr SubtreeFaces no_subtree = 0x80;
 
-/// Walked side by side.
+/// How many are walked side by side.
 inline constexpr std::size_t most_blocks = 32;
 
 /// The least and the greatest of an element's values.
