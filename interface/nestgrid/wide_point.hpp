@@ -11,7 +11,8 @@
 
 namespace nestgrid {
 
-/// The results are those of the same operations on a Point, to the last bit.
+/// The results are those of the same operations on a Point, to the last bit, where the compiler does
+/// not fuse products and sums (-ffp-contract=off, or a machine that cannot).
 class WidePoint {
 public:
     WidePoint() = default;
