@@ -18,6 +18,7 @@
 
 #include <nestgrid/derive_hanging.hpp>
 #include <nestgrid/known_bisection.hpp>
+#include <nestgrid/pack.hpp>
 #include <nestgrid/traversal.hpp>
 
 namespace nestgrid {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <nestgrid/algorithms/cell_contour.hpp>
+#include <nestgrid/inlining.hpp>
 
 namespace nestgrid {
 
