@@ -164,10 +164,10 @@ private:
     void extract(const Stopped& element) {
         extract(*element.of, element.block, element.part, element.bound);
     }
-    /// Calls function(const Stopped&) for those before a block.
+    /// Calls function(const Stopped&) for those up to a block that were not taken yet.
     template <class Function>
-    static void take_stopped(Queue& batch, std::size_t before, Function&& function) {
-        while (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before == before) {
+    static void take_stopped(Queue& batch, std::size_t block, Function&& function) {
+        while (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before <= block) {
             function(batch.stopped[batch.taken++]);
         }
     }

@@ -44,7 +44,7 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     Interior interior;
     look_within(batch, interior);
     std::uint64_t descended = batch.count;
-    std::array<bool, room_ + 1> leaves;
+    std::array<bool, room_> leaves;
     for (std::size_t b = 0; b < batch.count; ++b) {
         const auto& reached = pattern_.reached[static_cast<std::size_t>(interior.descend[b])];
         interior.descend[b] &= reached.interior;
@@ -176,7 +176,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::extract_leaves(Queue& batc
         first = b;
     };
     for (std::size_t b = first; b < end; ++b) {
-        if (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before == b) {
+        if (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before <= b) {
             extract_until(b);
             take_stopped(batch, b, [&](const Stopped& element) { extract(element); });
         }
@@ -213,17 +213,12 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const 
     Steps steps;
     list(batch, interior, first, end, steps);
     look_at_ends(batch, steps);
-    std::size_t block = first;
     std::size_t next_end = 0;
     // No branch here depends on what was seen: both are written, and counted where they are so.
     for (std::size_t i = 0; i < steps.count; ++i) {
         const std::size_t b = steps.block[i];
         const std::size_t part = steps.part[i];
-        if (batch.taken < batch.stopped_count) {
-            for (; block <= b; ++block) {
-                take_stopped(batch, block, [&](const Stopped& element) { put(element, next); });
-            }
-        }
+        take_stopped(batch, b, [&](const Stopped& element) { put(element, next); });
         if (next.count == room_) finish(next);
         const bool is_end = part >= ends_;
         const MaskOf<Real> ended = is_end ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
@@ -240,11 +235,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const 
         next.stopped_count += stops & 1U;
         if (next.stopped_count == stopped_room_) finish(next);
     }
-    if (batch.taken < batch.stopped_count) {
-        for (; block < end; ++block) {
-            take_stopped(batch, block, [&](const Stopped& element) { put(element, next); });
-        }
-    }
+    take_stopped(batch, end - 1, [&](const Stopped& element) { put(element, next); });
 }
 
 /// What comes next in these blocks, and what there is to know of the ends.

@@ -13,12 +13,11 @@ namespace nestgrid {
 
 namespace detail {
 
-template <bool splits_only, class Function>
+template <class Function>
 struct LevelVisitor {
     int level;
     Function& function;
 
-    bool passes_over_leaves() const { return splits_only; }
     bool sees_hidden() const { return true; }
 
     template <class State>
@@ -51,14 +50,14 @@ struct EachVisitor {
 
 /// Calls function(state, split) for every element on a level, leaves (split.rule is null there) and
 /// hidden ones included, with the true values at the corners, hanging nodes interpolated.
-/// \tparam splits_only pass over leaves, those of the coarse grid excepted
-template <bool splits_only = false, class Walk, class Function>
+template <class Walk, class Function>
 void for_each_on_level(const Walk& walk, int level, Function&& function) {
-    detail::LevelVisitor<splits_only, Function> visitor{level, function};
+    detail::LevelVisitor<Function> visitor{level, function};
     walk.run(visitor);
 }
 
 /// The same for all elements, depth first.
+/// \tparam splits_only pass over leaves, those of the coarse grid excepted
 template <bool splits_only = false, class Walk, class Function>
 void for_each_element(const Walk& walk, Function&& function) {
     detail::EachVisitor<splits_only, Function> visitor{function};

@@ -274,7 +274,7 @@ private:
     // isosurface_bisections.hpp
     bool knows_bisections_of_grid() const;
     template <class Blocks>
-    void set_signs(const Blocks& blocks, std::size_t end, Layer& layer);
+    void set_signs(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer);
     template <class Blocks>
     void name_vertices(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
                        const BlockContours& contours);

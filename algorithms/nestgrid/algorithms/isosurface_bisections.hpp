@@ -112,14 +112,14 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
     return result;
 }
 
-/// Which nodes of the first blocks have U >= C.
+/// Which nodes of blocks first ... end - 1 have U >= C.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::set_signs(
-    const Blocks& blocks, std::size_t end, Layer& layer) {
+    const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer) {
     using Bits = Pack<MaskOf<Real>>;
     const auto least_inside = Pack<Real>::all(layer.least_inside);
-    for (std::size_t b = 0; b < end; b += pack) {
+    for (std::size_t b = first / pack * pack; b < end; b += pack) {
         auto signs = Bits::all(0);
         unrolled<Blocks::pattern.nodes>([&](auto i) NESTGRID_INLINE_LAMBDA {
             const auto value = Pack<Real>::load(blocks.row(i) + b);
@@ -165,7 +165,7 @@ NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::ext
     };
     unsigned extracted = 0;
     for (Layer& layer : layers_) {
-        set_signs(blocks, end, layer);
+        set_signs(blocks, first, end, layer);
         if constexpr (indexed) name_vertices(blocks, first, end, layer, contours);
     }
     for (std::size_t b = first; b < end; ++b) {
