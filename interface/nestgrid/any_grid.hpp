@@ -11,6 +11,7 @@
 
 #include <nestgrid/nestgrid.h>
 #include <nestgrid/table.hpp>
+#include <nestgrid/table_bisections.hpp>
 
 namespace nestgrid {
 
@@ -103,6 +104,10 @@ public:
     unsigned boundary_faces(const Element& e, AnyContext& c) const {
         return ask<unsigned>(table_->boundary_faces, "boundary_faces", e, c);
     }
+    /// Where a field's is_told_bisections() says so: those of this grid.
+    detail::TableBisections<dim> told_bisections(AnyContext& c) const {
+        return detail::TableBisections<dim>(*table_, c.state());
+    }
     bool knows_stars() const { return table_->library_star_rows != nullptr; }
     template <class Function>
     void for_each_star_row(Function&& function) const {
@@ -178,19 +183,28 @@ public:
         return value;
     }
     /// Whether bisections below elements of this grid can be walked on the other side of the
-    /// tables.
+    /// tables: of the library's own, or of such as tell theirs.
     template <int dim>
     bool bisects(const AnyGrid<dim>& grid) const {
-        return table_.library_bisect != nullptr &&
-               table_.library_bisect(table_.self, &grid.table(), nullptr, nullptr, 0, 0, nullptr) ==
-                   0;
+        return is_told_bisections(grid) ||
+               (table_.library_bisect != nullptr &&
+                table_.library_bisect(table_.self, &grid.table(), nullptr, nullptr, 0, 0,
+                                      nullptr) == 0);
     }
-    /// Where it says so, does it.
+    /// Whether both tables tell bisections (nestgrid.h).
     template <int dim>
-    void bisect(const AnyGrid<dim>& grid, const nestgrid_element& e, const Real* value, int level,
-                int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) const {
-        table_.library_bisect(table_.self, &grid.table(), &e, value, level, orientation, &visitor);
+    bool is_told_bisections(const AnyGrid<dim>& grid) const {
+        return components == 1 && table_.node_values != nullptr &&
+               detail::TableBisections<dim>::are_in(grid.table());
     }
+    /// Where bisects() says so, does it.
+    /// \throw GridError for an element with a tag that does not exist
+    template <int dim>
+    void bisect(const AnyGrid<dim>& grid, AnyContext& c, const nestgrid_element& e,
+                const Real* value, int level, int orientation,
+                detail::ErasedBisectionVisitor<dim, Real>& visitor) const;
+    /// Where is_told_bisections() says so: the values of their nodes.
+    detail::TableValues<Real> told_values() const { return detail::TableValues<Real>(table_); }
 
 private:
     static void check(int code, const char* operation) {

@@ -211,4 +211,24 @@ AnyField<Real, component_count>::AnyField(const nestgrid_field& given) : table_{
     }
 }
 
+template <class Real, int component_count>
+template <int dim>
+void AnyField<Real, component_count>::bisect(
+    const AnyGrid<dim>& grid, AnyContext& c, const nestgrid_element& e, const Real* value,
+    int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) const {
+    if (!is_told_bisections(grid)) {
+        table_.library_bisect(table_.self, &grid.table(), &e, value, level, orientation, &visitor);
+        return;
+    }
+    const auto bisections = grid.told_bisections(c);
+    const std::uint64_t tag = e.word[dim + 1];
+    if (tag < 1 || tag > dim) {
+        throw GridError("an element has the tag " + std::to_string(tag) + ", not 1 to " +
+                        std::to_string(dim));
+    }
+    detail::BisectionForwarder<detail::TableBisections<dim>, Real> forward(bisections, visitor);
+    walk_bisections(bisections, told_values(), forward, e, value, level, orientation,
+                    [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+}
+
 }  // namespace nestgrid

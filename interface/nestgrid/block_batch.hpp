@@ -113,15 +113,13 @@ struct BlockBatch {
     }
     NESTGRID_INLINE void all_positions(std::size_t b,
                                        std::array<WidePoint, pattern.nodes>& x) const {
-        unrolled<pattern.nodes>(
-            [&](auto i) NESTGRID_INLINE_LAMBDA { x[i] = WidePoint(grid->position(nodes[i][b])); });
+        positions_of<pattern.nodes>(b, x, [](std::size_t i) NESTGRID_INLINE_LAMBDA { return i; });
     }
     /// Of the corners of a part alone.
     NESTGRID_INLINE void corner_positions(std::size_t b, std::size_t part,
                                           std::array<WidePoint, pattern.nodes>& x) const {
-        unrolled<pattern.corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            const std::size_t node = pattern.part[part].corner[i];
-            x[node] = WidePoint(grid->position(nodes[node][b]));
+        positions_of<pattern.corners>(b, x, [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
+            return std::size_t{pattern.part[part].corner[i]};
         });
     }
     /// Faces on the boundary of the domain, one bit each.
@@ -133,6 +131,23 @@ struct BlockBatch {
         std::array<Node, pattern.corners> of;
         for (std::size_t i = 0; i < of.size(); ++i) of[i] = nodes[which.corner[i]][b];
         return grid->element(part == 1 ? bisection : which.bisection, of);
+    }
+
+private:
+    template <std::size_t many, class Which>
+    NESTGRID_INLINE void positions_of(std::size_t b, std::array<WidePoint, pattern.nodes>& x,
+                                      const Which& which) const {
+        if constexpr (AnswersInRows<Grid>) {
+            std::array<Node, many> of;
+            std::array<Point, many> at;
+            for (std::size_t i = 0; i < many; ++i) of[i] = nodes[which(i)][b];
+            grid->positions(of, at);
+            for (std::size_t i = 0; i < many; ++i) x[which(i)] = WidePoint(at[i]);
+        } else {
+            unrolled<many>([&](auto i) NESTGRID_INLINE_LAMBDA {
+                x[which(i)] = WidePoint(grid->position(nodes[which(i)][b]));
+            });
+        }
     }
 };
 

@@ -121,6 +121,8 @@ private:
         alignas(64) std::array<Real, room + 1> lo;
         alignas(64) std::array<Real, room + 1> hi;
         alignas(64) std::array<NodeKey, room + 1> node;
+        std::array<Node, AnswersInRows<Grid> ? room + 1 : 0> from;  // it lies between these
+        std::array<Node, AnswersInRows<Grid> ? room + 1 : 0> to;
         alignas(64) std::array<MaskOf<Real>, room + 1> descend;
         alignas(64) std::array<MaskOf<Real>, room + 1> stop;
         alignas(64) std::array<Real, room + 1> bound;
@@ -132,12 +134,7 @@ private:
     static void halve(Rows& rows, std::size_t at, std::size_t first, const Middle& middle);
     void make_nodes(Batch& batch) const;
     void look_within(const Batch& batch, Interior& interior) const;
-    bool has_leaves(const Batch& batch, std::size_t b) const {
-        constexpr auto first = pattern_.part[ends_];
-        constexpr KnownBisection next = Grid::bisections[first.bisection];
-        return !grid_->halved(batch.nodes[first.corner[next.parent[0]]][b],
-                              batch.nodes[first.corner[next.parent[1]]][b]);
-    }
+    void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
     void extract_leaves(Queue& batch, const Interior& interior, std::size_t first, std::size_t end);
     void extract_some_leaves(const Batch& batch, const Interior& interior, std::size_t b);
     void enter(Queue& batch, const Interior& interior, std::size_t first, std::size_t end,
@@ -145,6 +142,7 @@ private:
     void list(const Batch& batch, const Interior& interior, std::size_t first, std::size_t end,
               Steps& steps) const;
     void look_at_ends(const Batch& batch, Steps& steps) const;
+    void find_new_nodes(Steps& steps) const;
     static void copy_corners(const Batch& batch, std::size_t b, std::size_t part, Queue& next);
     static const auto& order_of(const Interior& interior, std::size_t b) {
         return block_orders<pattern_>[static_cast<std::size_t>(interior.descend[b] |

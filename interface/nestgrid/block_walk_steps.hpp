@@ -25,8 +25,7 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     first.put_corners(0, n, u, path % 2 != 0);
     first.count = 1;
     const auto [lo, hi] = range_of(u);
-    const NodeKey middle =
-        grid_->middle_key(first.keys[rule.parent[0]][0], first.keys[rule.parent[1]][0]);
+    const NodeKey middle = grid_->key(grid_->middle(n[rule.parent[0]], n[rule.parent[1]]));
     const auto [visit, bound] =
         visitor_->glance(lo, hi, grid_->rule(last_), middle, path / 2, false);
     if (visit == Visit::stop) extract(first, 0, 1, bound);
@@ -44,25 +43,25 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     Interior interior;
     look_within(batch, interior);
     std::uint64_t descended = batch.count;
-    std::array<bool, room_> leaves;
+    std::array<bool, room_> split;  // the ends of each
+    look_whether_split(batch, split);
     for (std::size_t b = 0; b < batch.count; ++b) {
         const auto& reached = pattern_.reached[static_cast<std::size_t>(interior.descend[b])];
         interior.descend[b] &= reached.interior;
         interior.stop[b] &= reached.interior;
         descended += reached.descended;
-        leaves[b] = has_leaves(batch, b);
     }
     count_->bisect(descended, *visitor_);
 
     Queue next;
     next.begin(*grid_, last_, batch.level + static_cast<int>(pattern_.height));
     for (std::size_t first = 0, end = 0; first < batch.count; first = end) {
-        while (end < batch.count && leaves[end] == leaves[first]) ++end;
-        if (leaves[first]) {
+        while (end < batch.count && split[end] == split[first]) ++end;
+        if (split[first]) {
+            enter(batch, interior, first, end, next);
+        } else {
             finish(next);
             extract_leaves(batch, interior, first, end);
-        } else {
-            enter(batch, interior, first, end, next);
         }
     }
     take_stopped(batch, batch.count, [&](const Stopped& element) { put(element, next); });
@@ -75,6 +74,22 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& ba
         batch.sides[i].fill(static_cast<SubtreeFaces>((1U << corners_) - 1 - (1U << i)));
     }
     visitor_->begin_subtrees();
+}
+
+/// One end of a block says it for all of them.
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_whether_split(
+    const Batch& batch, std::array<bool, room_>& ends) const {
+    const auto& [from, to] = parent_of_new_[ends_];
+    if constexpr (AnswersInRows<Grid>) {
+        grid_->are_halved(std::span(batch.nodes[from]).first(batch.count),
+                          std::span(batch.nodes[to]).first(batch.count),
+                          std::span(ends).first(batch.count));
+    } else {
+        for (std::size_t b = 0; b < batch.count; ++b) {
+            ends[b] = grid_->halved(batch.nodes[from][b], batch.nodes[to][b]);
+        }
+    }
 }
 
 /// Eight of a row of rows: what lies in the middle of two others.
@@ -104,17 +119,26 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
             });
         }
     };
+    const auto eight = [](auto& row, std::size_t first)
+                           NESTGRID_INLINE_LAMBDA { return std::span(row).subspan(first, pack); };
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
-        halve(batch.nodes, at, first,
-              [&](const auto& a, const auto& b)
-                  NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle(a, b)) {
-                      return grid_->middle(a, b);
-                  });
-        halve(batch.keys, at, first,
-              [&](const auto& a, const auto& b)
-                  NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
-                      return grid_->middle_key(a, b);
-                  });
+        if constexpr (AnswersInRows<Grid>) {
+            const auto& [from, to] = pattern_.parent[at];
+            grid_->middles(eight(batch.nodes[from], first), eight(batch.nodes[to], first),
+                           eight(batch.nodes[at], first));
+            grid_->keys(eight(batch.nodes[at], first), eight(batch.keys[at], first));
+        } else {
+            halve(batch.nodes, at, first,
+                  [&](const auto& a, const auto& b)
+                      NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle(a, b)) {
+                          return grid_->middle(a, b);
+                      });
+            halve(batch.keys, at, first,
+                  [&](const auto& a, const auto& b)
+                      NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
+                          return grid_->middle_key(a, b);
+                      });
+        }
         if constexpr (requires { visitor_->expect(batch.keys[at].data()); }) {
             visitor_->expect(batch.keys[at].data() + first);
         }
@@ -126,10 +150,15 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
         }
     });
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
-        Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
-            return field_->template value_at<true>(batch.nodes[at][first + b],
-                                                   batch.keys[at][first + b]);
-        }).store(batch.values[at].data() + first);
+        if constexpr (AnswersInRows<Grid>) {
+            field_->values_at(eight(batch.nodes[at], first), eight(batch.keys[at], first),
+                              eight(batch.values[at], first));
+        } else {
+            Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
+                return field_->template value_at<true>(batch.nodes[at][first + b],
+                                                       batch.keys[at][first + b]);
+            }).store(batch.values[at].data() + first);
+        }
     });
 }
 
@@ -257,8 +286,13 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Batch& batch,
         const auto& parent = parent_of_new_[part];
         steps.lo[steps.end_count] = lo;
         steps.hi[steps.end_count] = hi;
-        steps.node[steps.end_count] =
-            grid_->middle_key(batch.key(b, parent[0]), batch.key(b, parent[1]));
+        if constexpr (AnswersInRows<Grid>) {
+            steps.from[steps.end_count] = batch.nodes[parent[0]][b];
+            steps.to[steps.end_count] = batch.nodes[parent[1]][b];
+        } else {
+            steps.node[steps.end_count] =
+                grid_->middle_key(batch.key(b, parent[0]), batch.key(b, parent[1]));
+        }
         steps.end_count += part >= ends_ ? 1 : 0;
     }
 }
@@ -268,6 +302,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(const Batch& 
                                                                    Steps& steps) const {
     const std::size_t count = packed(steps.end_count);
     if (steps.end_count > 0) {
+        if constexpr (AnswersInRows<Grid>) find_new_nodes(steps);
         const std::size_t last = steps.end_count - 1;
         for (std::size_t i = steps.end_count; i < count; ++i) {
             steps.lo[i] = steps.lo[last];
@@ -287,6 +322,13 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(const Batch& 
     steps.descend[steps.end_count] = 0;
     steps.stop[steps.end_count] = 0;
     steps.bound[steps.end_count] = 0;
+}
+
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::find_new_nodes(Steps& steps) const {
+    const std::span<Node> from(steps.from.data(), steps.end_count);
+    grid_->middles(from, std::span(steps.to).first(from.size()), from);
+    grid_->keys(from, std::span(steps.node).first(from.size()));
 }
 
 template <class Grid, class Field, class Visitor>

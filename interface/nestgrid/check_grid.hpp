@@ -44,7 +44,7 @@ enum class Law : std::uint8_t {
     position,         ///< own positions: those of eq. (1), and one node, one position
     depth,            ///< the hierarchy ends
     hidden,           ///< an element is hidden as its children are; no leaf is in part
-    known_bisection,  ///< what is known at compile time is what split() and children() say
+    known_bisection,  ///< what is known of bisections is what split() and children() say
 };
 
 struct GridViolation {

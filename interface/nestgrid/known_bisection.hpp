@@ -26,12 +26,19 @@
 //     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two; likewise
 // which says that an element split by the last of the bisections is split that many times over,
 // into elements of the last bisection again, of which either all are split or none; then those are
-// looked at together (block_walk.hpp).
+// looked at together (block_walk.hpp). Where each question is a call, as through a table, it offers
+// answers in rows instead of middle_key(), and its field values:
+//     void middles(span<const Node> a, span<const Node> b, span<Node> out)
+//     void keys(span<const Node>, span<NodeKey> out)
+//     void positions(span<const Node>, span<Point> out)
+//     void are_halved(span<const Node> a, span<const Node> b, span<bool> out)
+//     void values_at(span<const Node>, span<const NodeKey>, span<value_type> out)
 #pragma once
 
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <span>
 
 #include <nestgrid/traversal.hpp>
 
@@ -84,9 +91,21 @@ concept KnowsBisections = requires(const Grid& grid, const Field& field, const E
 };
 
 template <class Grid>
+concept AnswersInRows = requires(const Grid& grid, std::span<const typename Grid::Node> nodes,
+                                 std::span<typename Grid::Node> middles, std::span<NodeKey> keys,
+                                 std::span<Point> x, std::span<bool> halved) {
+    grid.middles(nodes, nodes, middles);
+    grid.keys(nodes, keys);
+    grid.positions(nodes, x);
+    grid.are_halved(nodes, nodes, halved);
+};
+
+template <class Grid>
 concept KnowsBlocks = requires(const Grid& grid) {
     requires Grid::block_height == 2 || Grid::block_height == 3;
-    { grid.middle_key(NodeKey{}, NodeKey{}) } -> std::same_as<NodeKey>;
+    requires AnswersInRows<Grid> || requires {
+        { grid.middle_key(NodeKey{}, NodeKey{}) } -> std::same_as<NodeKey>;
+    };
 };
 
 }  // namespace nestgrid

@@ -33,6 +33,8 @@ enum {
 
 enum { NESTGRID_FLOAT = 0, NESTGRID_DOUBLE = 1 };
 
+#define NESTGRID_NO_NODE UINT64_MAX
+
 /* An element is a value of its author's choice, copied bytewise. */
 typedef struct nestgrid_element {
     uint64_t word[6];
@@ -113,6 +115,23 @@ typedef struct nestgrid_grid {
     int (*library_split)(const void* self, void* context, const nestgrid_element* e,
                          const void** rule);
     int (*library_star_rows)(const void* self, const void* function);
+
+    /* Optional, all of the following: what makes bisections fast, for it is asked of many nodes at
+     * once. A grid may tell them whose elements are nothing but their corners, halved as Maubach
+     * (1995) does: word[k] of an element is the node at its corner k, a number of the author's
+     * choice, and word[dimension + 1] its tag t, 1 to dimension. Where it is split, the new node z
+     * lies between the corners 0 and t, and the children, in this order, have the corners
+     *     x0 ... x(t-1)  z  x(t+1) ... xn    and    x1 ... xt  z  x(t+1) ... xn
+     * and the tag t - 1, or dimension after 1; the second one is mirrored where t is odd. Those of
+     * the tag dimension are split dimension times over, into elements of which all are split or
+     * none. corner_keys, new_keys, corner_positions and boundary_faces are there too, `conforming`
+     * is not 0, and masked, hidden and outside are NULL. */
+    /* the node halfway between a[i] and b[i], the corners 0 and t of an element in either order, or
+     * NESTGRID_NO_NODE where it is not split; out may be a */
+    int (*middles)(const void* self, size_t count, const uint64_t* a, const uint64_t* b,
+                   uint64_t* out);
+    int (*node_keys)(const void* self, size_t count, const uint64_t* nodes, uint64_t* out);
+    int (*node_positions)(const void* self, size_t count, const uint64_t* nodes, double (*out)[3]);
 } nestgrid_grid;
 
 /* Values are float or double as value_type says; component c of node n goes to
@@ -136,6 +155,10 @@ typedef struct nestgrid_field {
     int (*library_bisect)(const void* self, const nestgrid_grid* grid, const nestgrid_element* e,
                           const void* values, int level, int orientation, void* visitor);
     int (*library_value)(const void* self, uint64_t node, void* out);
+
+    /* Optional, with the `middles` of the grid. */
+    int (*node_values)(const void* self, size_t count, const uint64_t* nodes, const uint64_t* keys,
+                       void* out);
 } nestgrid_field;
 
 #ifdef __cplusplus

@@ -54,8 +54,8 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 to->count(calls, visited);
             }
         } erased(this);
-        walk_->field().bisect(walk_->grid(), s.element, s.value.data(), s.level, s.orientation,
-                              erased);
+        walk_->field().bisect(walk_->grid(), *s.context, s.element, s.value.data(), s.level,
+                              s.orientation, erased);
     }
 }
 
