@@ -128,11 +128,20 @@ private:
         alignas(64) std::array<Real, room + 1> bound;
     };
 
+    /// The parts of a batch that the blocks of the next one are.
+    struct Origins {
+        std::array<std::uint8_t, room_ + 1> block;
+        std::array<std::uint8_t, room_ + 1> part;
+        std::size_t copied;  // blocks before this one are
+    };
+
     NESTGRID_NOINLINE void walk(Queue& batch);
     void begin_subtrees(Batch& batch);
     template <class Rows, class Middle>
     static void halve(Rows& rows, std::size_t at, std::size_t first, const Middle& middle);
     void make_nodes(Batch& batch) const;
+    void ask_for_nodes(Batch& batch) const;
+    void know_of(Batch& batch, std::size_t at, std::size_t first) const;
     void look_within(const Batch& batch, Interior& interior) const;
     void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
     void extract_leaves(Queue& batch, const Interior& interior, std::size_t first, std::size_t end);
@@ -143,7 +152,7 @@ private:
               Steps& steps) const;
     void look_at_ends(const Batch& batch, Steps& steps) const;
     void find_new_nodes(Steps& steps) const;
-    static void copy_corners(const Batch& batch, std::size_t b, std::size_t part, Queue& next);
+    static void copy_corners(const Batch& batch, Origins& which, Queue& next);
     static const auto& order_of(const Interior& interior, std::size_t b) {
         return block_orders<pattern_>[static_cast<std::size_t>(interior.descend[b] |
                                                                interior.stop[b] << (ends_ - 2))];
@@ -154,7 +163,8 @@ private:
         return range_of<Real>({batch.value(b, corner[0]), batch.value(b, corner[1]),
                                batch.value(b, corner[2]), batch.value(b, corner[3])});
     }
-    void put(const Stopped& element, Queue& next);
+    /// \return whether there is no room for another
+    static bool put(const Stopped& element, Queue& next);
     void extract(const Batch& batch, std::size_t b, std::size_t part, Real bound) {
         ++count_->extracted;
         visitor_->extract_part(batch, b, part, bound);

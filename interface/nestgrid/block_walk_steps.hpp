@@ -39,7 +39,11 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
         if (batch.level == subtree_level_) begin_subtrees(batch);
     }
     batch.fill_up();
-    make_nodes(batch);
+    if constexpr (AnswersInRows<Grid>) {
+        ask_for_nodes(batch);
+    } else {
+        make_nodes(batch);
+    }
     Interior interior;
     look_within(batch, interior);
     std::uint64_t descended = batch.count;
@@ -64,7 +68,9 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
             extract_leaves(batch, interior, first, end);
         }
     }
-    take_stopped(batch, batch.count, [&](const Stopped& element) { put(element, next); });
+    take_stopped(batch, batch.count, [&](const Stopped& element) {
+        if (put(element, next)) finish(next);
+    });
     finish(next);
 }
 
@@ -119,47 +125,55 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
             });
         }
     };
-    const auto eight = [](auto& row, std::size_t first)
-                           NESTGRID_INLINE_LAMBDA { return std::span(row).subspan(first, pack); };
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
-        if constexpr (AnswersInRows<Grid>) {
-            const auto& [from, to] = pattern_.parent[at];
-            grid_->middles(eight(batch.nodes[from], first), eight(batch.nodes[to], first),
-                           eight(batch.nodes[at], first));
-            grid_->keys(eight(batch.nodes[at], first), eight(batch.keys[at], first));
-        } else {
-            halve(batch.nodes, at, first,
-                  [&](const auto& a, const auto& b)
-                      NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle(a, b)) {
-                          return grid_->middle(a, b);
-                      });
-            halve(batch.keys, at, first,
-                  [&](const auto& a, const auto& b)
-                      NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
-                          return grid_->middle_key(a, b);
-                      });
-        }
-        if constexpr (requires { visitor_->expect(batch.keys[at].data()); }) {
-            visitor_->expect(batch.keys[at].data() + first);
-        }
-        if constexpr (in_subtrees_) {
-            const auto& [from, to] = pattern_.parent[at];
-            for (std::size_t b = first; b < first + pack; ++b) {
-                batch.sides[at][b] = batch.sides[from][b] & batch.sides[to][b];
-            }
-        }
+        halve(batch.nodes, at, first,
+              [&](const auto& a, const auto& b)
+                  NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle(a, b)) {
+                      return grid_->middle(a, b);
+                  });
+        halve(batch.keys, at, first,
+              [&](const auto& a, const auto& b)
+                  NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
+                      return grid_->middle_key(a, b);
+                  });
+        know_of(batch, at, first);
     });
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
-        if constexpr (AnswersInRows<Grid>) {
-            field_->values_at(eight(batch.nodes[at], first), eight(batch.keys[at], first),
-                              eight(batch.values[at], first));
-        } else {
-            Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
-                return field_->template value_at<true>(batch.nodes[at][first + b],
-                                                       batch.keys[at][first + b]);
-            }).store(batch.values[at].data() + first);
-        }
+        Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
+            return field_->template value_at<true>(batch.nodes[at][first + b],
+                                                   batch.keys[at][first + b]);
+        }).store(batch.values[at].data() + first);
     });
+}
+
+/// The same in rows.
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
+    const auto row = [&](auto& of) { return std::span(of).first(packed(batch.count)); };
+    for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
+        const auto& [from, to] = pattern_.parent[at];
+        grid_->middles(row(batch.nodes[from]), row(batch.nodes[to]), row(batch.nodes[at]));
+        grid_->keys(row(batch.nodes[at]), row(batch.keys[at]));
+        for (std::size_t first = 0; first < batch.count; first += pack) know_of(batch, at, first);
+    }
+    for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
+        field_->values_at(row(batch.nodes[at]), row(batch.keys[at]), row(batch.values[at]));
+    }
+}
+
+/// What follows from eight new keys.
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::know_of(Batch& batch, std::size_t at,
+                                                              std::size_t first) const {
+    if constexpr (requires { visitor_->expect(batch.keys[at].data()); }) {
+        visitor_->expect(batch.keys[at].data() + first);
+    }
+    if constexpr (in_subtrees_) {
+        const auto& [from, to] = pattern_.parent[at];
+        for (std::size_t b = first; b < first + pack; ++b) {
+            batch.sides[at][b] = batch.sides[from][b] & batch.sides[to][b];
+        }
+    }
 }
 
 template <class Grid, class Field, class Visitor>
@@ -242,13 +256,22 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const 
     Steps steps;
     list(batch, interior, first, end, steps);
     look_at_ends(batch, steps);
+    Origins which;
+    which.copied = next.count;
+    const auto finish_next = [&] {
+        copy_corners(batch, which, next);
+        finish(next);
+    };
+    const auto put_stopped = [&](const Stopped& element) {
+        if (put(element, next)) finish_next();
+    };
     std::size_t next_end = 0;
     // No branch here depends on what was seen: both are written, and counted where they are so.
     for (std::size_t i = 0; i < steps.count; ++i) {
         const std::size_t b = steps.block[i];
         const std::size_t part = steps.part[i];
-        take_stopped(batch, b, [&](const Stopped& element) { put(element, next); });
-        if (next.count == room_) finish(next);
+        take_stopped(batch, b, put_stopped);
+        if (next.count == room_) finish_next();
         const bool is_end = part >= ends_;
         const MaskOf<Real> ended = is_end ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         const MaskOf<Real> descends = steps.descend[next_end] & ended;
@@ -256,15 +279,17 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const 
         const Real* const bound =
             is_end ? &steps.bound[next_end] : &interior.bound[part % ends_][b];
         next_end += is_end ? 1 : 0;
-        copy_corners(batch, b, part, next);
+        which.block[next.count] = static_cast<std::uint8_t>(b);
+        which.part[next.count] = static_cast<std::uint8_t>(part);
         next.stopped[next.stopped_count] = {&batch, static_cast<std::uint8_t>(b),
                                             static_cast<std::uint8_t>(part),
                                             static_cast<std::uint8_t>(next.count), *bound};
         next.count += descends & 1U;
         next.stopped_count += stops & 1U;
-        if (next.stopped_count == stopped_room_) finish(next);
+        if (next.stopped_count == stopped_room_) finish_next();
     }
-    take_stopped(batch, end - 1, [&](const Stopped& element) { put(element, next); });
+    take_stopped(batch, end - 1, put_stopped);
+    copy_corners(batch, which, next);
 }
 
 /// What comes next in these blocks, and what there is to know of the ends.
@@ -333,27 +358,29 @@ void BlockWalk<Grid, Field, Visitor>::find_new_nodes(Steps& steps) const {
 
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::copy_corners(const Batch& batch,
-                                                                   std::size_t b, std::size_t part,
-                                                                   Queue& next) {
-    const auto& which = pattern_.part[part];
-    const std::size_t n = next.count;
-    unrolled<corners_>([&](auto i) NESTGRID_INLINE_LAMBDA {
-        const std::size_t from = which.corner[i];
-        next.nodes[i][n] = batch.nodes[from][b];
-        next.keys[i][n] = batch.keys[from][b];
-        next.values[i][n] = batch.values[from][b];
-        if constexpr (in_subtrees_) next.sides[i][n] = batch.sides[from][b];
-    });
-    next.orientations[n] =
-        static_cast<std::uint8_t>(batch.orientations[b] ^ (which.mirrored ? 1U : 0U));
+                                                                   Origins& which, Queue& next) {
+    for (std::size_t n = which.copied; n < next.count; ++n) {
+        const std::size_t b = which.block[n];
+        const auto& part = pattern_.part[which.part[n]];
+        unrolled<corners_>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const std::size_t from = part.corner[i];
+            next.nodes[i][n] = batch.nodes[from][b];
+            next.keys[i][n] = batch.keys[from][b];
+            next.values[i][n] = batch.values[from][b];
+            if constexpr (in_subtrees_) next.sides[i][n] = batch.sides[from][b];
+        });
+        next.orientations[n] =
+            static_cast<std::uint8_t>(batch.orientations[b] ^ (part.mirrored ? 1U : 0U));
+    }
+    which.copied = 0;
 }
 
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
+bool BlockWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
     Stopped& last = next.stopped[next.stopped_count++];
     last = element;
     last.before = static_cast<std::uint8_t>(next.count);
-    if (next.stopped_count == stopped_room_) finish(next);
+    return next.stopped_count == stopped_room_;
 }
 
 /// Walks what was gathered.
