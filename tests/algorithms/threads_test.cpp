@@ -93,6 +93,60 @@ TEST(ThreadsOnStreams, HandOutTheSameTrianglesInTheSameOrder) {
     EXPECT_EQ(alone, triangles(ThreadExecutor(2)));
 }
 
+template <class Grid>
+void expect_same_in_parts(const Grid& grid, const std::vector<SampledField>& fields) {
+    for (const SampledField& data : fields) {
+        SCOPED_TRACE(data.name);
+        const LatticeField field(grid, std::span<const float>(data.values));
+        const HierarchicalIndicator indicator(grid, field);
+        using Soup = SimplexSoup<Grid::dimension, double>;
+        const std::vector<double> isovalues{data.isovalue, data.isovalue + 0.05 * data.range};
+        const auto soups = [&](const auto& executor) {
+            std::vector<std::vector<typename Soup::Simplex>> all(2);
+            std::vector<Soup> sinks;
+            for (auto& soup : all) sinks.emplace_back(soup);
+            const auto reports =
+                extract_isosurfaces(grid, field, isovalues, std::move(sinks),
+                                    Threshold<HierarchicalIndicator>{&indicator, 0.01 * data.range},
+                                    indicator, {}, executor);
+            EXPECT_EQ(reports.size(), 2U);
+            return all;
+        };
+        const auto alone = soups(SequentialExecutor{});
+        EXPECT_GT(alone[0].size() + alone[1].size(), 100U);
+        for (const std::size_t threads : {2U, 3U}) {
+            EXPECT_EQ(alone, soups(ThreadExecutor(threads)));
+        }
+    }
+}
+
+TEST(ThreadsOnSoups, FillPartsThatAreTheWhole) {
+    const Samples n{33, 33, 33};
+    expect_same_in_parts(LatticeBisection<3>({.samples = n}), sampled_fields(n));
+    expect_same_in_parts(LatticeOctree<3>({.samples = n}), sampled_fields(n));
+}
+
+TEST(ThreadsOnSoups, KeepWhatAStreamHandsOut) {
+    const SphereIn s;
+    const Threshold<HierarchicalIndicator> criterion{&s.indicator, 0.01};
+    const std::span<const double> isovalue(&s.data.isovalue, 1);
+    std::vector<SimplexSoup<3, double>::Simplex> streamed;
+    const auto keep = [&](const std::array<Point, 3>& x) {
+        streamed.push_back(
+            {x[0][0], x[0][1], x[0][2], x[1][0], x[1][1], x[1][2], x[2][0], x[2][1], x[2][2]});
+    };
+    using Stream = SimplexStream<3, decltype(keep)>;
+    extract_isosurfaces(s.grid, s.field, isovalue, std::vector<Stream>{Stream(keep)}, criterion,
+                        s.indicator, {});
+    std::vector<SimplexSoup<3, double>::Simplex> soup;
+    std::vector<SimplexSoup<3, double>> sinks;
+    sinks.emplace_back(soup);
+    extract_isosurfaces(s.grid, s.field, isovalue, std::move(sinks), criterion, s.indicator, {},
+                        ThreadExecutor(2));
+    EXPECT_GT(soup.size(), 100U);
+    EXPECT_EQ(soup, streamed);
+}
+
 TEST(ThreadsOnBudgets, FindTheSameThreshold) {
     const SphereIn s;
     const auto one = find_threshold(s.grid, s.field, s.data.isovalue, s.indicator, 1000);

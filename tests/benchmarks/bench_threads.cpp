@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a second thread brings (oneTBB), on the bucky ball: triangles into a buffer, and an indexed
-// surface, which is the same to the last bit. One "name value" line per figure; --quick takes 33^3
-// samples instead of 129^3.
+// What a second thread brings (oneTBB), on the bucky ball: triangles into a buffer that may be
+// filled in parts, triangles handed to a function one by one, and an indexed surface, which is the
+// same to the last bit. One "name value" line per figure; --quick takes 33^3 samples instead of
+// 129^3.
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
 
@@ -11,23 +12,42 @@
 
 namespace {
 
+using Soup = nestgrid::SimplexSoup<3, float>;
+
+template <int n, class Executor>
+void fill(Bucky<n>& bucky, float threshold, std::vector<Soup::Simplex>& soup,
+          const Executor& executor) {
+    soup.clear();
+    const double isovalue = bucky_isovalue;
+    std::vector<Soup> sinks;
+    sinks.emplace_back(soup);
+    const nestgrid::Threshold<nestgrid::HierarchicalIndicator> criterion{&bucky.indicator,
+                                                                         threshold};
+    nestgrid::extract_isosurfaces(bucky.grid, bucky.field, std::span<const double>(&isovalue, 1),
+                                  std::move(sinks), criterion, bucky.indicator, {}, executor);
+}
+
 template <int n>
 void compare(std::size_t rounds) {
     Bucky<n> bucky;
     const nestgrid::TbbExecutor two(2);
     Contest::print_figure("threads", static_cast<double>(two.concurrency()));
+    std::vector<Soup::Simplex> soup;
     nestgrid::IsosurfaceSeries one_series(bucky.grid, bucky.field);
     nestgrid::IsosurfaceSeries two_series(bucky.grid, bucky.field);
     for (const float threshold : bucky_thresholds) {
         const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
         Contest contest(rounds);
-        contest.add("soup_one", [&] { bucky.draw_soup(bucky.grid, bucky.field, threshold); });
-        contest.add("soup_two",
+        contest.add("soup_one",
+                    [&] { fill(bucky, threshold, soup, nestgrid::SequentialExecutor{}); });
+        contest.add("soup_two", [&] { fill(bucky, threshold, soup, two); });
+        contest.add("stream_one", [&] { bucky.draw_soup(bucky.grid, bucky.field, threshold); });
+        contest.add("stream_two",
                     [&] { bucky.draw_soup(bucky.grid, bucky.field, threshold, nullptr, two); });
         contest.add("indexed_one", [&] { one_series.draw(double{bucky_isovalue}, options); });
         contest.add("indexed_two", [&] { two_series.draw(double{bucky_isovalue}, options, two); });
         contest.run();
-        for (const std::string name : {"soup", "indexed"}) {
+        for (const std::string name : {"soup", "stream", "indexed"}) {
             Contest::print_figure(at_threshold(name + "_one_ms", threshold),
                                   contest.time(name + "_one"));
             Contest::print_figure(at_threshold(name + "_two_threads_speedup", threshold),

@@ -127,8 +127,10 @@ public:
     using Number = std::uint32_t;
     using Cut = SurfaceCut<attribute_count>;
     static constexpr bool logs = requires { requires Sink::logs; };
+    static constexpr bool in_parts = !indexed && SinkInParts<Sink>;
     using Log = SurfaceLog<dimension, ElementOf<Grid>, attribute_count, indexed>;
-    using Task = IsosurfaceVisitor<Grid, Field, S, Indicator, Log>;
+    using TaskSink = std::conditional_t<in_parts, Sink, Log>;
+    using Task = IsosurfaceVisitor<Grid, Field, S, Indicator, TaskSink>;
 
     struct Level {
         double isovalue;
@@ -354,7 +356,7 @@ private:
     template <class Executor>
     void walk(const Executor& executor);
     std::unique_ptr<Task> begin_task();
-    void add_task(const Task& task);
+    void add_task(Task& task);
     void repeat(Layer& layer, const Log& log);
 
     const Walk* walk_;

@@ -6,7 +6,8 @@
 // Each task has a visitor of its own, which logs what it draws below its part of the frontier. The
 // logs are repeated in the order of the parts, while later parts are drawn: vertices get their
 // numbers, and gradients are added up, in the order of one thread. So the surface does not depend
-// on the number of threads, nor on how the grid is cut, to the last bit.
+// on the number of threads, nor on how the grid is cut, to the last bit. A sink that can be filled
+// in parts (surface.hpp) takes the place of the log.
 #pragma once
 
 #include <memory>
@@ -25,9 +26,9 @@ template <class Executor>
 void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk(const Executor& executor) {
     if (executor.concurrency() < 2) return walk_->run(*this);
     if constexpr (!logs && !std::is_same_v<Executor, SequentialExecutor>) {
-        // Enough entries that parts can be even, enough parts that threads end together.
+        // Enough parts that threads end together, and few entries, for each begins anew.
         const std::size_t wanted = 16 * executor.concurrency();
-        const Frontier frontier(*walk_, *this, 16 * wanted);
+        const Frontier frontier(*walk_, *this, 2 * wanted);
         const std::size_t entries = frontier.entry_count();
         const std::size_t parts = std::min(entries, wanted);
         idle_.silent = *options_;
@@ -66,11 +67,15 @@ NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
             idle_.tasks.pop_back();
         }
     }
-    std::vector<Log> sinks;
+    std::vector<TaskSink> sinks;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
-        const bool elements = keeps_elements(layers_[i].sink);
-        sinks.push_back(task ? std::move(task->layers_[i].sink) : Log(elements));
-        sinks.back().clear(elements);
+        if constexpr (in_parts) {
+            sinks.push_back(task ? std::move(task->layers_[i].sink) : layers_[i].sink.part());
+        } else {
+            const bool elements = keeps_elements(layers_[i].sink);
+            sinks.push_back(task ? std::move(task->layers_[i].sink) : Log(elements));
+            sinks.back().clear(elements);
+        }
     }
     if (task) {
         task->begin_again(isovalues_, sinks);
@@ -88,7 +93,7 @@ NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
     return task;
 }
 
-NESTGRID_VISITOR::add_task(const Task& task) -> void {
+NESTGRID_VISITOR::add_task(Task& task) -> void {
     counts_.calls += task.counts_.calls;
     counts_.visited += task.counts_.visited;
     deepest_ = std::max(deepest_, task.deepest_);
@@ -101,12 +106,17 @@ NESTGRID_VISITOR::add_task(const Task& task) -> void {
     for (const auto& [at, g] : task.gradient_log_) add_gradient(slot[at], g);
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Layer& layer = layers_[i];
-        const auto& part = task.layers_[i];
+        auto& part = task.layers_[i];
         layer.extracted += part.extracted;
         layer.error_bound = std::max(layer.error_bound, part.error_bound);
         if (recording_) layer.transitions.append(part.transitions);
-        repeat(layer, part.sink);
+        if constexpr (in_parts) {
+            layer.sink.append(part.sink);
+        } else {
+            repeat(layer, part.sink);
+        }
     }
+    if constexpr (in_parts) count_simplices(task.drawn_);
     if (options_->progress && !options_->progress(counts_)) throw Cancelled{};
 }
 
@@ -115,6 +125,12 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
         IsosurfaceVisitor* to;
         std::vector<Vertex>& vertices;
 
+        NESTGRID_INLINE void expect([[maybe_unused]] const typename Log::Cut& c) const {
+            if constexpr (indexed) {
+                const VertexNumbers& numbers = to->layer_->number_of;
+                numbers.prefetch(numbers.name({c.node[0], c.node[1]}));
+            }
+        }
         void cut(const typename Log::Cut& c) {
             vertices.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
         }

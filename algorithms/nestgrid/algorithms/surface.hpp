@@ -18,10 +18,15 @@
 // A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
 //     void add_element(const Element& element, Shape shape, int level)
 //     void add_simplex(const std::array<Point, dimension>& x, std::span<const Point> reference)
+// Such a sink may let several threads fill parts of it:
+//     Sink part() const          an empty one of its kind
+//     void append(Sink& part)    puts what is in a part behind what is here, and empties it
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -112,6 +117,48 @@ public:
 private:
     Target* surface_;
     bool elements_;
+};
+
+/// Keeps nothing but the corners of every triangle (segment): what a renderer takes.
+/// \tparam Real float or double
+template <int dimension, class Real>
+class SimplexSoup {
+public:
+    static constexpr bool indexed = false;
+    using Simplex = std::array<Real, 3 * static_cast<std::size_t>(dimension)>;
+
+    /// \param target to which they are added; borrowed
+    explicit SimplexSoup(std::vector<Simplex>& target) : target_{&target} {}
+
+    SimplexSoup part() const { return SimplexSoup(std::make_unique<std::vector<Simplex>>()); }
+    void append(SimplexSoup& part) {
+        target_->insert(target_->end(), part.target_->begin(), part.target_->end());
+        part.target_->clear();
+    }
+
+    bool keeps_elements() const { return false; }
+    template <class Element>
+    void add_element(const Element&, Shape, int) {}
+    void add_simplex(const std::array<Point, static_cast<std::size_t>(dimension)>& x,
+                     std::span<const Point>) {
+        Simplex& simplex = target_->emplace_back();
+        for (std::size_t i = 0; i < simplex.size(); ++i) {
+            simplex[i] = static_cast<Real>(x[i / 3][i % 3]);
+        }
+    }
+
+private:
+    explicit SimplexSoup(std::unique_ptr<std::vector<Simplex>> own)
+        : own_{std::move(own)}, target_{own_.get()} {}
+
+    std::unique_ptr<std::vector<Simplex>> own_;  // of a part
+    std::vector<Simplex>* target_;
+};
+
+template <class Sink>
+concept SinkInParts = requires(Sink& sink, const Sink& same) {
+    { same.part() } -> std::same_as<Sink>;
+    sink.append(sink);
 };
 
 /// Hands every triangle (segment) to a function and keeps nothing.

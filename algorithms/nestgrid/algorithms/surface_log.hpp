@@ -79,10 +79,14 @@ public:
     }
 
     /// Repeats the calls, those for vertices before all others; corners are numbers of vertices in
-    /// the order they were added here.
+    /// the order they were added here. Cuts that other tasks may know are announced by expect().
     template <class Receiver>
     void repeat(Receiver&& to) const {
+        constexpr std::size_t ahead = 16;
         for (std::size_t i = 0; i < cuts_.size(); ++i) {
+            if (i + ahead < cuts_.size() && kinds_[i + ahead] == Kind::shared) {
+                to.expect(cuts_[i + ahead]);
+            }
             switch (kinds_[i]) {
                 case Kind::shared:
                     to.cut(cuts_[i]);
