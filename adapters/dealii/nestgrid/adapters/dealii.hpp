@@ -46,7 +46,11 @@ public:
 
     std::size_t coarse_count() const { return triangulation_->n_cells(0); }
     CoarseElement<Element> coarse(std::size_t i) const;
-    const Rule* split(const Element& e) const;
+    const Rule* split(const Element& e) const {
+        const Cell c = cell(e);
+        if (!c->has_children()) return nullptr;
+        return all_cubes_ ? halving_ : other_split(c);
+    }
     void children(const Element& e, std::span<Element> out) const {
         const Cell c = cell(e);
         for (unsigned k = 0; k < out.size(); ++k) out[k] = {e.level + 1, c->child_index(int(k))};
@@ -69,11 +73,7 @@ public:
         });
         return hanging;
     }
-    void new_positions(const Element& e, NodeMask which, std::span<Point> out) const {
-        for_each_new_node(e, [&](std::size_t n, const Cell& child, unsigned corner) {
-            if ((which >> n & 1U) != 0) out[n] = position(child, corner);
-        });
-    }
+    void new_positions(const Element& e, NodeMask which, std::span<Point> out) const;
     std::uint64_t epoch() const { return epoch_; }
 
     const Triangulation& triangulation() const { return *triangulation_; }
@@ -86,15 +86,23 @@ public:
     void for_each_new_node(const Element& e, Function&& f) const {
         const Rule& rule = *split(e);
         const Cell c = cell(e);
+        std::array<int, max_children> child;
+        for (unsigned k = 0; k < rule.children.size(); ++k) child[k] = c->child_index(k);
         for (std::size_t n = 0; n < rule.new_corner.size(); ++n) {
             const ChildCorner at = rule.new_corner[n];
-            f(n, cell({e.level + 1, c->child_index(at.child)}), unsigned{at.corner});
+            f(n, cell({e.level + 1, child[at.child]}), unsigned{at.corner});
         }
     }
 
 private:
+    const Rule* other_split(const Cell& c) const;
     static Shape shape(const Cell& c);
     Point position(const Cell& c, unsigned corner) const;
+    static Point point(const dealii::Point<spacedim>& x) {
+        Point result{0, 0, 0};
+        for (unsigned d = 0; d < spacedim; ++d) result[d] = x[d];
+        return result;
+    }
     std::vector<PlacedChild> simplex_children(const Cell& c) const;
     template <class Object>
     void mark(const Object& line_or_face, int level, bool lines_too,
@@ -104,6 +112,7 @@ private:
     const Triangulation* triangulation_;
     const dealii::Mapping<dim, spacedim>* mapping_;
     const Rule* halving_ = nullptr;
+    bool all_cubes_ = false;
     RuleTable simplex_rules_;
     const Rule* only_simplex_rule_ = nullptr;
     std::vector<bool> hangs_;  // by vertex
@@ -133,11 +142,22 @@ public:
     }
     NodeMask new_values(const typename Grid::Element& e, NodeMask which,
                         std::span<value_type> out) const {
+        // All indices before all values: none waits for another one's way through memory.
+        std::array<std::array<dealii::types::global_dof_index, component_count>,
+                   Grid::max_new_nodes>
+            dof;
         grid_->for_each_new_node(e, [&](std::size_t n, const auto& child, unsigned corner) {
-            if ((which >> n & 1U) == 0) return;
-            put(DofCell(&grid_->triangulation(), child->level(), child->index(), dofs_), corner,
-                out, n);
+            const DofCell c(&grid_->triangulation(), child->level(), child->index(), dofs_);
+            for (std::size_t i = 0; i < offset_.size(); ++i) {
+                dof[n][i] = c->vertex_dof_index(corner, offset_[i]);
+            }
         });
+        for (std::size_t n = 0; which >> n != 0; ++n) {
+            if ((which >> n & 1U) == 0) continue;
+            for (std::size_t i = 0; i < offset_.size(); ++i) {
+                out[n * offset_.size() + i] = (*values_)(dof[n][i]);
+            }
+        }
         return 0;
     }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 
 #include <nestgrid/adapters/dealii.hpp>
 
@@ -45,9 +46,27 @@ auto DealiiGrid<dim, spacedim>::coarse(std::size_t i) const -> CoarseElement<Ele
 }
 
 template <int dim, int spacedim>
-const Rule* DealiiGrid<dim, spacedim>::split(const Element& e) const {
-    const Cell c = cell(e);
-    if (!c->has_children()) return nullptr;
+void DealiiGrid<dim, spacedim>::new_positions(const Element& e, NodeMask which,
+                                              std::span<Point> out) const {
+    if (mapping_ != nullptr) {
+        for_each_new_node(e, [&](std::size_t n, const Cell& child, unsigned corner) {
+            if ((which >> n & 1U) != 0) out[n] = position(child, corner);
+        });
+        return;
+    }
+    // All indices before all positions: none waits for another one's way through memory.
+    std::array<unsigned, max_new_nodes> vertex;
+    for_each_new_node(e, [&](std::size_t n, const Cell& child, unsigned corner) {
+        vertex[n] = child->vertex_index(corner);
+    });
+    const auto& position_of = triangulation_->get_vertices();
+    for (std::size_t n = 0; which >> n != 0; ++n) {
+        if ((which >> n & 1U) != 0) out[n] = point(position_of[vertex[n]]);
+    }
+}
+
+template <int dim, int spacedim>
+const Rule* DealiiGrid<dim, spacedim>::other_split(const Cell& c) const {
     if (c->n_vertices() == unsigned{max_corners}) return halving_;
     if (only_simplex_rule_ != nullptr) return only_simplex_rule_;
     return simplex_rules_.find(shape(c), simplex_children(c));
@@ -70,9 +89,7 @@ Point DealiiGrid<dim, spacedim>::position(const Cell& c, unsigned corner) const 
         while (leaf->has_children()) leaf = leaf->child(corner);
         x = mapping_->get_vertices(leaf)[corner];
     }
-    Point result{0, 0, 0};
-    for (unsigned d = 0; d < spacedim; ++d) result[d] = x[d];
-    return result;
+    return point(x);
 }
 
 /// How the children of a simplex lie in it: every new vertex is the middle of an edge.
@@ -134,16 +151,20 @@ void DealiiGrid<dim, spacedim>::mark(const Object& object, int level, bool lines
 
 template <int dim, int spacedim>
 void DealiiGrid<dim, spacedim>::update() {
+    all_cubes_ = triangulation_->all_reference_cells_are_hyper_cube();
+    const auto corners_of = [&](const Cell& c) {
+        return all_cubes_ ? unsigned{max_corners} : c->n_vertices();
+    };
     hangs_.assign(triangulation_->n_vertices(), false);
     only_simplex_rule_ = nullptr;
     std::vector<std::uint8_t> finest(triangulation_->n_vertices(), 0);  // level around a vertex
     for (const auto& c : triangulation_->cell_iterators()) {
         if (!c->has_children()) {
-            for (const unsigned k : c->vertex_indices()) {
+            for (unsigned k = 0; k < corners_of(c); ++k) {
                 std::uint8_t& level = finest[c->vertex_index(k)];
                 level = std::max(level, static_cast<std::uint8_t>(c->level()));
             }
-        } else if (c->n_vertices() != unsigned{max_corners}) {
+        } else if (corners_of(c) != unsigned{max_corners}) {
             only_simplex_rule_ = &simplex_rules_.add(shape(c), simplex_children(c));
         } else if (c->n_children() != unsigned{max_children}) {
             throw InvalidInput("cell " + c->id().to_string() +
@@ -151,32 +172,40 @@ void DealiiGrid<dim, spacedim>::update() {
         }
     }
     if (simplex_rules_.size() > 1) only_simplex_rule_ = nullptr;
-    for (const auto& c : triangulation_->active_cell_iterators()) {
-        // Where an edge or a face is refined on another side, so are cells at all its corners.
-        std::array<bool, max_corners> finer{};
-        bool any = false;
-        for (const unsigned k : c->vertex_indices()) {
-            finer[k] = finest[c->vertex_index(k)] > c->level();
-            any = any || finer[k];
-        }
-        if (dim == 1 || !any) continue;
-        const bool simplex = c->n_vertices() != unsigned{max_corners};
+    if constexpr (dim > 1) {
+        // Corners of the lines and faces of a cube, one bit each.
         using Cube = dealii::GeometryInfo<dim>;
-        if constexpr (dim > 1) {
-            for (unsigned l = 0; l < c->n_lines(); ++l) {
-                if (simplex || (finer[Cube::line_to_cell_vertices(l, 0)] &&
-                                finer[Cube::line_to_cell_vertices(l, 1)])) {
-                    mark(c->line(l), c->level(), true, finest);
-                }
+        std::array<unsigned, Cube::lines_per_cell> line{};
+        std::array<unsigned, Cube::faces_per_cell> face{};
+        for (unsigned l = 0; l < line.size(); ++l) {
+            line[l] =
+                1U << Cube::line_to_cell_vertices(l, 0) | 1U << Cube::line_to_cell_vertices(l, 1);
+        }
+        for (unsigned f = 0; f < face.size(); ++f) {
+            for (unsigned k = 0; k < Cube::vertices_per_face; ++k) {
+                face[f] |= 1U << Cube::face_to_cell_vertices(f, k);
             }
         }
-        if constexpr (dim > 2) {
-            for (unsigned f = 0; f < c->n_faces(); ++f) {
-                bool all = true;
-                for (unsigned k = 0; !simplex && k < Cube::vertices_per_face; ++k) {
-                    all = all && finer[Cube::face_to_cell_vertices(f, k)];
+        for (const auto& c : triangulation_->active_cell_iterators()) {
+            // Where an edge or a face is refined on another side, so are cells at all its corners.
+            unsigned finer = 0;
+            for (unsigned k = 0; k < corners_of(c); ++k) {
+                finer |= unsigned{finest[c->vertex_index(k)] > c->level()} << k;
+            }
+            if (std::popcount(finer) < 2) continue;
+            const bool simplex = corners_of(c) != unsigned{max_corners};
+            const auto may_be_refined = [&](unsigned corners) {
+                return simplex || (finer & corners) == corners;
+            };
+            const unsigned lines = simplex ? c->n_lines() : unsigned{Cube::lines_per_cell};
+            for (unsigned l = 0; l < lines; ++l) {
+                if (may_be_refined(line[l])) mark(c->line(l), c->level(), true, finest);
+            }
+            if constexpr (dim > 2) {
+                const unsigned faces = simplex ? c->n_faces() : unsigned{Cube::faces_per_cell};
+                for (unsigned f = 0; f < faces; ++f) {
+                    if (may_be_refined(face[f])) mark(c->face(f), c->level(), false, finest);
                 }
-                if (all) mark(c->face(f), c->level(), false, finest);
             }
         }
     }
