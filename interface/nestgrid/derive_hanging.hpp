@@ -38,12 +38,15 @@ public:
     void add_nodes(const Rule& rule, std::span<const NodeKey> corners,
                    std::span<const NodeKey> nodes) {
         std::array<NodeKey, max_corners + max_new_nodes> mixed;
+        std::array<NodeKey, max_new_nodes> parents;
         const auto count = static_cast<std::size_t>(rule.corner_count());
         for (std::size_t i = 0; i < count; ++i) mixed[i] = mix(corners[i]);
         for (std::size_t n = 0; n < nodes.size(); ++n) {
-            nodes_.insert(derived_key(rule.new_nodes[n], mixed.data()), nodes[n]);
+            parents[n] = derived_key(rule.new_nodes[n], mixed.data());
             mixed[count + n] = mix(nodes[n]);
+            nodes_.prefetch(parents[n]);
         }
+        for (std::size_t n = 0; n < nodes.size(); ++n) nodes_.insert(parents[n], nodes[n]);
     }
 
     /// Between the last add_nodes() and the first probe_leaf().
@@ -54,12 +57,28 @@ public:
 
     void probe_leaf(Shape shape, std::span<const NodeKey> k) {
         const Topology& t = topology(shape);
-        for (std::size_t e = 0; e < t.edges; ++e) probe_edge(k[t.edge[e][0]], k[t.edge[e][1]]);
-        for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
+        std::array<Found, max_edges> middle_of{};
+        bool any = false;
+        for (std::size_t e = 0; e < t.edges; ++e) {
+            const NodeKey a = k[t.edge[e][0]];
+            const NodeKey b = k[t.edge[e][1]];
+            middle_of[e] = middle(a, b);
+            any = any || middle_of[e] != nullptr;
+            probe_parts(a, b, middle_of[e]);
+        }
+        // A face that is divided has an edge that is.
+        for (std::size_t f = 0; any && t.dimension == 3 && f < t.faces; ++f) {
             const FaceTopology& face = t.face[f];
             const auto at = [&](int i) { return k[face.tensor_corner(i)]; };
-            if (face.corners == 3) probe_triangle(at(0), at(1), at(2));
-            if (face.corners == 4) probe_quadrilateral(at(0), at(1), at(2), at(3));
+            const auto between = [&](int i, int j) {
+                return middle_of[edge_between(shape, face.tensor_corner(i), face.tensor_corner(j))];
+            };
+            if (face.corners == 3) {
+                probe_triangle(at(0), at(1), at(2), between(0, 1), between(1, 2), between(2, 0));
+            } else {
+                probe_quadrilateral(at(0), at(1), at(2), at(3), between(0, 1), between(2, 3),
+                                    between(0, 2), between(1, 3));
+            }
         }
     }
 
@@ -78,8 +97,9 @@ private:
         return parents_.perhaps(hash(parents)) ? nodes_.find(parents) : nullptr;
     }
 
-    void probe_edge(NodeKey a, NodeKey b) {
-        const Found m = middle(a, b);
+    void probe_edge(NodeKey a, NodeKey b) { probe_parts(a, b, middle(a, b)); }
+    /// \param m the node in its middle, or null
+    void probe_parts(NodeKey a, NodeKey b, Found m) {
         if (m == nullptr) return;
         hanging_.insert(*m);
         probe_edge(a, *m);
@@ -88,9 +108,9 @@ private:
 
     /// Bisected or refined into four, along any of its edges.
     void probe_triangle(NodeKey a, NodeKey b, NodeKey c) {
-        const Found ab = middle(a, b);
-        const Found bc = middle(b, c);
-        const Found ca = middle(c, a);
+        probe_triangle(a, b, c, middle(a, b), middle(b, c), middle(c, a));
+    }
+    void probe_triangle(NodeKey a, NodeKey b, NodeKey c, Found ab, Found bc, Found ca) {
         if (ab == nullptr && bc == nullptr && ca == nullptr) return;
         if (!triangles_.insert(mean_key(mix(a) + mix(b) + mix(c), 3), {}).second) return;
         const auto bisected = [&](Found m, NodeKey p, NodeKey q, NodeKey r) {
@@ -114,14 +134,14 @@ private:
 
     /// Corners in tensor order; refined into four, or halved in one direction.
     void probe_quadrilateral(NodeKey a, NodeKey b, NodeKey c, NodeKey d) {
-        const Found ab = middle(a, b);
-        const Found cd = middle(c, d);
-        const Found ac = middle(a, c);
-        const Found bd = middle(b, d);
-        const Found centre = middle(a, b, c, d);
+        probe_quadrilateral(a, b, c, d, middle(a, b), middle(c, d), middle(a, c), middle(b, d));
+    }
+    void probe_quadrilateral(NodeKey a, NodeKey b, NodeKey c, NodeKey d, Found ab, Found cd,
+                             Found ac, Found bd) {
         const bool across = ab != nullptr && cd != nullptr;
         const bool along = ac != nullptr && bd != nullptr;
-        if (centre != nullptr && across && along) {
+        const Found centre = across && along ? middle(a, b, c, d) : nullptr;
+        if (centre != nullptr) {
             hanging_.insert(*centre);
             for (const Found m : {ab, cd, ac, bd}) probe_edge(*m, *centre);
             probe_quadrilateral(a, *ab, *ac, *centre);

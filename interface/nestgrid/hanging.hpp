@@ -18,7 +18,9 @@ public:
     /// Which of the keys hang, one bit each.
     NodeMask mask(std::span<const NodeKey> keys) const {
         NodeMask result = 0;
-        for (std::size_t i = 0; i < keys.size() && size() > 0; ++i) {
+        if (size() == 0) return result;
+        for (const NodeKey key : keys) keys_.prefetch(key);
+        for (std::size_t i = 0; i < keys.size(); ++i) {
             if (contains(keys[i])) result |= NodeMask{1} << i;
         }
         return result;

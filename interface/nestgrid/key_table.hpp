@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <nestgrid/inlining.hpp>
 #include <nestgrid/keys.hpp>
 
 namespace nestgrid {
@@ -49,6 +50,14 @@ public:
         if (slots_.empty()) return nullptr;
         const Slot& slot = slots_[place(key)];
         return slot.used ? &slot.value : nullptr;
+    }
+
+    /// It will be asked for soon.
+    NESTGRID_INLINE void prefetch([[maybe_unused]] const Key& key) const {
+#if defined(__GNUC__)
+        __builtin_prefetch(slots_.data() +
+                           (static_cast<std::size_t>(hash(key)) & (slots_.size() - 1)));
+#endif
     }
 
     template <class Function>

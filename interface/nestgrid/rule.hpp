@@ -94,7 +94,9 @@ struct Rule {
     Shape parent = Shape::point;
     std::vector<Stencil> new_nodes;
     std::vector<Child> children;
-    std::vector<ChildCorner> new_corner{};  // derived: where each new node is a corner first
+    /// Derived: of which child each new node is a corner. The first one of a child where it can be,
+    /// else the last one: in sorted leaves these are found without a search.
+    std::vector<ChildCorner> new_corner{};
     std::vector<RuleEdge> edges{};  // derived: first those of the parent, as in its topology
     std::vector<RuleFace> faces{};  // derived: likewise; none in two dimensions
     int steps = 1;  // derived: the longest chain of new nodes that are parents of each other

@@ -263,11 +263,16 @@ inline Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_n
     if (auto violation = find_violation(rule)) throw InvalidInput(*violation);
     for (Stencil& s : rule.new_nodes) detail::complete_stencil(rule, s);
     rule.new_corner.resize(rule.new_nodes.size());
-    for (std::size_t c = rule.children.size(); c-- > 0;) {
+    std::vector<int> rank(rule.new_nodes.size(), 3);
+    for (std::size_t c = 0; c < rule.children.size(); ++c) {
         const Child& child = rule.children[c];
-        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+        const std::size_t corners = topology(child.shape).corners;
+        for (std::size_t i = 0; i < corners; ++i) {
             if (child.corner[i] < rule.corner_count()) continue;
             const auto n = static_cast<std::size_t>(child.corner[i] - rule.corner_count());
+            const int here = i == 0 ? 0 : i + 1 == corners ? 1 : 2;
+            if (here >= rank[n]) continue;
+            rank[n] = here;
             rule.new_corner[n] = {static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(i)};
         }
     }

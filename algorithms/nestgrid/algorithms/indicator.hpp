@@ -67,12 +67,15 @@ public:
         return bfloat16_value(largest);
     }
 
-    /// Eight nodes will be asked for.
-    NESTGRID_INLINE void prefetch([[maybe_unused]] const NodeKey* nodes) const {
+    /// These will be asked for soon.
+    NESTGRID_INLINE void prefetch([[maybe_unused]] std::span<const NodeKey> nodes) const {
 #if defined(__GNUC__)
-        if (dense_ == nullptr) return;
-        for (std::size_t i = 0; i < pack; ++i) {
-            __builtin_prefetch(dense_.get() + static_cast<std::size_t>(nodes[i]));
+        if (dense_ == nullptr) {
+            for (const NodeKey node : nodes) sparse_.prefetch(node);
+        } else {
+            for (const NodeKey node : nodes) {
+                __builtin_prefetch(dense_.get() + static_cast<std::size_t>(node));
+            }
         }
 #endif
     }

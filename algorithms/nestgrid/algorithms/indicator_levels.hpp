@@ -68,6 +68,10 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     for_each_element<!of_leaves>(walk, [&](const auto& s, const Split& split) {
         const auto corners = static_cast<std::size_t>(s.corner_count());
         walk.keys(s, corner_keys);
+        if (!dense) {
+            for (std::size_t i = 0; i < corners; ++i) slots.prefetch(corner_keys[i]);
+            for (const NodeKey key : split.keys) slots.prefetch(key);
+        }
         for (std::size_t i = 0; i < corners; ++i) numbers[i] = slot(corner_keys[i]);
         if (s.level == 0) {
             for (std::size_t i = 0; i < corners; ++i) add_value(s.value[i * stride], limit);
@@ -87,6 +91,9 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
             return;
         }
         const Rule& rule = *split.rule;
+        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+            numbers[corners + n] = slot(split.keys[n]);
+        }
         largest_split_ = std::max(largest_split_, rule.new_nodes.size());
         one_sweep = one_sweep && rule.steps == 1;
         all_divided = all_divided && rule.divides_all;
@@ -101,7 +108,7 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
         const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             const Stencil& stencil = rule.new_nodes[n];
-            const std::size_t at = numbers[corners + n] = slot(split.keys[n]);
+            const std::size_t at = numbers[corners + n];
             Node& node = nodes[at];
             const bool is_new = made_on[at] == 0;
             one_sweep = one_sweep && (is_new || made_on[at] == level);

@@ -178,7 +178,8 @@ public:
     bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
     PackedGlance<Real> glance(const PackedElements<Real>& e);
     NESTGRID_INLINE void expect(const NodeKey* nodes) const {
-        if constexpr (requires { indicator_->prefetch(nodes); }) indicator_->prefetch(nodes);
+        const std::span<const NodeKey> eight(nodes, pack);
+        if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
     }
     void begin_subtrees()
         requires(indexed)

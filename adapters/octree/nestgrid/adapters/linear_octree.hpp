@@ -82,46 +82,28 @@ public:
     }
     const Rule* split(const Element& e) const { return e.last - e.first == 1 ? nullptr : rule_; }
     void children(const Element& e, std::span<Element> out) const {
-        for (std::size_t c = 0; c < max_children; ++c) out[c] = child(e, c);
+        const std::size_t tree = tree_of(e);
+        std::size_t first = e.first;
+        for (std::size_t c = 0; c < max_children; ++c) {
+            const std::size_t last = c + 1 == max_children ? e.last : bound(tree, e, first, c + 1);
+            out[c] = {first, last, static_cast<std::uint8_t>(e.level + 1)};
+            first = last;
+        }
     }
 
     // What fields need.
     std::size_t leaf_count() const { return first_.back(); }
     /// The leaf in a corner of an element.
     std::size_t corner_leaf(Element e, std::size_t corner) const {
-        while (e.last - e.first > 1) e = child(e, corner);
-        return e.first;
-    }
-    Element child(const Element& e, std::size_t number) const {
-        const auto tree = static_cast<std::size_t>(
-            std::upper_bound(first_.begin(), first_.end(), e.first) - first_.begin() - 1);
-        const auto leaf = [&](std::size_t i) -> const LeafType& {
-            return trees_[tree][i - first_[tree]];
-        };
-        const auto bit = static_cast<unsigned>(max_level_ - e.level - 1);
-        const auto bound = [&](std::size_t least) {  // first leaf in a child >= least
-            std::size_t low = e.first;
-            std::size_t high = e.last;
-            while (low < high) {
-                const std::size_t middle = (low + high) / 2;
-                if (child_of(leaf(middle), bit) < least) {
-                    low = middle + 1;
-                } else {
-                    high = middle;
-                }
-            }
-            return low;
-        };
-        return {bound(number), bound(number + 1), static_cast<std::uint8_t>(e.level + 1)};
-    }
-    /// A child, and which of its corners a new node is.
-    std::pair<std::size_t, std::size_t> place_of_new_node(std::size_t k) const {
-        for (std::size_t c = 0; c < max_children; ++c) {
-            for (std::size_t i = 0; i < max_corners; ++i) {
-                if (rule_->children[c].corner[i] == max_corners + k) return {c, i};
-            }
+        if (corner + 1 == max_corners) e.first = e.last - 1;
+        if (corner == 0 || e.last - e.first == 1) return e.first;
+        const std::size_t tree = tree_of(e);
+        while (e.last - e.first > 1) {
+            e.first = bound(tree, e, e.first, corner);
+            e.last = bound(tree, e, e.first, corner + 1);
+            ++e.level;
         }
-        return {0, 0};
+        return e.first;
     }
 
 private:
@@ -137,6 +119,25 @@ private:
             number |= static_cast<std::size_t>(coordinate(leaf, d) >> bit & 1U) << d;
         }
         return number;
+    }
+
+    std::size_t tree_of(const Element& e) const {
+        return static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), e.first) -
+                                        first_.begin() - 1);
+    }
+    /// The first leaf of an element, from `low` on, in child `c` or a later one.
+    std::size_t bound(std::size_t tree, const Element& e, std::size_t low, std::size_t c) const {
+        const auto bit = static_cast<unsigned>(max_level_ - e.level - 1);
+        std::size_t high = e.last;
+        while (low < high) {
+            const std::size_t middle = (low + high) / 2;
+            if (child_of(trees_[tree][middle - first_[tree]], bit) < c) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        return low;
     }
 
     void check(std::size_t t) const {
@@ -206,9 +207,6 @@ public:
                                    std::to_string(values.size()) + " values");
             }
         }
-        for (std::size_t k = 0; k < new_node_.size(); ++k) {
-            new_node_[k] = grid.place_of_new_node(k);
-        }
     }
 
     NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
@@ -217,10 +215,13 @@ public:
         return 0;
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
-        for (std::size_t k = 0; k < new_node_.size(); ++k) {
+        const Rule& rule = *grid_->split(e);
+        std::array<Element, corners_> children;
+        grid_->children(e, children);
+        for (std::size_t k = 0; k < rule.new_corner.size(); ++k) {
             if ((which >> k & 1U) == 0) continue;
-            const auto [child, corner] = new_node_[k];
-            out[k] = corner_value(grid_->child(e, child), corner);
+            const auto [child, corner] = rule.new_corner[k];
+            out[k] = corner_value(children[child], corner);
         }
         return 0;
     }
@@ -236,7 +237,6 @@ private:
     const Grid* grid_;
     std::span<const Index> element_nodes_;
     std::span<const Real> values_;
-    std::array<std::pair<std::size_t, std::size_t>, Grid::max_new_nodes> new_node_{};
 };
 
 }  // namespace nestgrid

@@ -133,12 +133,13 @@ public:
     }
     /// p4est's own record of a leaf, with the user's data.
     const Quadrant& quadrant(const Element& leaf) const { return leaf_of(leaf.tree, leaf.first); }
-    /// The leaf in a corner of an element.
-    Element corner_leaf(Element e, unsigned corner) const {
-        while (e.last - e.first > 1) {
-            e = child(e, corner, corner == 0 ? e.first : bound(e, e.first, corner));
+    /// Number of the leaf in a corner of an element, in p4est's order of all leaves.
+    std::size_t corner_leaf(Element e, unsigned corner) const {
+        if (corner + 1 == max_corners) e.first = e.last - 1;
+        while (corner != 0 && e.last - e.first > 1) {
+            e = child(e, corner, bound(e, e.first, corner));
         }
-        return e;
+        return leaf_index(e);
     }
 
 private:

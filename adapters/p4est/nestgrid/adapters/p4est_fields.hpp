@@ -151,7 +151,7 @@ private:
     static constexpr unsigned corners_ = 1U << dim;
 
     Real corner_value(const Element& e, unsigned corner) const {
-        const std::size_t leaf = grid_->leaf_index(grid_->corner_leaf(e, corner));
+        const std::size_t leaf = grid_->corner_leaf(e, corner);
         const auto at = [&](unsigned c) {
             return values_[static_cast<std::size_t>(nodes_->element_nodes[corners_ * leaf + c])];
         };
