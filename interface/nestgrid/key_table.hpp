@@ -55,6 +55,7 @@ public:
     /// It will be asked for soon.
     NESTGRID_INLINE void prefetch([[maybe_unused]] const Key& key) const {
 #if defined(__GNUC__)
+        if (slots_.empty()) return;
         __builtin_prefetch(slots_.data() +
                            (static_cast<std::size_t>(hash(key)) & (slots_.size() - 1)));
 #endif
