@@ -192,10 +192,12 @@ void GridChecker<Grid, Field>::check_rows(const Known& known, const Nodal& value
     std::array<Point, std::tuple_size_v<Handles>> x;
     std::array<Real, std::tuple_size_v<Handles>> u;
     known.keys(n, keys);
-    known.positions(n, x);
-    values.values_at(n, keys, u);
     for (std::size_t i = 0; i < n.size(); ++i) {
         demand(keys[i] == known.key(n[i]), "a key in a row");
+    }
+    known.positions(n, x);
+    values.values_at(n, keys, u);  // of keys that were found right
+    for (std::size_t i = 0; i < n.size(); ++i) {
         demand(x[i] == known.position(n[i]), "a position in a row");
         demand(u[i] == values.template value_at<true>(n[i], keys[i]), "a value in a row");
     }
