@@ -203,7 +203,7 @@ TEST_F(ToldBisections, ThatAreWrongAreFound) {
 TEST_F(ToldBisections, ThatFailAreNamed) {
     const auto refused_with = [&](auto change) {
         change();
-        const std::string sentence =
+        std::string sentence =
             refusal<GridError>([&] { draw(data[0].isovalue, {.threshold = 0.01}); });
         show(data[0]);
         return sentence;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/node_numbers.hpp>
 #include <nestgrid/algorithms/splits_by_level.hpp>
 
 namespace nestgrid {
@@ -44,23 +45,13 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     using Fetched = detail::FetchedField<Grid, Field>;
     const Fetched fetched{&field, given.data()};
     const Traversal<Grid, Fetched, Needs{.keys = true}> walk(grid, fetched, hanging());
-    std::vector<Node> nodes(dense_key_count(grid));
+    NodeNumbers number_of(dense_key_count(grid));
+    std::vector<Node> nodes(number_of.count());
     std::vector<std::uint8_t> made_on(nodes.size(), 0);  // 1 + level, modulo 255; 0: not known yet
     SplitsByLevel splits(nodes.size());
     bool one_sweep = true;
     bool all_divided = true;
     finest_level_ = 0;
-    KeyTable<NodeKey, std::size_t> slots;
-    const bool dense = !nodes.empty();
-    const auto slot = [&](NodeKey key) {
-        if (dense) return static_cast<std::size_t>(key);
-        const auto [at, is_new] = slots.insert(key, nodes.size());
-        if (is_new) {
-            nodes.emplace_back();
-            made_on.push_back(0);
-        }
-        return *at;
-    };
     std::array<NodeKey, max_corners> corner_keys;
     std::array<std::size_t, max_corners + max_new_nodes> numbers;
 
@@ -68,11 +59,10 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     for_each_element<!of_leaves>(walk, [&](const auto& s, const Split& split) {
         const auto corners = static_cast<std::size_t>(s.corner_count());
         walk.keys(s, corner_keys);
-        if (!dense) {
-            for (std::size_t i = 0; i < corners; ++i) slots.prefetch(corner_keys[i]);
-            for (const NodeKey key : split.keys) slots.prefetch(key);
-        }
-        for (std::size_t i = 0; i < corners; ++i) numbers[i] = slot(corner_keys[i]);
+        number_of.find(std::span(corner_keys).first(corners), numbers);
+        number_of.find(split.keys, std::span(numbers).subspan(corners));
+        nodes.resize(number_of.count());
+        made_on.resize(number_of.count());
         if (s.level == 0) {
             for (std::size_t i = 0; i < corners; ++i) add_value(s.value[i * stride], limit);
         }
@@ -91,9 +81,6 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
             return;
         }
         const Rule& rule = *split.rule;
-        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-            numbers[corners + n] = slot(split.keys[n]);
-        }
         largest_split_ = std::max(largest_split_, rule.new_nodes.size());
         one_sweep = one_sweep && rule.steps == 1;
         all_divided = all_divided && rule.divides_all;
@@ -183,12 +170,13 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
             std::max(node.entry.bound, bfloat16_above(sum_above(node.offset, node.finer)));
     }
     node_count_ = nodes.size();
-    if (dense) {
+    if (number_of.are_keys()) {
         dense_ = std::make_unique<Entry[]>(nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) dense_[i] = nodes[i].entry;
     } else {
-        sparse_.reserve(slots.size());
-        slots.for_each([&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });
+        sparse_.reserve(nodes.size());
+        number_of.for_each(
+            [&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });
     }
 }
 

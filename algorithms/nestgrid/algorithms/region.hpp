@@ -19,6 +19,7 @@
 #include <utility>
 
 #include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/node_numbers.hpp>
 #include <nestgrid/algorithms/splits_by_level.hpp>
 #include <nestgrid/derive_hanging.hpp>
 #include <nestgrid/key_table.hpp>
@@ -77,14 +78,8 @@ private:
         const ZeroField<Grid> zero;
         using Walk = Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}>;
         const Walk walk(grid, zero);
-        std::vector<std::uint8_t> marks(dense_.size(), 0);  // by number
-        KeyTable<NodeKey, std::size_t> numbers;
-        const auto number = [&](NodeKey key) {
-            if (!dense_.empty()) return static_cast<std::size_t>(key);
-            const auto [at, is_new] = numbers.insert(key, marks.size());
-            if (is_new) marks.push_back(0);
-            return *at;
-        };
+        NodeNumbers numbers(dense_.size());
+        std::vector<std::uint8_t> marks(numbers.count(), 0);  // by number
         SplitsByLevel splits(marks.size());
         std::array<NodeKey, max_corners> keys;
         std::array<Point, max_corners> x;
@@ -93,12 +88,13 @@ private:
             const auto corners = static_cast<std::size_t>(s.corner_count());
             walk.keys(s, keys);
             walk.positions(s, x);
+            numbers.find(std::span(keys).first(corners), nodes);
+            numbers.find(split.keys, std::span(nodes).subspan(corners));
+            marks.resize(numbers.count());
             for (std::size_t i = 0; i < corners; ++i) {
-                nodes[i] = number(keys[i]);
                 if (inside(x[i])) marks[nodes[i]] = 1;
             }
             if (split.rule == nullptr) return;
-            std::ranges::transform(split.keys, nodes.begin() + corners, number);
             splits.add(static_cast<std::size_t>(s.level), *split.rule,
                        std::span(nodes).first(corners + split.keys.size()));
         });
