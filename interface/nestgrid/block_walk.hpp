@@ -190,4 +190,5 @@ private:
 
 }  // namespace nestgrid
 
+#include <nestgrid/block_walk_nodes.hpp>
 #include <nestgrid/block_walk_steps.hpp>

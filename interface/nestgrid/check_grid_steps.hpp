@@ -279,4 +279,5 @@ void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const C
 
 }  // namespace nestgrid::detail
 
+#include <nestgrid/check_grid_bisections.hpp>
 #include <nestgrid/check_grid_walk.hpp>

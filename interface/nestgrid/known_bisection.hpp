@@ -31,7 +31,9 @@
 //     void middles(span<const Node> a, span<const Node> b, span<Node> out)
 //     void keys(span<const Node>, span<NodeKey> out)
 //     void positions(span<const Node>, span<Point> out)
-//     void are_halved(span<const Node> a, span<const Node> b, span<bool> out)
+//     static constexpr Node no_node
+//     void perhaps_middles(span<const Node> a, span<const Node> b, span<Node> out)
+//                                                      no_node where an edge is not halved
 //     void values_at(span<const Node>, span<const NodeKey>, span<value_type> out)
 #pragma once
 
@@ -93,11 +95,12 @@ concept KnowsBisections = requires(const Grid& grid, const Field& field, const E
 template <class Grid>
 concept AnswersInRows = requires(const Grid& grid, std::span<const typename Grid::Node> nodes,
                                  std::span<typename Grid::Node> middles, std::span<NodeKey> keys,
-                                 std::span<Point> x, std::span<bool> halved) {
+                                 std::span<Point> x) {
     grid.middles(nodes, nodes, middles);
     grid.keys(nodes, keys);
     grid.positions(nodes, x);
-    grid.are_halved(nodes, nodes, halved);
+    grid.perhaps_middles(nodes, nodes, middles);
+    { Grid::no_node } -> std::convertible_to<typename Grid::Node>;
 };
 
 template <class Grid>

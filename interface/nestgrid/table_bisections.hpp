@@ -89,6 +89,7 @@ public:
         positions(std::span(&node, 1), std::span(&x, 1));
         return x;
     }
+
     // In rows; the answers may take the place of the first one.
     void middles(std::span<const Node> a, std::span<const Node> b, std::span<Node> out) const {
         perhaps_middles(a, b, out);
@@ -102,15 +103,6 @@ public:
     void perhaps_middles(std::span<const Node> a, std::span<const Node> b,
                          std::span<Node> out) const {
         check(table_->middles(table_->self, out.size(), a.data(), b.data(), out.data()), "middles");
-    }
-    void are_halved(std::span<const Node> a, std::span<const Node> b, std::span<bool> out) const {
-        std::array<Node, most_blocks> between;
-        for (std::size_t first = 0; first < out.size(); first += between.size()) {
-            const std::size_t count = std::min(between.size(), out.size() - first);
-            perhaps_middles(a.subspan(first, count), b.subspan(first, count),
-                            std::span(between).first(count));
-            for (std::size_t i = 0; i < count; ++i) out[first + i] = between[i] != no_node;
-        }
     }
     void keys(std::span<const Node> nodes, std::span<NodeKey> out) const {
         if constexpr (std::is_same_v<NodeKey, std::uint64_t>) {

@@ -24,6 +24,31 @@ const samples_in_c no_samples{1, nullptr};
 const nestgrid_grid right_grid = tetrahedra_in_c(&no_samples);
 const nestgrid_field right_field = samples_field_in_c(&no_samples);
 
+/// Answers changed by a function of (count, out) that captures nothing.
+template <class Change>
+auto node_keys_but(Change) {
+    return [](const void* self, std::size_t count, const std::uint64_t* nodes, std::uint64_t* out) {
+        const int code = right_grid.node_keys(self, count, nodes, out);
+        Change{}(count, out);
+        return code;
+    };
+}
+template <class Change>
+auto middles_but(Change) {
+    return [](const void* self, std::size_t count, const std::uint64_t* a, const std::uint64_t* b,
+              std::uint64_t* out) {
+        const int code = right_grid.middles(self, count, a, b, out);
+        Change{}(count, out);
+        return code;
+    };
+}
+
+/// Of one that says 4 + t.
+nestgrid_element with_right_tag(nestgrid_element e) {
+    e.word[4] &= 3U;
+    return e;
+}
+
 class ToldBisections : public ::testing::Test {
 protected:
     explicit ToldBisections(int n = 17) : data{sampled_fields({n, n, n})} {
@@ -51,29 +76,25 @@ protected:
             return code;
         };
         grid.split = [](const void* self, void* context, const nestgrid_element* e, int* rule) {
-            nestgrid_element meant = *e;
-            meant.word[4] &= 3U;
+            const nestgrid_element meant = with_right_tag(*e);
             return right_grid.split(self, context, &meant, rule);
         };
         grid.children = [](const void* self, void* context, const nestgrid_element* e,
                            std::size_t count, nestgrid_element* out) {
-            nestgrid_element meant = *e;
-            meant.word[4] &= 3U;
+            const nestgrid_element meant = with_right_tag(*e);
             const int code = right_grid.children(self, context, &meant, count, out);
             for (nestgrid_element& child : std::span(out, count)) child.word[4] |= 4U;
             return code;
         };
         grid.new_keys = [](const void* self, void* context, const nestgrid_element* e,
                            std::size_t count, std::uint64_t* out) {
-            nestgrid_element meant = *e;
-            meant.word[4] &= 3U;
+            const nestgrid_element meant = with_right_tag(*e);
             return right_grid.new_keys(self, context, &meant, count, out);
         };
         field.new_values = [](const void* self, void* context, const nestgrid_element* e,
                               std::uint64_t which, std::size_t count, void* out,
                               std::uint64_t* missing) {
-            nestgrid_element meant = *e;
-            meant.word[4] &= 3U;
+            const nestgrid_element meant = with_right_tag(*e);
             return right_field.new_values(self, context, &meant, which, count, out, missing);
         };
     }
@@ -134,21 +155,15 @@ TEST_F(ToldBisections, ThatAreWrongAreFound) {
         return sentence.substr(0, sentence.find(" is not what is known of bisections"));
     };
     EXPECT_EQ(found_with([&] {
-                  grid.node_keys = [](const void* self, std::size_t count,
-                                      const std::uint64_t* nodes, std::uint64_t* out) {
-                      const int code = right_grid.node_keys(self, count, nodes, out);
+                  grid.node_keys = node_keys_but([](std::size_t count, std::uint64_t* out) {
                       if (count > 1) out[count - 1] ^= 1U;
-                      return code;
-                  };
+                  });
               }),
               "a key in a row");
     EXPECT_EQ(found_with([&] {
-                  grid.node_keys = [](const void* self, std::size_t count,
-                                      const std::uint64_t* nodes, std::uint64_t* out) {
-                      const int code = right_grid.node_keys(self, count, nodes, out);
+                  grid.node_keys = node_keys_but([](std::size_t count, std::uint64_t* out) {
                       for (std::size_t i = 0; i < count; ++i) out[i] ^= out[i] == 2 ? 1U : 0U;
-                      return code;
-                  };
+                  });
               }),
               "the new node");
     EXPECT_EQ(found_with([&] {
@@ -161,21 +176,15 @@ TEST_F(ToldBisections, ThatAreWrongAreFound) {
               }),
               "the position of a node");
     EXPECT_EQ(found_with([&] {
-                  grid.middles = [](const void* self, std::size_t count, const std::uint64_t* a,
-                                    const std::uint64_t* b, std::uint64_t* out) {
-                      const int code = right_grid.middles(self, count, a, b, out);
+                  grid.middles = middles_but([](std::size_t count, std::uint64_t* out) {
                       if (count == 1 && *out == NESTGRID_NO_NODE) *out = 0;
-                      return code;
-                  };
+                  });
               }),
               "whether the element is split");
     EXPECT_EQ(found_with([&] {
-                  grid.middles = [](const void* self, std::size_t count, const std::uint64_t* a,
-                                    const std::uint64_t* b, std::uint64_t* out) {
-                      const int code = right_grid.middles(self, count, a, b, out);
+                  grid.middles = middles_but([](std::size_t count, std::uint64_t* out) {
                       if (count > 1) out[1] = NESTGRID_NO_NODE;
-                      return code;
-                  };
+                  });
               }),
               "a middle in a row");
     EXPECT_EQ(found_with([&] {
@@ -216,12 +225,9 @@ TEST_F(ToldBisections, ThatFailAreNamed) {
               "the operation 'node_positions' of the grid failed with code 1");
     EXPECT_EQ(refused_with([&] { put_tag_elsewhere(); }), "an element has the tag 7, not 1 to 3");
     EXPECT_EQ(refused_with([&] {
-                  grid.middles = [](const void* self, std::size_t count, const std::uint64_t* a,
-                                    const std::uint64_t* b, std::uint64_t* out) {
-                      const int code = right_grid.middles(self, count, a, b, out);
+                  grid.middles = middles_but([](std::size_t count, std::uint64_t* out) {
                       if (count > 3) out[3] = NESTGRID_NO_NODE;
-                      return code;
-                  };
+                  });
               }),
               "the operation 'middles' of the grid gave no node for an edge that is halved, for "
               "elements beside it are");

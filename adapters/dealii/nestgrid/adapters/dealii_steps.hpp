@@ -55,13 +55,12 @@ void DealiiGrid<dim, spacedim>::new_positions(const Element& e, NodeMask which,
         return;
     }
     // All indices before all positions: none waits for another one's way through memory.
-    std::array<unsigned, max_new_nodes> vertex;
-    for_each_new_node(e, [&](std::size_t n, const Cell& child, unsigned corner) {
-        vertex[n] = child->vertex_index(corner);
-    });
+    std::array<NodeKey, max_new_nodes> vertex;
+    new_keys(e, vertex);
     const auto& position_of = triangulation_->get_vertices();
     for (std::size_t n = 0; which >> n != 0; ++n) {
-        if ((which >> n & 1U) != 0) out[n] = point(position_of[vertex[n]]);
+        if ((which >> n & 1U) != 0)
+            out[n] = point(position_of[static_cast<std::size_t>(vertex[n])]);
     }
 }
 

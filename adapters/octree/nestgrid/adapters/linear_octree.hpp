@@ -128,16 +128,11 @@ private:
     /// The first leaf of an element, from `low` on, in child `c` or a later one.
     std::size_t bound(std::size_t tree, const Element& e, std::size_t low, std::size_t c) const {
         const auto bit = static_cast<unsigned>(max_level_ - e.level - 1);
-        std::size_t high = e.last;
-        while (low < high) {
-            const std::size_t middle = (low + high) / 2;
-            if (child_of(trees_[tree][middle - first_[tree]], bit) < c) {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        return low;
+        const auto leaves = trees_[tree].subspan(low - first_[tree], e.last - low);
+        const auto at =
+            std::partition_point(leaves.begin(), leaves.end(),
+                                 [&](const LeafType& leaf) { return child_of(leaf, bit) < c; });
+        return low + static_cast<std::size_t>(at - leaves.begin());
     }
 
     void check(std::size_t t) const {
