@@ -8,7 +8,6 @@
 //     p4est_advection [steps] [folder for surfaces]
 // ParaView plays surface.pvd in that folder, also while the solver runs.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -16,13 +15,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <memory>
-#include <new>
 #include <string>
-
-#include <p8est_bits.h>
-#include <p8est_extended.h>
-#include <p8est_iterate.h>
 
 #include <vtkNew.h>
 #include <vtkXMLPolyDataWriter.h>
@@ -33,233 +26,13 @@
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
+#include "p4est_advection.hpp"
+
 namespace {
 
-using Vector = std::array<double, 3>;
+using namespace p4est_advection;
 
-constexpr int coarsest = 2;
-constexpr int finest = 6;
-constexpr double largest_jump = 0.14;    // between neighbours: above it cells are refined
-constexpr int steps_per_rotation = 360;  // Courant numbers up to 0.9
-constexpr int steps_per_adaptation = 4;
 constexpr int steps_per_surface = 30;
-
-/// A vortex around the axis x = y = 1: once round in a unit of time, as a solid up to 0.8 from the
-/// axis, then ever slower, at rest from 1 on. So nothing flows through the walls.
-struct Vortex {
-    double x, y;  ///< from the axis
-    double square = x * x + y * y;
-    double slowing = std::clamp((square - solid) / (1 - solid), 0.0, 1.0);
-    static constexpr double solid = 0.8 * 0.8;
-
-    Vector velocity() const {
-        return {-2 * M_PI * (1 - slowing) * y, 2 * M_PI * (1 - slowing) * x, 0};
-    }
-    double stream_function() const {
-        return -M_PI * (std::min(square, solid) + (1 - solid) * slowing * (1 - slowing / 2));
-    }
-};
-
-/// Volume that flows through a square face per unit of time, up the axis it is normal to. It is a
-/// difference of the stream function, so that all flows into a cell together are zero, whatever the
-/// sizes of its neighbours.
-double flow(std::size_t axis, const Vector& centre, double size) {
-    const auto stream = [&](double x, double y) {
-        return Vortex{centre[0] - 1 + x, centre[1] - 1 + y}.stream_function();
-    };
-    const double half = size / 2;
-    if (axis == 0) return size * (stream(0, half) - stream(0, -half));
-    if (axis == 1) return size * (stream(-half, 0) - stream(half, 0));
-    return 0;
-}
-
-/// The solution: a blob, at first at (1.35, 1, 0.5), with a steep front and a long tail.
-double exact(const Vector& x, double time) {
-    const double c = std::cos(2 * M_PI * time);
-    const double s = std::sin(2 * M_PI * time);
-    const double ahead = c * (x[1] - 1) - s * (x[0] - 1);
-    const double outwards = c * (x[0] - 1) + s * (x[1] - 1) - 0.35;
-    const double r =
-        std::hypot(ahead / (ahead > 0 ? 0.2 : 0.6), outwards / 0.35, (x[2] - 0.5) / 0.4);
-    return r < 1 ? std::pow(std::cos(M_PI / 2 * r), 2) : 0;
-}
-
-/// What the solver keeps in the user data of each quadrant.
-struct Cell {
-    Vector centre{};
-    double size = 0;
-    double u = 0;                   ///< mean over the cell
-    double gain = 0;                ///< of u times volume, in this step
-    std::array<double, 6> slope{};  ///< of u across each face
-
-    double volume() const { return size * size * size; }
-    /// Along an axis: central, but at most twice what it is across either face.
-    double limited_slope(std::size_t axis) const {
-        const double a = slope[2 * axis];
-        const double b = slope[2 * axis + 1];
-        const double least = std::min(std::abs(a), std::abs(b));
-        return a * b > 0 ? std::copysign(std::min(2 * least, std::abs(a + b) / 2), a) : 0;
-    }
-    double value(const Vector& x) const {
-        double result = u;
-        for (std::size_t d = 0; d < 3; ++d) result += limited_slope(d) * (x[d] - centre[d]);
-        return result;
-    }
-    double jump() const {
-        const auto [least, greatest] = std::minmax_element(slope.begin(), slope.end());
-        return size * std::max(-*least, *greatest);
-    }
-};
-
-Cell& cell_of(const p8est_quadrant_t& q) { return *static_cast<Cell*>(q.p.user_data); }
-
-// What p4est calls while the forest changes.
-
-void create(p8est_t* forest, p4est_topidx_t tree, p8est_quadrant_t* q) {
-    Cell& cell = *new (q->p.user_data) Cell;
-    const p4est_qcoord_t half = P8EST_QUADRANT_LEN(q->level) / 2;
-    p8est_qcoord_to_vertex(forest->connectivity, tree, q->x + half, q->y + half, q->z + half,
-                           cell.centre.data());
-    cell.size = std::ldexp(1.0, -q->level);
-}
-
-/// Puts eight cells in the place of one, or one in that of eight, with as much u as before.
-void replace(p8est_t*, p4est_topidx_t, int outgoing_count, p8est_quadrant_t* outgoing[], int,
-             p8est_quadrant_t* incoming[]) {
-    const bool refines = outgoing_count == 1;
-    for (int c = 0; c < P8EST_CHILDREN; ++c) {
-        const Cell& from = cell_of(*outgoing[refines ? 0 : c]);
-        Cell& to = cell_of(*incoming[refines ? c : 0]);
-        const double part = refines ? 1 : 1.0 / P8EST_CHILDREN;
-        to.u += part * (refines ? from.value(to.centre) : from.u);
-        for (std::size_t f = 0; f < 6; ++f) to.slope[f] += part * from.limited_slope(f / 2);
-    }
-}
-
-int must_refine(p8est_t*, p4est_topidx_t, p8est_quadrant_t* q) {
-    return cell_of(*q).jump() > largest_jump;
-}
-
-int may_coarsen(p8est_t*, p4est_topidx_t, p8est_quadrant_t* family[]) {
-    const auto is_flat = [](auto* q) { return cell_of(*q).jump() < 0.4 * largest_jump; };
-    return family[0]->level > coarsest && std::all_of(family, family + P8EST_CHILDREN, is_flat);
-}
-
-// What p4est calls for faces.
-
-/// The cells on one side of a face: one, or the four smaller ones where the face hangs.
-struct Side {
-    std::size_t face;  ///< number of the face on these cells: 0 and 1 normal to x, and so on
-    std::array<Cell*, 4> cells;  ///< four times the same where it is one
-
-    Side(p8est_iter_face_info_t& info, int number) {
-        const auto& side = *p8est_iter_fside_array_index_int(&info.sides, number);
-        face = static_cast<std::size_t>(side.face);
-        for (std::size_t i = 0; i < 4; ++i) {
-            cells[i] = &cell_of(side.is_hanging ? *side.is.hanging.quad[i] : *side.is.full.quad);
-        }
-    }
-    double mean() const { return (cells[0]->u + cells[1]->u + cells[2]->u + cells[3]->u) / 4; }
-    void set_slope(double slope) const {
-        for (Cell* cell : cells) cell->slope[face] = slope;
-    }
-};
-
-void find_slope(p8est_iter_face_info_t* info, void*) {
-    const Side a(*info, 0);
-    if (info->sides.elem_count == 1) return a.set_slope(0);  // a wall
-    // The middle of four smaller cells lies straight across from that of the larger one.
-    const Side b(*info, 1);
-    const std::size_t axis = a.face / 2;
-    const double distance = b.cells[0]->centre[axis] - a.cells[0]->centre[axis];
-    const double slope = (b.mean() - a.mean()) / distance;
-    a.set_slope(slope);
-    b.set_slope(slope);
-}
-
-/// Moves u from one side to the other: the value upwind, at the point that comes to the middle of
-/// the face in the middle of the step.
-void exchange(p8est_iter_face_info_t* info, void* user_data) {
-    if (info->sides.elem_count == 1) return;
-    const double time_step = *static_cast<const double*>(user_data);
-    const Side first(*info, 0);
-    const Side second(*info, 1);
-    const std::size_t axis = first.face / 2;
-    const bool upwards = first.face % 2 == 1;
-    const Side& lower_side = upwards ? first : second;
-    const Side& upper_side = upwards ? second : first;
-    const bool hangs = first.cells[0] != first.cells[1] || second.cells[0] != second.cells[1];
-    for (std::size_t i = 0; i < (hangs ? 4 : 1); ++i) {
-        Cell& lower = *lower_side.cells[i];
-        Cell& upper = *upper_side.cells[i];
-        const bool lower_is_smaller = lower.size < upper.size;
-        const Cell& smaller = lower_is_smaller ? lower : upper;
-        Vector x = smaller.centre;
-        x[axis] += (lower_is_smaller ? 0.5 : -0.5) * smaller.size;
-        const double volume = time_step * flow(axis, x, smaller.size);
-        const Vector v = Vortex{x[0] - 1, x[1] - 1}.velocity();
-        for (std::size_t d = 0; d < 3; ++d) x[d] -= time_step / 2 * v[d];
-        const double amount = volume * (volume > 0 ? lower : upper).value(x);
-        lower.gain -= amount;
-        upper.gain += amount;
-    }
-}
-
-// The solver.
-
-template <class Function>
-void for_each_cell(const p8est_t* forest, const Function& function) {
-    for (p4est_topidx_t t = 0; t < forest->connectivity->num_trees; ++t) {
-        sc_array_t& leaves = p8est_tree_array_index(forest->trees, t)->quadrants;
-        for (std::size_t i = 0; i < leaves.elem_count; ++i) {
-            function(cell_of(*p8est_quadrant_array_index(&leaves, i)));
-        }
-    }
-}
-
-void adapt(p8est_t* forest) {
-    p8est_iterate(forest, nullptr, nullptr, nullptr, find_slope, nullptr, nullptr);
-    p8est_coarsen_ext(forest, 0, 0, may_coarsen, create, replace);
-    p8est_refine_ext(forest, 0, finest, must_refine, create, replace);
-    p8est_balance_ext(forest, P8EST_CONNECT_FULL, create, replace);
-}
-
-void begin(p8est_t* forest) {
-    for (int level = coarsest; level <= finest; ++level) {
-        if (level > coarsest) adapt(forest);
-        for_each_cell(forest, [](Cell& cell) { cell.u = exact(cell.centre, 0); });
-    }
-}
-
-void advance(p8est_t* forest, double time_step) {
-    p8est_iterate(forest, nullptr, nullptr, nullptr, find_slope, nullptr, nullptr);
-    p8est_iterate(forest, nullptr, &time_step, nullptr, exchange, nullptr, nullptr);
-    for_each_cell(forest, [](Cell& cell) {
-        cell.u += cell.gain / cell.volume();
-        cell.gain = 0;
-    });
-}
-
-struct Totals {
-    double mass = 0, error = 0;  ///< error: from the exact solution in the L1 norm
-    double least = 1, greatest = 0;
-    double smallest = 1, largest = 0;  ///< sizes of cells
-    double courant = 0;                ///< the largest Courant number
-
-    Totals(const p8est_t* forest, double time) {
-        for_each_cell(forest, [&](const Cell& cell) {
-            mass += cell.u * cell.volume();
-            error += std::abs(cell.u - exact(cell.centre, time)) * cell.volume();
-            least = std::min(least, cell.u);
-            greatest = std::max(greatest, cell.u);
-            smallest = std::min(smallest, cell.size);
-            largest = std::max(largest, cell.size);
-            const Vector v = Vortex{cell.centre[0] - 1, cell.centre[1] - 1}.velocity();
-            const double crossed = (std::abs(v[0]) + std::abs(v[1])) / steps_per_rotation;
-            courant = std::max(courant, crossed / cell.size);
-        });
-    }
-};
 
 /// Writes files that appear complete, by rename, or not at all.
 template <class Write>
@@ -296,14 +69,8 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 /// \return exit status: 1 where mass is lost, the surface is open, or the time step too long
 int run(long steps, const std::string& folder) {
-    const std::unique_ptr<p8est_connectivity_t, decltype(&p8est_connectivity_destroy)> trees{
-        p8est_connectivity_new_brick(2, 2, 1, 0, 0, 0), p8est_connectivity_destroy};
-    const std::unique_ptr<p8est_t, decltype(&p8est_destroy)> forest{
-        p8est_new_ext(sc_MPI_COMM_WORLD, trees.get(), 0, coarsest, 1, sizeof(Cell), create,
-                      nullptr),
-        p8est_destroy};
-    begin(forest.get());
-    const double mass = Totals(forest.get(), 0).mass;
+    Advection solver;
+    const double mass = Totals(solver).mass;
     std::string list;
     double solving = 0;
     std::printf(
@@ -311,35 +78,31 @@ int run(long steps, const std::string& folder) {
         "   area  volume  ms: surface  solver\n");
     for (long step = 0; step <= steps; ++step) {
         auto start = std::chrono::steady_clock::now();
-        if (step > 0) {
-            if (step % steps_per_adaptation == 0) adapt(forest.get());
-            advance(forest.get(), 1.0 / steps_per_rotation);
-        }
+        if (step > 0) solver.step();
         solving += milliseconds_since(start);
         if (step % steps_per_surface != 0 && step != steps) continue;
 
         // All there is to it: the grid, where a leaf keeps its value, the surface.
         start = std::chrono::steady_clock::now();
-        const nestgrid::P4estGrid grid(forest.get());
+        const nestgrid::P4estGrid grid(solver.forest());
         const nestgrid::CellAverages field(
             grid, [&](const auto& leaf) { return cell_of(grid.quadrant(leaf)).u; });
         const auto surface = nestgrid::isosurface(grid, field, 0.5, {.threshold = 0.01}).surface;
         const double extracting = milliseconds_since(start);
 
-        const double time = static_cast<double>(step) / steps_per_rotation;
-        const Totals now(forest.get(), time);
+        const Totals now(solver);
         const double drift = now.mass / mass - 1;
         const auto report = nestgrid::surface_report(surface);
         std::printf(
             "%4ld %5.3f %6zu %4d-%d %8.6f %9.1e %8.4f %8.1e %5.3f %9zu %4zu %6.4f %7.5f "
             "%12.1f %7.0f\n",
-            step, time, grid.leaf_count(), -std::ilogb(now.largest), -std::ilogb(now.smallest),
-            now.mass, drift, now.error / mass, now.least, now.greatest, report.triangles,
-            report.open_edges, report.area, report.volume, extracting, solving);
+            step, solver.time(), grid.leaf_count(), -std::ilogb(now.largest),
+            -std::ilogb(now.smallest), now.mass, drift, now.error / mass, now.least, now.greatest,
+            report.triangles, report.open_edges, report.area, report.volume, extracting, solving);
         solving = 0;
         if (!(std::abs(drift) < 1e-12 && now.courant < 1) || report.open_edges > 0) return 1;
-        if (!folder.empty()) write(folder, time, surface, list);
-        if (step == steps && steps % steps_per_rotation == 0) {
+        if (!folder.empty()) write(folder, solver.time(), surface, list);
+        if (step == steps && steps % Fineness{}.steps_per_rotation == 0) {
             std::printf("back at the beginning, off by %.1f %% in L1\n", 100 * now.error / mass);
         }
     }
@@ -357,7 +120,8 @@ int main(int argc, char** argv) {
         int processes = 0;
         sc_MPI_Comm_size(sc_MPI_COMM_WORLD, &processes);
         char* end = nullptr;
-        const long steps = argc > 1 ? std::strtol(argv[1], &end, 10) : steps_per_rotation;
+        const long steps =
+            argc > 1 ? std::strtol(argv[1], &end, 10) : Fineness{}.steps_per_rotation;
         const std::string folder = argc > 2 ? argv[2] : "";
         using nestgrid::InvalidInput;
         if (processes > 1) throw InvalidInput("this example runs in one process");

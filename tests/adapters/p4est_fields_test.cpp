@@ -7,6 +7,7 @@
 #include <nestgrid/algorithms/cell_data.hpp>
 
 #include "counting_allocator.hpp"
+#include "p4est_advection.hpp"
 #include "p4est_laws.hpp"
 #include "thread_executor.hpp"
 
@@ -207,6 +208,19 @@ TEST(P4estFields, SavedAndLoadedGivesTheSameSurface) {
         EXPECT_EQ(a.surface.vertices, b.surface.vertices);
         EXPECT_EQ(a.surface.simplices, b.surface.simplices);
     }
+}
+
+/// What a solver left in its quadrants, on the forest that followed it.
+TEST(P4estFields, LawsHoldForASolution) {
+    p4est_advection::Advection solver(
+        {.finest = 7, .largest_jump = 0.05, .steps_per_rotation = 720});
+    for (int step = 0; step < 2 * p4est_advection::steps_per_adaptation; ++step) solver.step();
+    const P4estGrid grid(solver.forest());
+    EXPECT_GE(grid.leaf_count(), 100000U);
+    const CellAverages field(
+        grid, [&](const auto& leaf) { return p4est_advection::cell_of(grid.quadrant(leaf)).u; });
+    expect_sound_grid(grid, field);
+    expect_closed_levels(grid, field, 0.5, 0.03);
 }
 
 TEST(P4estFields, LargeForestsAreReadInPlace) {
