@@ -21,15 +21,20 @@
 #include <span>
 
 #include <nestgrid/keys.hpp>
+#include <nestgrid/rule.hpp>
 
 namespace nestgrid {
 
 /// An edge with its two ends; component c of the value at end i is value[i * components + c].
-template <class Real, std::size_t components>
+/// \tparam State of an element on the way down
+template <class State, class Real, std::size_t components>
 struct MaximalEdge {
     std::array<NodeKey, 2> key;
-    std::array<Point, 2> position;
     std::array<Real, 2 * components> value;
+    std::array<std::uint8_t, 2> end;  ///< nodes of the split that closed it
+    const State* element;             ///< that was split
+    const Rule* rule;
+    const Point* position;  ///< of the nodes of that split, where they are carried along; or null
 };
 
 struct ClosedFace {
@@ -47,9 +52,9 @@ constexpr NodeKey face_key(std::span<const NodeKey> corners) {
 }
 
 /// What is closed around the edges and faces of an element.
-template <class Real, std::size_t components, std::size_t corners>
+template <class State, class Real, std::size_t components, std::size_t corners>
 struct ClosedParts {
-    using Edge = MaximalEdge<Real, components>;
+    using Edge = MaximalEdge<State, Real, components>;
     static constexpr std::size_t edges = corners == 3 ? 3 : corners <= 4 ? 6 : max_edges;
     static constexpr std::size_t faces = corners == 3 ? 3 : corners == 4 ? 4 : max_faces;
 

@@ -61,15 +61,9 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
         std::array<NodeKey, max_corners> corner_key;
         keys(s, corner_key);
         const auto key = [&](std::uint8_t n) { return n < corners ? corner_key[n] : nodes.key[n]; };
-        std::array<Point, node_capacity_> own{};
-        const Point* position = own.data();
-        if (own_positions_ || !State::carries_positions) {
-            positions(s, std::span<Point>(own.data(), max_corners));
-            for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-                own[corners + n] = detail::interpolate(rule.new_nodes[n], own.data());
-            }
-        } else {
-            position = nodes.position.data();
+        const Point* position = nullptr;
+        if constexpr (State::carries_positions) {
+            if (!own_positions_) position = nodes.position.data();
         }
         for (std::size_t e = 0; e < rule.edges.size(); ++e) {
             const RuleEdge& edge = rule.edges[e];
@@ -79,9 +73,12 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
                 parts.edge[e] = nullptr;
             } else if (parts.edge[e] == nullptr) {
                 auto& closed = parts.closed_edge[e];
+                closed.end = edge.end;
+                closed.element = &s;
+                closed.rule = &rule;
+                closed.position = position;
                 for (std::size_t i = 0; i < 2; ++i) {
                     closed.key[i] = key(edge.end[i]);
-                    closed.position[i] = position[edge.end[i]];
                     for (std::size_t c = 0; c < State::components; ++c) {
                         closed.value[i * State::components + c] =
                             nodes.value[edge.end[i] * State::components + c];
@@ -108,6 +105,24 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
             parts.face[f] = &parts.closed_face[f];
         }
     }
+}
+
+template <class Grid, class Field, Needs needs>
+auto Traversal<Grid, Field, needs>::positions(const typename State::Closed::Edge& edge) const
+    -> std::array<Point, 2>
+    requires(needs.closed)
+{
+    if (edge.position != nullptr) return {edge.position[edge.end[0]], edge.position[edge.end[1]]};
+    const auto corners = static_cast<std::size_t>(edge.element->corner_count());
+    std::array<Point, node_capacity_> x;
+    positions(*edge.element, std::span<Point>(x.data(), max_corners));
+    const std::size_t last = std::max(edge.end[0], edge.end[1]);
+    for (std::size_t n = corners; n <= last; ++n) {
+        const bool asked = n == edge.end[0] || n == edge.end[1];
+        if (!asked && edge.rule->steps == 1) continue;  // no parent of another new node
+        x[n] = detail::interpolate(edge.rule->new_nodes[n - corners], x.data());
+    }
+    return {x[edge.end[0]], x[edge.end[1]]};
 }
 
 }  // namespace nestgrid

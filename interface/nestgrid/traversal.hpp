@@ -107,7 +107,7 @@ struct ElementState {
     static constexpr bool carries_keys = needs.keys && !detail::by_heart<Grid>(Feature::own_keys);
     static constexpr bool carries_positions =
         needs.positions && !detail::by_heart<Grid>(Feature::own_positions);
-    using Closed = ClosedParts<Real, components, capacity>;
+    using Closed = ClosedParts<ElementState, Real, components, capacity>;
 
     Element element;
     Context<Grid>* context;      ///< of the task that walks
@@ -218,6 +218,10 @@ public:
             std::copy_n(s.position.begin(), s.corner_count(), out.begin());
         }
     }
+
+    /// Positions of the ends of a maximal edge.
+    std::array<Point, 2> positions(const typename State::Closed::Edge& edge) const
+        requires(needs.closed);
 
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(const State& s) const {

@@ -39,6 +39,11 @@ struct Threshold {
     double epsilon;
 
     NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const {
+        if constexpr (requires { indicator->largest_stop(nodes.rule, nodes.keys); }) {
+            if (indicator->largest_stop(nodes.rule, nodes.keys) <= epsilon) {
+                return nodes.rule.all() & ~nodes.outside;
+            }
+        }
         NodeMask mask = 0;
         for (std::size_t i = 0; i < nodes.keys.size(); ++i) {
             if (indicator->stop(nodes.keys[i]) <= epsilon) mask |= NodeMask{1} << i;

@@ -14,7 +14,8 @@
 //   - bound(corner) >= |U_delta(corner)| + bound(new node), for every split element, corners that
 //     are themselves new nodes of something;
 //   - both also for a parent of a new node that is a new node of the same split;
-//   - bound(new node inside the element) >= bound(all its new nodes), so that one look tells.
+//   - stop and bound of a new node inside the element are not below those of all its new nodes, so
+//     that one look tells.
 // A solver's own error indicator, one number per leaf, may take the place of the offsets in `stop`:
 // that of a node is then the largest of the leaves around it, saturated likewise. Bounds always
 // come from the data. Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is
@@ -115,6 +116,12 @@ public:
         return rule.inside == no_new_node ? bound(nodes) : bound(nodes[rule.inside]);
     }
 
+    /// The largest stop of the new nodes of one split, where one look tells; else infinity.
+    NESTGRID_INLINE float largest_stop(const Rule& rule, std::span<const NodeKey> nodes) const {
+        if (rule.inside == no_new_node) return std::numeric_limits<float>::infinity();
+        return stop(nodes[rule.inside]);
+    }
+
     /// Whether elements that stop conform on a grid without hanging nodes, because each split makes
     /// one new node at most (bisection): a saturated S stops all elements at it, or none.
     bool stops_conform() const { return largest_split_ <= 1; }
@@ -143,11 +150,11 @@ public:
 
 private:
     struct Entry {
-        std::uint16_t stop = 0;   // bfloat16, rounded up
-        std::uint16_t bound = 0;  // bfloat16, rounded up
+        std::uint16_t stop;   // bfloat16, rounded up
+        std::uint16_t bound;  // bfloat16, rounded up
     };
     struct Node {
-        Entry entry;
+        Entry entry{};
         float offset = 0;  // |U_delta|, rounded up
         float finer = 0;   // largest bound of finer nodes
     };

@@ -156,8 +156,9 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
                     }
                 }
                 if (rule.inside != no_new_node) {
-                    std::uint16_t& within = nodes[made[rule.inside]].entry.bound;
-                    within = std::max(within, bfloat16_above(bound));
+                    Entry& within = nodes[made[rule.inside]].entry;
+                    within.stop = std::max(within.stop, stop);
+                    within.bound = std::max(within.bound, bfloat16_above(bound));
                 }
                 for (const std::size_t corner : of.first(corners)) raise(corner, stop, bound);
             });

@@ -156,7 +156,11 @@ NESTGRID_VISITOR::tick(std::uint64_t calls, std::uint64_t visited) const -> void
 
 /// What to do with an element.
 NESTGRID_VISITOR::look(const State& s, const Split& split) -> Decision {
-    if constexpr (requires { indicator_->prefetch(split.keys); }) indicator_->prefetch(split.keys);
+    if constexpr (requires { indicator_->prefetch(split.keys); }) {
+        if (split.rule != nullptr && split.rule->inside == no_new_node) {
+            indicator_->prefetch(split.keys);
+        }
+    }
     Real lo = s.value[0];
     Real hi = lo;
     for (std::size_t i = 1; i < static_cast<std::size_t>(s.corner_count()); ++i) {

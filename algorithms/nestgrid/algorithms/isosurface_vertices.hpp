@@ -35,7 +35,7 @@ NESTGRID_VISITOR::make_cut(const State& s, const Layer& layer, std::uint8_t edge
     Cut cut;
     if (s.closed.any && s.closed.edge[edge] != nullptr) {
         const auto& maximal = *s.closed.edge[edge];
-        x = maximal.position;
+        x = walk_->positions(maximal);
         cut.node = maximal.key;
         for (std::size_t i = 0; i < 2 * stride; ++i) {
             value[i / stride][i % stride] = static_cast<double>(maximal.value[i]);

@@ -48,7 +48,9 @@ public:
                 const double halves = 2 * nodes[max_corners + k][d];
                 half_steps_[k] |= static_cast<Place>(halves) << (bits_ * d);
             }
+            half_key_steps_[k] = node(half_steps_[k]);
         }
+        for (std::size_t k = 0; k < max_corners; ++k) key_steps_[k] = node(corner_place({0, 0}, k));
     }
 
     std::size_t coarse_count() const { return block_total_; }
@@ -78,11 +80,16 @@ public:
 
     // Optional operations.
     bool conforming() const { return true; }
+    // Numbers of nodes are linear in their places.
     void corner_keys(const Element& e, std::span<NodeKey> out) const {
-        for (std::size_t k = 0; k < max_corners; ++k) out[k] = node(corner_place(e, k));
+        const NodeKey low = node(e.low);
+        for (std::size_t k = 0; k < max_corners; ++k) out[k] = low + (key_steps_[k] << e.level);
     }
     void new_keys(const Element& e, std::span<NodeKey> out) const {
-        for (std::size_t k = 0; k < max_new_nodes; ++k) out[k] = node(new_place(e, k));
+        const NodeKey low = node(e.low);
+        for (std::size_t k = 0; k < max_new_nodes; ++k) {
+            out[k] = low + (half_key_steps_[k] << (e.level - 1U));
+        }
     }
     void corner_positions(const Element& e, std::span<Point> out) const {
         for (std::size_t k = 0; k < max_corners; ++k) out[k] = position(corner_place(e, k));
@@ -131,6 +138,8 @@ public:
 private:
     const Rule* rule_;
     std::array<Place, static_cast<std::size_t>(max_new_nodes)> half_steps_{};
+    std::array<NodeKey, static_cast<std::size_t>(max_new_nodes)> half_key_steps_{};
+    std::array<NodeKey, static_cast<std::size_t>(max_corners)> key_steps_{};
 };
 
 }  // namespace nestgrid

@@ -12,28 +12,12 @@
 
 #include <cmath>
 
+#include <nestgrid/adapters/p4est_maps.hpp>
 #include <nestgrid/adapters/p4est_trees.hpp>
 #include <nestgrid/operations.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {
-
-/// Trees are bilinear or trilinear between the vertices of their connectivity.
-struct P4estVertices {};
-
-/// Trees are mapped by a geometry of p4est's own, p4est_geometry_t or p8est_geometry_t. Its
-/// function X is called from all threads at once.
-template <class Geometry>
-struct P4estGeometry {
-    Geometry* geometry;
-    Point operator()(std::size_t tree, const Point& reference) const {
-        Point x{0, 0, 0};
-        geometry->X(geometry, static_cast<p4est_topidx_t>(tree), reference.data(), x.data());
-        return x;
-    }
-};
-template <class Geometry>
-P4estGeometry(Geometry*) -> P4estGeometry<Geometry>;
 
 /// \tparam Map P4estVertices, or any function Point(std::size_t tree, const Point& reference) of
 ///         coordinates in [0, 1]^dim that is continuous across trees: then positions are those of
@@ -61,41 +45,12 @@ public:
     /// \throw InvalidInput where the forest has leaves on other processes, where the connectivity
     ///        has no vertices (and there is no map) or puts one node at two places, for flat trees,
     ///        and as P4estTrees
-    explicit P4estGrid(const Forest* forest, Map map = {})
-        : forest_{forest},
-          map_{std::move(map)},
-          trees_{checked(forest)},
-          rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
-        const std::vector<Point> reference = reference_nodes(*rule_);
-        for (std::size_t k = 0; k < max_new_nodes; ++k) {
-            for (std::size_t d = 0; d < dim; ++d) {
-                new_node_[k][d] = static_cast<std::int8_t>(2 * reference[max_corners + k][d]);
-            }
-        }
-        orientation_.assign(coarse_count(), 1);
-        for (std::size_t t = 0; t < coarse_count(); ++t) check_place(t);
-        orient();
-    }
+    explicit P4estGrid(const Forest* forest, Map map = {});
 
     std::size_t coarse_count() const {
         return static_cast<std::size_t>(forest_->connectivity->num_trees);
     }
-    CoarseElement<Element> coarse(std::size_t i) const {
-        CoarseElement<Element> c;
-        c.shape = rule_->parent;
-        c.orientation = orientation_[i];
-        c.element = {static_cast<std::uint32_t>(i),
-                     0,
-                     static_cast<std::uint32_t>(tree(i).quadrants.elem_count),
-                     {},
-                     0};
-        for (unsigned k = 0; k < max_corners; ++k) {
-            const P4estNode node = trees_.canonical(Trees::corner(i, k));
-            c.ids[k] = node.tree * std::uint64_t{max_corners} + Trees::corner_number(node);
-            c.corners[k] = corner_position(node);
-        }
-        return c;
-    }
+    CoarseElement<Element> coarse(std::size_t i) const;
     const Rule* split(const Element& e) const { return e.last - e.first == 1 ? nullptr : rule_; }
     void children(const Element& e, std::span<Element> out) const {
         std::uint32_t first = e.first;
@@ -156,37 +111,9 @@ private:
         return reinterpret_cast<const Quadrant*>(tree(t).quadrants.array)[i];
     }
 
-    /// Number of the child of an element on the level above `bit` that a leaf lies in.
-    static unsigned child_of(const Quadrant& leaf, unsigned bit) {
-        const auto at = [&](std::int32_t x) { return static_cast<unsigned>(x) >> bit & 1U; };
-        if constexpr (dim == 2) {
-            return at(leaf.x) | at(leaf.y) << 1U;
-        } else {
-            return at(leaf.x) | at(leaf.y) << 1U | at(leaf.z) << 2U;
-        }
-    }
-    /// The first leaf of an element, from `low` on, in child `c` or a later one.
-    std::uint32_t bound(const Element& e, std::uint32_t low, unsigned c) const {
-        if (e.last - e.first == max_children) return e.first + c;
-        const auto bit = static_cast<unsigned>(Types::max_level - e.level - 1);
-        std::uint32_t high = e.last;
-        while (low < high) {
-            const std::uint32_t middle = low + (high - low) / 2;
-            if (child_of(leaf_of(e.tree, middle), bit) < c) {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        return low;
-    }
-    Element child(const Element& e, unsigned c, std::uint32_t first) const {
-        const std::uint32_t last = c + 1 == max_children ? e.last : bound(e, first, c + 1);
-        Element result{e.tree, first, last, e.anchor, static_cast<std::uint8_t>(e.level + 1)};
-        const std::int32_t half = Trees::length >> result.level;
-        for (unsigned d = 0; d < dim; ++d) result.anchor[d] += (c >> d & 1U) != 0 ? half : 0;
-        return result;
-    }
+    static unsigned child_of(const Quadrant& leaf, unsigned bit);
+    std::uint32_t bound(const Element& e, std::uint32_t low, unsigned c) const;
+    Element child(const Element& e, unsigned c, std::uint32_t first) const;
 
     /// The node of an element at `halves` half lengths from its anchor.
     static P4estNode node(const Element& e, const std::array<std::int8_t, 3>& halves) {
@@ -209,18 +136,7 @@ private:
         }
         return map_(std::size_t{node.tree}, reference);
     }
-    Point corner_position(const P4estNode& node) const {
-        if constexpr (curved) {
-            return mapped(node);
-        } else {
-            const auto& c = *forest_->connectivity;
-            const double* x =
-                c.vertices +
-                3 * static_cast<std::ptrdiff_t>(
-                        c.tree_to_vertex[node.tree * max_corners + Trees::corner_number(node)]);
-            return {x[0], x[1], x[2]};
-        }
-    }
+    Point corner_position(const P4estNode& node) const;
 
     const Forest* forest_;
     Map map_;

@@ -4,100 +4,10 @@
 // Data on a forest of p4est, read in place; included by p4est.hpp.
 #pragma once
 
-#include <nestgrid/adapters/p4est.hpp>
+#include <nestgrid/adapters/p4est_balanced.hpp>
 #include <nestgrid/mean.hpp>
 
 namespace nestgrid {
-
-namespace detail {
-
-/// The face codes of lnodes of degree 1.
-template <int dim>
-class P4estFaceCodes {
-public:
-    using Nodes = typename P4estTypes<dim>::Nodes;
-
-    /// \throw InvalidInput for lnodes of another degree or another forest
-    P4estFaceCodes(const Nodes* nodes, std::size_t leaf_count) : nodes_{nodes} {
-        if (nodes == nullptr) throw InvalidInput("there are no lnodes");
-        if (nodes->degree != 1) {
-            throw InvalidInput("the lnodes have degree " + std::to_string(nodes->degree) +
-                               ", not 1");
-        }
-        if (static_cast<std::size_t>(nodes->num_local_elements) != leaf_count) {
-            throw InvalidInput("the lnodes belong to another forest: they number " +
-                               std::to_string(nodes->num_local_elements) +
-                               " elements, but there are " + std::to_string(leaf_count) +
-                               " leaves");
-        }
-    }
-    /// 0 where no corner of the leaf hangs.
-    unsigned operator[](std::size_t leaf) const {
-        return static_cast<unsigned>(nodes_->face_code[leaf]);
-    }
-    /// The corner of a leaf that is one of its father's too.
-    static unsigned own_corner(unsigned code) { return code & (corners_ - 1); }
-
-    /// Whether the corner hangs that lies apart from that one in some directions, one bit each.
-    /// Behind the own corner, bit i of a code stands for the father's face across direction i and,
-    /// in three dimensions, a later one for its edge along it.
-    static bool hangs(unsigned code, unsigned apart) {
-        if (code == 0 || apart == 0 || apart == corners_ - 1) return false;
-        if (dim == 3 && std::has_single_bit(apart)) return (code >> 6U & apart) != 0;
-        return (code >> static_cast<unsigned>(dim) & (apart ^ (corners_ - 1))) != 0;
-    }
-
-private:
-    static constexpr unsigned corners_ = 1U << dim;
-    const Nodes* nodes_;
-};
-
-}  // namespace detail
-
-/// The same forest with its lnodes of degree 1, whose face codes tell which nodes hang, so that the
-/// library needs not derive it: prerolls take half the time. lnodes exist on forests that are
-/// balanced across corners (P4EST_CONNECT_FULL); on these a node hangs on leaves one level coarser
-/// only, so the leaves around it all know.
-template <int dim, class Map = P4estVertices>
-class P4estBalancedGrid : public P4estGrid<dim, Map> {
-public:
-    using Base = P4estGrid<dim, Map>;
-    using Element = typename Base::Element;
-
-    /// \param nodes must outlive the grid, as the forest
-    /// \throw InvalidInput as P4estGrid, and for lnodes of another degree or another forest
-    P4estBalancedGrid(const typename Base::Forest* forest,
-                      const typename P4estTypes<dim>::Nodes* nodes, Map map = {})
-        : Base{forest, std::move(map)}, codes_{nodes, Base::leaf_count()} {}
-
-    NodeMask constrained(const Element& e) const {
-        std::array<Element, Base::max_children> children;
-        Base::children(e, children);
-        NodeMask mask = 0;
-        for (unsigned c = 0; c < Base::max_children; ++c) {
-            if (Base::split(children[c]) != nullptr) continue;
-            const unsigned code = codes_[Base::leaf_index(children[c])];
-            if (code == 0) continue;
-            for (unsigned k = 0; k < Base::max_corners; ++k) {
-                if (!codes_.hangs(code, c ^ k)) continue;
-                mask |= NodeMask{1} << Base::split(e)->children[c].corner[k];
-            }
-        }
-        return mask >> static_cast<unsigned>(Base::max_corners);
-    }
-
-private:
-    detail::P4estFaceCodes<dim> codes_;
-};
-
-template <class Nodes>
-P4estBalancedGrid(const p4est_t*, Nodes*) -> P4estBalancedGrid<2>;
-template <class Nodes>
-P4estBalancedGrid(const p8est_t*, Nodes*) -> P4estBalancedGrid<3>;
-template <class Nodes, class Map>
-P4estBalancedGrid(const p4est_t*, Nodes*, Map) -> P4estBalancedGrid<2, Map>;
-template <class Nodes, class Map>
-P4estBalancedGrid(const p8est_t*, Nodes*, Map) -> P4estBalancedGrid<3, Map>;
 
 /// Nodal values by p4est_lnodes or p8est_lnodes of degree 1, one per independent node. Nodes that
 /// hang have no value of their own and get the mean of the corners of the edge or face they hang

@@ -1,12 +1,32 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is asked of a forest before anything is read from it; included by p4est.hpp.
+// The steps of P4estGrid; included by p4est.hpp.
 #pragma once
+
+#include <algorithm>
+#include <span>
 
 #include <nestgrid/adapters/p4est.hpp>
 
 namespace nestgrid {
+
+template <int dim, class Map>
+P4estGrid<dim, Map>::P4estGrid(const Forest* forest, Map map)
+    : forest_{forest},
+      map_{std::move(map)},
+      trees_{checked(forest)},
+      rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
+    const std::vector<Point> reference = reference_nodes(*rule_);
+    for (std::size_t k = 0; k < max_new_nodes; ++k) {
+        for (std::size_t d = 0; d < dim; ++d) {
+            new_node_[k][d] = static_cast<std::int8_t>(2 * reference[max_corners + k][d]);
+        }
+    }
+    orientation_.assign(coarse_count(), 1);
+    for (std::size_t t = 0; t < coarse_count(); ++t) check_place(t);
+    orient();
+}
 
 template <int dim, class Map>
 const typename P4estTypes<dim>::Connectivity& P4estGrid<dim, Map>::checked(const Forest* forest) {
@@ -78,6 +98,71 @@ void P4estGrid<dim, Map>::orient() {
                 }
             }
         }
+    }
+}
+
+template <int dim, class Map>
+auto P4estGrid<dim, Map>::coarse(std::size_t i) const -> CoarseElement<Element> {
+    CoarseElement<Element> c;
+    c.shape = rule_->parent;
+    c.orientation = orientation_[i];
+    c.element = {static_cast<std::uint32_t>(i),
+                 0,
+                 static_cast<std::uint32_t>(tree(i).quadrants.elem_count),
+                 {},
+                 0};
+    for (unsigned k = 0; k < max_corners; ++k) {
+        const P4estNode node = trees_.canonical(Trees::corner(i, k));
+        c.ids[k] = node.tree * std::uint64_t{max_corners} + Trees::corner_number(node);
+        c.corners[k] = corner_position(node);
+    }
+    return c;
+}
+
+/// Number of the child of an element on the level above `bit` that a leaf lies in.
+template <int dim, class Map>
+unsigned P4estGrid<dim, Map>::child_of(const Quadrant& leaf, unsigned bit) {
+    const auto at = [&](std::int32_t x) { return static_cast<unsigned>(x) >> bit & 1U; };
+    if constexpr (dim == 2) {
+        return at(leaf.x) | at(leaf.y) << 1U;
+    } else {
+        return at(leaf.x) | at(leaf.y) << 1U | at(leaf.z) << 2U;
+    }
+}
+
+/// The first leaf of an element, from `low` on, in child `c` or a later one.
+template <int dim, class Map>
+std::uint32_t P4estGrid<dim, Map>::bound(const Element& e, std::uint32_t low, unsigned c) const {
+    if (e.last - e.first == max_children) return e.first + c;
+    const auto bit = static_cast<unsigned>(Types::max_level - e.level - 1);
+    const std::span<const Quadrant> leaves(&leaf_of(e.tree, low), e.last - low);
+    const auto at = std::partition_point(leaves.begin(), leaves.end(), [&](const Quadrant& leaf) {
+        return child_of(leaf, bit) < c;
+    });
+    return low + static_cast<std::uint32_t>(at - leaves.begin());
+}
+
+template <int dim, class Map>
+auto P4estGrid<dim, Map>::child(const Element& e, unsigned c, std::uint32_t first) const
+    -> Element {
+    const std::uint32_t last = c + 1 == max_children ? e.last : bound(e, first, c + 1);
+    Element result{e.tree, first, last, e.anchor, static_cast<std::uint8_t>(e.level + 1)};
+    const std::int32_t half = Trees::length >> result.level;
+    for (unsigned d = 0; d < dim; ++d) result.anchor[d] += (c >> d & 1U) != 0 ? half : 0;
+    return result;
+}
+
+template <int dim, class Map>
+Point P4estGrid<dim, Map>::corner_position(const P4estNode& node) const {
+    if constexpr (curved) {
+        return mapped(node);
+    } else {
+        const auto& c = *forest_->connectivity;
+        const double* x =
+            c.vertices +
+            3 * static_cast<std::ptrdiff_t>(
+                    c.tree_to_vertex[node.tree * max_corners + Trees::corner_number(node)]);
+        return {x[0], x[1], x[2]};
     }
 }
 

@@ -41,47 +41,7 @@ public:
     /// \throw InvalidInput for a grid of another dimension, with another branch factor than two,
     ///        with more than 2^31 steps along a side at its deepest level, or with a mask that is
     ///        too short
-    explicit HyperTreeGrid(vtkHyperTreeGrid& grid)
-        : grid_{&grid}, rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
-        if (grid.GetDimension() != dim) {
-            throw InvalidInput("the hyper tree grid has dimension " +
-                               std::to_string(grid.GetDimension()) + ", not " +
-                               std::to_string(dim));
-        }
-        if (grid.GetBranchFactor() != 2) {
-            throw InvalidInput("the hyper tree grid has the branch factor " +
-                               std::to_string(grid.GetBranchFactor()) + ", not 2");
-        }
-        depth_ = static_cast<int>(grid.GetNumberOfLevels()) - 1;
-        const std::array<vtkDataArray*, 3> x{grid.GetXCoordinates(), grid.GetYCoordinates(),
-                                             grid.GetZCoordinates()};
-        const unsigned* points = grid.GetDimensions();
-        std::size_t axes = 0;
-        for (std::size_t d = 0; d < 3; ++d) {
-            if (points[d] == 1) continue;
-            if (depth_ > 30 || points[d] >= 1U << (31 - depth_)) {
-                throw InvalidInput("the hyper tree grid is too deep for its " +
-                                   std::to_string(points[d] - 1) + " trees along a side");
-            }
-            axis_[axes++] = d;
-        }
-        for (std::size_t d = 0; d < 3; ++d) {
-            for (unsigned i = 0; i < points[d]; ++i) coordinates_[d].push_back(x[d]->GetTuple1(i));
-        }
-        for (vtkIdType i = 0; i < grid.GetMaxNumberOfTrees(); ++i) {
-            if (vtkHyperTree* tree = grid.GetTree(i)) trees_.push_back(tree);
-        }
-        if (grid.HasMask() && grid.GetMask()->GetNumberOfValues() > 0) {
-            const vtkIdType cells = grid.GetGlobalNodeIndexMax() + 1;
-            if (grid.GetMask()->GetNumberOfValues() < cells) {
-                throw InvalidInput("the mask of the hyper tree grid has " +
-                                   std::to_string(grid.GetMask()->GetNumberOfValues()) +
-                                   " entries for " + std::to_string(cells) + " cells");
-            }
-            hidden_.resize(static_cast<std::size_t>(cells));
-            for (vtkHyperTree* tree : trees_) read_mask({tree, 0, 0, {}}, false);
-        }
-    }
+    explicit HyperTreeGrid(vtkHyperTreeGrid& grid);
 
     std::size_t coarse_count() const { return trees_.size(); }
     CoarseElement<Element> coarse(std::size_t i) const {
@@ -134,19 +94,7 @@ public:
     vtkIdType index(const Element& e) const { return e.tree->GetGlobalIndexFromLocal(e.vertex); }
 
 private:
-    Hidden read_mask(const Element& e, bool masked) {
-        masked = masked || grid_->GetMask()->GetValue(index(e)) != 0;
-        Hidden result = masked ? Hidden::wholly : Hidden::not_at_all;
-        if (split(e) != nullptr) {
-            std::array<Element, max_children> child;
-            children(e, child);
-            result = read_mask(child[0], masked);
-            for (std::size_t c = 1; c < child.size(); ++c) {
-                if (read_mask(child[c], masked) != result) result = Hidden::partly;
-            }
-        }
-        return hidden_[static_cast<std::size_t>(index(e))] = result;
-    }
+    Hidden read_mask(const Element& e, bool masked);
 
     /// A step in the directions in which corner, or child, k lies from the first one.
     Place step(Place from, std::size_t k) const {
@@ -170,3 +118,5 @@ private:
 };
 
 }  // namespace nestgrid
+
+#include <nestgrid/adapters/vtk_hyper_tree_grid_steps.hpp>

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Nodal data on a triangulation of deal.II, read in place; included by dealii.hpp.
+#pragma once
+
+#include <nestgrid/adapters/dealii.hpp>
+
+namespace nestgrid {
+
+/// Components of a finite element function at the vertices, from the solver's own vector. Of
+/// elements of higher order the values at the vertices alone are used.
+template <int dim, class Vector, int component_count = 1, int spacedim = dim>
+class DealiiField {
+public:
+    using Grid = DealiiGrid<dim, spacedim>;
+    using value_type = typename Vector::value_type;
+    static constexpr int components = component_count;
+
+    /// \param which components of the finite element, in the order in which the field gives them
+    /// \throw InvalidInput where the degrees of freedom are not those of the grid or of nodes at
+    ///        its vertices, or where the vector does not have one entry for each
+    DealiiField(const Grid& grid, const dealii::DoFHandler<dim, spacedim>& dofs,
+                const Vector& values, const std::array<unsigned, component_count>& which = {});
+
+    NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
+        const DofCell c(&grid_->triangulation(), 0, int(i), dofs_);
+        for (unsigned k = 0; k < c->n_vertices(); ++k) put(c, k, out, k);
+        return 0;
+    }
+    NodeMask new_values(const typename Grid::Element& e, NodeMask which,
+                        std::span<value_type> out) const {
+        // All indices before all values: none waits for another one's way through memory.
+        std::array<std::array<dealii::types::global_dof_index, component_count>,
+                   Grid::max_new_nodes>
+            dof;
+        grid_->for_each_new_node(e, [&](std::size_t n, const auto& child, unsigned corner) {
+            const DofCell c(&grid_->triangulation(), child->level(), child->index(), dofs_);
+            for (std::size_t i = 0; i < offset_.size(); ++i) {
+                dof[n][i] = c->vertex_dof_index(corner, offset_[i]);
+            }
+        });
+        for (std::size_t n = 0; which >> n != 0; ++n) {
+            if ((which >> n & 1U) == 0) continue;
+            for (std::size_t i = 0; i < offset_.size(); ++i) {
+                out[n * offset_.size() + i] = (*values_)(dof[n][i]);
+            }
+        }
+        return 0;
+    }
+
+private:
+    using DofCell = typename dealii::DoFHandler<dim, spacedim>::cell_iterator;
+
+    void put(const DofCell& c, unsigned corner, std::span<value_type> out, std::size_t n) const {
+        for (std::size_t i = 0; i < offset_.size(); ++i) {
+            out[n * offset_.size() + i] = (*values_)(c->vertex_dof_index(corner, offset_[i]));
+        }
+    }
+
+    const Grid* grid_;
+    const dealii::DoFHandler<dim, spacedim>* dofs_;
+    const Vector* values_;
+    std::array<unsigned, component_count> offset_{};  // among the degrees of freedom of a vertex
+};
+
+}  // namespace nestgrid
