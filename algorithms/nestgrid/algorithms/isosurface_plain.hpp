@@ -83,8 +83,10 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Vertices>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_triangle(
     const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored) {
-    const Vertex a(v[corner[mirrored ? 1 : 0]]);
-    const Vertex b(v[corner[mirrored ? 0 : 1]]);
+    // Nobody can predict which: no branch.
+    const std::size_t swap = (corner[0] ^ corner[1]) & (std::size_t{0} - (mirrored ? 1U : 0U));
+    const Vertex a(v[corner[0] ^ swap]);
+    const Vertex b(v[corner[1] ^ swap]);
     if constexpr (dimension == 2) {
         put_simplex({a, b}, {});
     } else {
