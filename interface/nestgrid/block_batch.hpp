@@ -115,9 +115,9 @@ struct BlockBatch {
                                        std::array<WidePoint, pattern.nodes>& x) const {
         positions_of<pattern.nodes>(b, x, [](std::size_t i) NESTGRID_INLINE_LAMBDA { return i; });
     }
-    /// Of the corners of a part alone.
+    /// Of the corners of a part.
     NESTGRID_INLINE void corner_positions(std::size_t b, std::size_t part,
-                                          std::array<WidePoint, pattern.nodes>& x) const {
+                                          std::array<WidePoint, pattern.corners>& x) const {
         positions_of<pattern.corners>(b, x, [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
             return std::size_t{pattern.part[part].corner[i]};
         });
@@ -135,17 +135,17 @@ struct BlockBatch {
 
 private:
     template <std::size_t many, class Which>
-    NESTGRID_INLINE void positions_of(std::size_t b, std::array<WidePoint, pattern.nodes>& x,
+    NESTGRID_INLINE void positions_of(std::size_t b, std::array<WidePoint, many>& x,
                                       const Which& which) const {
         if constexpr (AnswersInRows<Grid>) {
             std::array<Node, many> of;
             std::array<Point, many> at;
             for (std::size_t i = 0; i < many; ++i) of[i] = nodes[which(i)][b];
             grid->positions(of, at);
-            for (std::size_t i = 0; i < many; ++i) x[which(i)] = WidePoint(at[i]);
+            for (std::size_t i = 0; i < many; ++i) x[i] = WidePoint(at[i]);
         } else {
             unrolled<many>([&](auto i) NESTGRID_INLINE_LAMBDA {
-                x[which(i)] = WidePoint(grid->position(nodes[which(i)][b]));
+                x[i] = WidePoint(grid->position(nodes[which(i)][b]));
             });
         }
     }

@@ -34,7 +34,7 @@ struct MaximalEdge {
     std::array<std::uint8_t, 2> end;  ///< nodes of the split that closed it
     const State* element;             ///< that was split
     const Rule* rule;
-    const Point* position;  ///< of the nodes of that split, where they are carried along; or null
+    const Point* places;  ///< of the nodes of that split, where they are carried along; or null
 };
 
 struct ClosedFace {

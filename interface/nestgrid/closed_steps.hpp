@@ -61,9 +61,9 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
         std::array<NodeKey, max_corners> corner_key;
         keys(s, corner_key);
         const auto key = [&](std::uint8_t n) { return n < corners ? corner_key[n] : nodes.key[n]; };
-        const Point* position = nullptr;
+        const Point* places = nullptr;
         if constexpr (State::carries_positions) {
-            if (!own_positions_) position = nodes.position.data();
+            if (!own_positions_) places = nodes.position.data();
         }
         for (std::size_t e = 0; e < rule.edges.size(); ++e) {
             const RuleEdge& edge = rule.edges[e];
@@ -76,7 +76,7 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
                 closed.end = edge.end;
                 closed.element = &s;
                 closed.rule = &rule;
-                closed.position = position;
+                closed.places = places;
                 for (std::size_t i = 0; i < 2; ++i) {
                     closed.key[i] = key(edge.end[i]);
                     for (std::size_t c = 0; c < State::components; ++c) {
@@ -112,7 +112,7 @@ auto Traversal<Grid, Field, needs>::positions(const typename State::Closed::Edge
     -> std::array<Point, 2>
     requires(needs.closed)
 {
-    if (edge.position != nullptr) return {edge.position[edge.end[0]], edge.position[edge.end[1]]};
+    if (edge.places != nullptr) return {edge.places[edge.end[0]], edge.places[edge.end[1]]};
     const auto corners = static_cast<std::size_t>(edge.element->corner_count());
     std::array<Point, node_capacity_> x;
     positions(*edge.element, std::span<Point>(x.data(), max_corners));

@@ -23,7 +23,7 @@ public:
     virtual Point position(std::size_t b, std::size_t node) const = 0;
     virtual void all_positions(std::size_t b, std::array<WidePoint, pattern.nodes>& x) const = 0;
     virtual void corner_positions(std::size_t b, std::size_t part,
-                                  std::array<WidePoint, pattern.nodes>& x) const = 0;
+                                  std::array<WidePoint, pattern.corners>& x) const = 0;
     virtual nestgrid_element element(std::size_t b, std::size_t part) const = 0;
     virtual unsigned boundary(std::size_t b, std::size_t part) const = 0;
 
@@ -127,7 +127,7 @@ private:
             of->all_positions(b, x);
         }
         void corner_positions(std::size_t b, std::size_t part,
-                              std::array<WidePoint, Batch::pattern.nodes>& x) const override {
+                              std::array<WidePoint, Batch::pattern.corners>& x) const override {
             of->corner_positions(b, part, x);
         }
         nestgrid_element element(std::size_t b, std::size_t part) const override {

@@ -13,6 +13,10 @@ namespace nestgrid {
 /// Nodes and cuts are numbered within the block.
 class BlockContours {
 public:
+    /// As many cuts and loops may be read from the first one of a contour on.
+    static constexpr std::size_t cuts_at_once = 16;
+    static constexpr std::size_t loops_at_once = 8;
+
     struct Cut {
         std::uint8_t low;   ///< node with U < C
         std::uint8_t high;  ///< node with U >= C
@@ -24,7 +28,7 @@ public:
         std::uint8_t mirrored;  ///< that end is, against part 1 of the block
         std::array<std::uint8_t, 4> cut;
     };
-    /// The one loop of one element.
+    /// The one loop of one element, whose corners take the place of nodes.
     struct Piece {
         std::uint8_t count = 0;
         std::array<Cut, 4> cut{};
@@ -46,10 +50,8 @@ public:
         return table;
     }
 
-    /// Of a part alone. Bit i of `signs` says that its corner i has U >= C.
-    const Piece& piece(std::size_t part, unsigned signs) const {
-        return pieces_[16 * part + signs];
-    }
+    /// Of an element alone. Bit i of `signs` says that its corner i has U >= C.
+    const Piece& piece(unsigned signs) const { return pieces_[signs]; }
     /// Of all ends. Bit i of `signs` says that node i has U >= C.
     const Contour& at(unsigned signs) const { return contours_[signs]; }
     /// In the order in which the ends come to them.
@@ -65,24 +67,19 @@ private:
     template <class Pattern>
     explicit BlockContours(const Pattern& pattern);
 
-    void make_piece(Shape shape, const std::array<std::uint8_t, 4>& corner, unsigned signs,
-                    Piece& piece) const;
+    static Piece make_piece(Shape shape, unsigned signs);
 
-    std::vector<Piece> pieces_;
+    std::array<Piece, 16> pieces_;
     std::vector<Contour> contours_;
     std::vector<Cut> cuts_;
     std::vector<Loop> loops_;
 };
 
 template <class Pattern>
-BlockContours::BlockContours(const Pattern& pattern) : pieces_(32 * Pattern::ends) {
+BlockContours::BlockContours(const Pattern& pattern) {
     const Shape shape = Pattern::corners == 3 ? Shape::triangle : Shape::tetrahedron;
     constexpr unsigned all = (1U << Pattern::corners) - 1;
-    for (std::size_t p = 1; p < 2 * Pattern::ends; ++p) {
-        for (unsigned bits = 1; bits < all; ++bits) {
-            make_piece(shape, pattern.part[p].corner, bits, pieces_[16 * p + bits]);
-        }
-    }
+    for (unsigned bits = 1; bits < all; ++bits) pieces_[bits] = make_piece(shape, bits);
     const auto count = std::size_t{1} << pattern.nodes;
     contours_.reserve(count);
     cuts_.reserve(13 * count);
@@ -99,10 +96,10 @@ BlockContours::BlockContours(const Pattern& pattern) : pieces_(32 * Pattern::end
                 bits |= (signs >> part.corner[i] & 1U) << i;
             }
             if (bits == 0 || bits == all) continue;
-            const Piece& from = piece(Pattern::ends + end, bits);
+            const Piece& from = piece(bits);
             Loop loop{static_cast<std::uint8_t>(end), from.count, part.mirrored, {}};
             for (std::size_t i = 0; i < from.count; ++i) {
-                const Cut cut = from.cut[i];
+                const Cut cut{part.corner[from.cut[i].low], part.corner[from.cut[i].high]};
                 std::uint8_t& known = number[cut.low][cut.high];
                 if (known == 0) {
                     cuts_.push_back(cut);
@@ -118,18 +115,21 @@ BlockContours::BlockContours(const Pattern& pattern) : pieces_(32 * Pattern::end
         }
         contours_.push_back(contour);
     }
+    cuts_.resize(cuts_.size() + cuts_at_once);
+    loops_.resize(loops_.size() + loops_at_once);
 }
 
-inline void BlockContours::make_piece(Shape shape, const std::array<std::uint8_t, 4>& corner,
-                                      unsigned signs, Piece& piece) const {
+inline BlockContours::Piece BlockContours::make_piece(Shape shape, unsigned signs) {
+    Piece piece;
     const ContourLoop& from = ContourTable::of(shape).plain(signs)->loop[0];
     piece.count = from.count;
     for (std::size_t i = 0; i < from.count; ++i) {
         const auto& [a, b] = topology(shape).edge[from.edge[i]];
         const bool falls = (signs >> a & 1U) != 0;
-        piece.cut[i] = {corner[falls ? b : a], corner[falls ? a : b]};
+        piece.cut[i] = {falls ? b : a, falls ? a : b};
         piece.face[i] = from.face[i];
     }
+    return piece;
 }
 
 }  // namespace nestgrid

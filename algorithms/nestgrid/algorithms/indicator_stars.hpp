@@ -53,8 +53,8 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     node_count_ = grid.node_count();
     largest_split_ = 1;  // a star is the midpoint of two nodes, the only one in its elements
     add_values(field);
-    dense_ = std::make_unique_for_overwrite<Entry[]>(node_count_);
-    const auto full = std::make_unique_for_overwrite<detail::FullEntry[]>(node_count_);
+    dense_ = detail::make_zeros<Entry>(node_count_);
+    const auto full = detail::make_zeros<detail::FullEntry>(node_count_);
     grid.for_each_star_row([&, entries = dense_.get(), full = full.get()](const StarRow& row) {
         const auto value = [&](std::size_t node) {
             return static_cast<Real>(field.value(static_cast<NodeKey>(node)));

@@ -23,7 +23,7 @@
 #include <memory>
 #include <mutex>
 
-#include <nestgrid/algorithms/block_contours.hpp>
+#include <nestgrid/algorithms/block_contour_run.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/frontier.hpp>
@@ -106,6 +106,12 @@ struct ContourOwner {
     Shape shape;
     int level;
 };
+
+/// Where an edge is cut, seen from its lower end.
+inline double cut_fraction(double isovalue, double low, double high) {
+    constexpr double least = 0x1p-20;
+    return std::min(std::max((isovalue - low) / (high - low), least), 1 - least);
+}
 
 /// Draws the level sets of several isovalues in one traversal; each has a sink of its own.
 template <class Grid, class Field, class S, class Indicator, class Sink>
@@ -231,10 +237,7 @@ private:
         const Transitions* drawn_below = nullptr;  // that of all tasks
         std::vector<Where> where{};
         Number vertex_count = 0;
-        const BlockContours::Contour* contour = nullptr;  // of the block being drawn
-        std::array<MaskOf<Real>, most_blocks> signs{};    // of blocks
-        std::vector<VertexNumbers::Name> names{};         // of their vertices
-        std::array<std::size_t, most_blocks> first_name{};
+        std::array<MaskOf<Real>, most_blocks> signs{};  // of blocks
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
     static constexpr Number none = std::numeric_limits<Number>::max();
@@ -278,19 +281,16 @@ private:
     bool knows_bisections_of_grid() const;
     template <class Blocks>
     void set_signs(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer);
-    template <class Blocks>
-    void name_vertices(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
-                       const BlockContours& contours);
-    template <class Blocks>
-    using NodePositions = std::array<WidePoint, indexed ? 1 : Blocks::pattern.nodes>;
     using BlockVertex = std::conditional_t<indexed, Number, WidePoint>;
+    NESTGRID_INLINE static double fraction(const Layer& layer, Real low, Real high) {
+        return cut_fraction(layer.isovalue, static_cast<double>(low), static_cast<double>(high));
+    }
     template <class Blocks>
-    BlockVertex cut_in(const Blocks& blocks, std::size_t b, const Layer& layer,
-                       const BlockContours::Cut& ends, const NodePositions<Blocks>& x,
-                       const VertexNumbers::Name* name);
+    void draw_blocks(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
+                     const BlockContours& contours);
     template <class Blocks>
-    void draw_block(const Blocks& blocks, std::size_t b, Layer& layer,
-                    const BlockContours& contours);
+    Number number_in(const Blocks& blocks, std::size_t b, const Layer& layer, std::size_t low,
+                     std::size_t high, const VertexNumbers::Name& name);
 
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);

@@ -129,28 +129,6 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::set_sig
     }
 }
 
-/// The names of all vertices of these blocks, and what tables know of them on its way.
-template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Blocks>
-NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::name_vertices(
-    const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
-    const BlockContours& contours) {
-    layer.names.clear();
-    for (std::size_t b = first; b < end; ++b) {
-        const auto& contour = contours.at(static_cast<unsigned>(layer.signs[b]));
-        std::size_t at = layer.names.size();
-        layer.first_name[b] = at;
-        layer.names.resize(at + contour.cut_count);
-        for (const BlockContours::Cut& cut : contours.cuts(contour)) {
-            const auto name =
-                layer.number_of.name({blocks.key(b, cut.low), blocks.key(b, cut.high)});
-            layer.names[at++] = name;
-            const bool within = (blocks.faces(b, cut.low) & blocks.faces(b, cut.high)) == 0;
-            if (!within) layer.number_of.prefetch(name);
-        }
-    }
-}
-
 /// Those of the ends entered which a level passes through.
 /// \return how many
 template <class Grid, class Field, class S, class Indicator, class Sink>
@@ -163,32 +141,28 @@ NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::ext
         bits = (bits & 0x33U) + (bits >> 2U & 0x33U);
         return (bits & 0xFU) + (bits >> 4U);
     };
+    for (Layer& layer : layers_) set_signs(blocks, first, end, layer);
+    const auto draw_until = [&](std::size_t b) {
+        for (Layer& layer : layers_) draw_blocks(blocks, first, b, layer, contours);
+    };
     unsigned extracted = 0;
-    for (Layer& layer : layers_) {
-        set_signs(blocks, first, end, layer);
-        if constexpr (indexed) name_vertices(blocks, first, end, layer, contours);
-    }
     for (std::size_t b = first; b < end; ++b) {
         unsigned ends = 0;
-        for (Layer& layer : layers_) {
-            layer.contour = &contours.at(static_cast<unsigned>(layer.signs[b]));
-            ends |= layer.contour->ends;
-        }
-        if (ends == 0) continue;
+        for (Layer& layer : layers_) ends |= contours.at(static_cast<unsigned>(layer.signs[b])).ends;
         bool plainly = (ends & ~entered[b]) == 0;
-        if constexpr (indexed) plainly = plainly && blocks.boundary(b, 1) == 0;
+        if constexpr (indexed) plainly = plainly && (ends == 0 || blocks.boundary(b, 1) == 0);
         if (!plainly) {
+            draw_until(b);
+            first = b + 1;
             ends &= entered[b];
             for (unsigned left = ends; left != 0; left &= left - 1) {
                 const auto part = static_cast<unsigned>(std::countr_zero(left));
                 extract_part(blocks, b, Blocks::pattern.ends + part, Real(0));
             }
-        } else {
-            deepest_ = std::max(deepest_, blocks.level + static_cast<int>(Blocks::pattern.height));
-            for (Layer& layer : layers_) draw_block(blocks, b, layer, contours);
         }
         extracted += count_ends(ends);
     }
+    draw_until(end);
     return extracted;
 }
 
@@ -197,15 +171,20 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
 NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_part(
     const Blocks& blocks, std::size_t b, std::size_t p, Real bound) {
+    constexpr std::size_t corners = Blocks::pattern.corners;
     const auto& part = Blocks::pattern.part[p];
     const BlockContours& contours = BlockContours::of<Blocks::pattern>();
     const int level = blocks.level + part.depth;
+    std::array<Real, corners> u;
+    unrolled<corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
+        u[i] = blocks.value(b, part.corner[i]);
+    });
     for (Layer& layer : layers_) {
         unsigned bits = 0;
-        for (std::size_t i = 0; i < Blocks::pattern.corners; ++i) {
-            bits |= unsigned{blocks.value(b, part.corner[i]) >= layer.least_inside} << i;
-        }
-        if (bits == 0 || bits + 1 == 1U << Blocks::pattern.corners) continue;
+        unrolled<corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            bits |= unsigned{u[i] >= layer.least_inside} << i;
+        });
+        if (bits == 0 || bits + 1 == 1U << corners) continue;
         layer_ = &layer;
         deepest_ = std::max(deepest_, level);
         layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
@@ -213,19 +192,20 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
         if (keeps_elements(layer.sink)) {
             layer.sink.add_element(blocks.element(b, p), simplex_shape, level);
         }
-        [[maybe_unused]] NodePositions<Blocks> x;
+        [[maybe_unused]] std::array<WidePoint, corners> x;
         if constexpr (!indexed) blocks.corner_positions(b, p, x);
-        const BlockContours::Piece& piece = contours.piece(p, bits);
+        const BlockContours::Piece& piece = contours.piece(bits);
         const auto draw = [&](auto count) {
             std::array<BlockVertex, count> v;
             unrolled<count>([&](auto i) {
+                const auto& [low, high] = piece.cut[i];
                 if constexpr (indexed) {
-                    const auto& [low, high] = piece.cut[i];
-                    const auto name =
-                        layer.number_of.name({blocks.key(b, low), blocks.key(b, high)});
-                    v[i] = cut_in(blocks, b, layer, piece.cut[i], x, &name);
+                    const std::size_t from = part.corner[low];
+                    const std::size_t to = part.corner[high];
+                    v[i] = number_in(blocks, b, layer, from, to,
+                                     layer.number_of.name({blocks.key(b, from), blocks.key(b, to)}));
                 } else {
-                    v[i] = cut_in(blocks, b, layer, piece.cut[i], x, nullptr);
+                    v[i] = x[low] + fraction(layer, u[low], u[high]) * (x[high] - x[low]);
                 }
             });
             count_simplices(count < 4 ? 1 : 2);
@@ -241,73 +221,91 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
     }
 }
 
-/// All of the ends that a level passes through.
+/// All ends of blocks first ... end - 1 that a level passes through.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_block(
-    const Blocks& blocks, std::size_t b, Layer& layer, const BlockContours& contours) {
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_blocks(
+    const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
+    const BlockContours& contours) {
     constexpr std::size_t nodes = Blocks::pattern.nodes;
-    const BlockContours::Contour& contour = *layer.contour;
+    // As many as the tables have to be asked for at once; or as few as stay in the nearest cache.
+    constexpr std::size_t most = indexed ? most_blocks : 8;
+    using Run = BlockContourRun<Blocks::pattern, most>;
     layer_ = &layer;
-    layer.extracted += contour.loop_count;
-    count_simplices(contour.simplex_count);
-    [[maybe_unused]] NodePositions<Blocks> x;
-    if constexpr (!indexed) blocks.all_positions(b, x);
-    std::array<BlockVertex, nodes*(nodes - 1) / 2> v;
-    std::size_t count = 0;
-    for (const BlockContours::Cut& cut : contours.cuts(contour)) {
+    for (std::size_t begin = first; begin < end; begin += most) {
+        Run run;
+        [[maybe_unused]] std::array<std::array<WidePoint, nodes>, indexed ? 1 : most> x;
+        for (std::size_t b = begin; b < std::min(end, begin + most); ++b) {
+            const auto& contour = contours.at(static_cast<unsigned>(layer.signs[b]));
+            if (contour.loop_count == 0) continue;
+            run.append(contours, contour, b - begin);
+            if constexpr (!indexed) blocks.all_positions(b, x[b - begin]);
+        }
+        if (run.loop_count == 0) continue;
+        const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
+        deepest_ = std::max(deepest_, level);
+        layer.extracted += run.loop_count;
+        count_simplices(run.simplex_count);
+
+        std::array<BlockVertex, Run::most_cuts> v;
         if constexpr (indexed) {
-            v[count] = cut_in(blocks, b, layer, cut, x, &layer.names[layer.first_name[b] + count]);
-        } else {
-            v[count] = cut_in(blocks, b, layer, cut, x, nullptr);
-        }
-        ++count;
-    }
-    const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
-    for (const BlockContours::Loop& loop : contours.loops(contour)) {
-        if (keeps_elements(layer.sink)) {
-            layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end),
-                                   simplex_shape, level);
-        }
-        struct {
-            const BlockVertex* vertex;
-            const std::uint8_t* cut;
-            NESTGRID_INLINE const BlockVertex& operator[](std::size_t i) const {
-                return vertex[cut[i]];
+            const std::array<const VertexNumbers*, 2> table{&layer.number_of, &layer.number_within};
+            std::array<VertexNumbers::Name, Run::most_cuts> names;
+            for (std::size_t i = 0; i < run.cut_count; ++i) {
+                const std::size_t b = begin + run.block_of_cut(i);
+                const auto& [low, high] = run.cut(i);
+                names[i] = layer.number_of.name({blocks.key(b, low), blocks.key(b, high)});
+                const bool within = (blocks.faces(b, low) & blocks.faces(b, high)) == 0;
+                table[within ? 1 : 0]->prefetch(names[i]);
             }
-        } const corners{v.data(), loop.cut.data()};
-        put_loop(corners, loop.count, (loop.mirrored != 0) != blocks.mirrored(b));
+            for (std::size_t i = 0; i < run.cut_count; ++i) {
+                const auto& [low, high] = run.cut(i);
+                v[i] = number_in(blocks, begin + run.block_of_cut(i), layer, low, high, names[i]);
+            }
+        } else {
+            for (std::size_t i = 0; i < run.cut_count; ++i) {
+                const std::size_t b = run.block_of_cut(i);
+                const auto& [low, high] = run.cut(i);
+                v[i] = x[b][low] + fraction(layer, blocks.value(begin + b, low),
+                                            blocks.value(begin + b, high)) *
+                                       (x[b][high] - x[b][low]);
+            }
+        }
+
+        for (std::size_t i = 0; i < run.loop_count; ++i) {
+            const std::size_t b = begin + run.block_of_loop(i);
+            const BlockContours::Loop& loop = run.loop(i);
+            if (keeps_elements(layer.sink)) {
+                layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end),
+                                       simplex_shape, level);
+            }
+            struct {
+                const BlockVertex* vertex;
+                const std::uint8_t* cut;
+                NESTGRID_INLINE const BlockVertex& operator[](std::size_t k) const {
+                    return vertex[cut[k]];
+                }
+            } const corners{v.data() + run.first_cut(i), loop.cut.data()};
+            put_loop(corners, loop.count, (loop.mirrored != 0) != blocks.mirrored(b));
+        }
     }
 }
 
-/// The vertex on an edge of a block.
-/// \param x positions of its ends, where there are no indices
-/// \param name where there are
+/// The vertex between two nodes of a block.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::cut_in(
-    const Blocks& blocks, std::size_t b, const Layer& layer, const BlockContours::Cut& ends,
-    [[maybe_unused]] const NodePositions<Blocks>& x,
-    [[maybe_unused]] const VertexNumbers::Name* name) -> BlockVertex {
-    const std::size_t low = ends.low;
-    const std::size_t high = ends.high;
-    const auto fraction = [&] {
-        return cut_fraction(layer.isovalue, static_cast<double>(blocks.value(b, low)),
-                            static_cast<double>(blocks.value(b, high)));
-    };
-    if constexpr (indexed) {
-        const SubtreeFaces faces = blocks.faces(b, low) & blocks.faces(b, high);
-        return add_within(*name, faces, [&] {
-            Cut cut{blocks.position(b, low),
-                    {blocks.key(b, low), blocks.key(b, high)},
-                    fraction(),
-                    {}};
-            cut.x = cut.x + cut.fraction * (blocks.position(b, high) - cut.x);
-            return cut;
-        });
-    } else {
-        return x[low] + fraction() * (x[high] - x[low]);
-    }
+NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::number_in(
+    const Blocks& blocks, std::size_t b, const Layer& layer, std::size_t low, std::size_t high,
+    const VertexNumbers::Name& name) -> Number {
+    const SubtreeFaces faces = blocks.faces(b, low) & blocks.faces(b, high);
+    return add_within(name, faces, [&] {
+        Cut cut{blocks.position(b, low),
+                {blocks.key(b, low), blocks.key(b, high)},
+                fraction(layer, blocks.value(b, low), blocks.value(b, high)),
+                {}};
+        cut.x = cut.x + cut.fraction * (blocks.position(b, high) - cut.x);
+        return cut;
+    });
 }
 
 }  // namespace nestgrid::detail

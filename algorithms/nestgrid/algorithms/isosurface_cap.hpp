@@ -70,7 +70,8 @@ NESTGRID_VISITOR::side_key(const State& s, std::uint8_t edge, const FaceTopology
     std::array<NodeKey, 2> ends{key_[a], key_[b]};
     if (const auto* m = s.closed.any ? s.closed.edge[edge] : nullptr) {
         ends = m->key;
-        const bool along = dot(x_[b] - x_[a], m->position[1] - m->position[0]) > 0;
+        const auto [begin, end] = walk_->positions(*m);
+        const bool along = dot(x_[b] - x_[a], end - begin) > 0;
         upwards = along == (m->key[0] < m->key[1]);
     }
     const bool up = upwards == (forward == (s.orientation > 0));

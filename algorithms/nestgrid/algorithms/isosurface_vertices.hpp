@@ -12,12 +12,6 @@
 
 namespace nestgrid::detail {
 
-/// Where an edge is cut, seen from its lower end.
-inline double cut_fraction(double isovalue, double low, double high) {
-    constexpr double least = 0x1p-20;
-    return std::min(std::max((isovalue - low) / (high - low), least), 1 - least);
-}
-
 NESTGRID_VISITOR::name(const State& s, std::uint8_t edge) const -> KeyPair {
     if (s.closed.any && s.closed.edge[edge] != nullptr) {
         const auto& key = s.closed.edge[edge]->key;
@@ -107,10 +101,12 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_wit
             return add_new(cut);
         }
     };
-    const auto make_on_face = [&] { return layer.number_of.find(name, make_number); };
-    const Number number = faces == 0            ? layer.number_within.find(name, make_number)
-                          : faces == no_subtree ? make_on_face()
-                                                : layer.number_within.find(name, make_on_face);
+    const auto find_anywhere = [&] { return layer.number_of.find(name, make_number); };
+    const Number number = faces == no_subtree
+                              ? find_anywhere()
+                              : layer.number_within.find(name, [&] {
+                                    return faces == 0 ? make_number() : find_anywhere();
+                                });
     if (options_->verify && !is_new && layer.sink.position(number) != make().x) {
         throw GridError("two elements put the vertex " + std::to_string(number) +
                         " at different places");
