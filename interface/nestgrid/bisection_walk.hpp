@@ -19,7 +19,7 @@ namespace nestgrid {
 ///     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside)
 ///             {Visit visit; Real bound;} of an element that is split; lo ... hi: its values
 ///     bool glance_at_leaf(Real lo, Real hi)      whether to extract it
-///     void extract_part(const BlockBatch&, std::size_t b, std::size_t part, Real bound)
+///     bool extract_part(const BlockBatch&, std::size_t b, std::size_t part, Real bound)
 ///             an element of block b; bound: what glance() returned of it, or 0 for a leaf
 ///     void tick(looked_at, visited)              now and then
 /// and, to be shown blocks, what BlockWalk asks for.

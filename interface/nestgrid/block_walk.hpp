@@ -39,13 +39,13 @@ private:
 /// Walks down from an element that starts a block. A visitor has
 ///     PackedGlance glance(const PackedElements&) what to do with each of them
 ///     void expect(const NodeKey* nodes)          optional: eight that will be glanced at
-///     bool glance_at_leaf(Real lo, Real hi)      whether to extract it
-///     void extract_part(const BlockBatch&, std::size_t b, std::size_t part, Real bound)
-///             an element of block b; bound: what glance() said of it, or 0 for a leaf
+///     bool extract_part(const BlockBatch&, std::size_t b, std::size_t part, Real bound)
+///             an element of block b, and whether there was anything to extract; bound: what
+///             glance() said of it, or 0 for a leaf
 ///     unsigned extract_blocks(const BlockBatch&, std::size_t first, std::size_t end,
 ///                             const std::uint8_t* entered)
-///             of blocks first ... end - 1 those of the ends entered of which glance_at_leaf() says
-///             so, and says how many; bit i of entered[b] stands for end i. All ends are leaves
+///             of blocks first ... end - 1 those of the ends entered in which there is anything to
+///             extract, and says how many; bit i of entered[b] stands for end i. All are leaves
 ///     void begin_subtrees()                      optional, to be told of faces: what was inside
 ///                                                subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
@@ -128,6 +128,16 @@ private:
         alignas(64) std::array<Real, room + 1> bound;
     };
 
+    /// What is extracted one by one, in the order of the traversal: parts of blocks in which
+    /// something stops, and elements that stopped above.
+    struct Singles {
+        static constexpr std::size_t room = room_ * ends_ + stopped_room_;
+        static constexpr std::uint8_t stopped = 2 * ends_;  ///< in the place of a part
+        std::size_t count = 0;
+        std::array<std::uint8_t, room + ends_> which;  ///< block; or which of those that stopped
+        std::array<std::uint8_t, room + ends_> part;
+    };
+
     /// The parts of a batch that the blocks of the next one are.
     struct Origins {
         std::array<std::uint8_t, room_ + 1> block;
@@ -145,7 +155,7 @@ private:
     void look_within(const Batch& batch, Interior& interior) const;
     void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
     void extract_leaves(Queue& batch, const Interior& interior, std::size_t first, std::size_t end);
-    void extract_some_leaves(const Batch& batch, const Interior& interior, std::size_t b);
+    void extract_singly(const Queue& batch, const Interior& interior, Singles& singles);
     void enter(Queue& batch, const Interior& interior, std::size_t first, std::size_t end,
                Queue& next);
     void list(const Batch& batch, const Interior& interior, std::size_t first, std::size_t end,
@@ -165,12 +175,9 @@ private:
     }
     /// \return whether there is no room for another
     static bool put(const Stopped& element, Queue& next);
-    void extract(const Batch& batch, std::size_t b, std::size_t part, Real bound) {
-        ++count_->extracted;
-        visitor_->extract_part(batch, b, part, bound);
-    }
     void extract(const Stopped& element) {
-        extract(*element.of, element.block, element.part, element.bound);
+        ++count_->extracted;
+        visitor_->extract_part(*element.of, element.block, element.part, element.bound);
     }
     /// Calls function(const Stopped&) for those up to a block that were not taken yet.
     template <class Function>

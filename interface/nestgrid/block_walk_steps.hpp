@@ -28,7 +28,7 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     const NodeKey middle = grid_->key(grid_->middle(n[rule.parent[0]], n[rule.parent[1]]));
     const auto [visit, bound] =
         visitor_->glance(lo, hi, grid_->rule(last_), middle, path / 2, false);
-    if (visit == Visit::stop) extract(first, 0, 1, bound);
+    if (visit == Visit::stop) extract(Stopped{&first, 0, 1, 0, bound});
     if (visit == Visit::descend) walk(first);
 }
 
@@ -119,39 +119,52 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::extract_leaves(Queue& batc
     for (std::size_t b = first; b < end; ++b) {
         entered[b] = pattern_.reached[static_cast<std::size_t>(interior.descend[b])].ends;
     }
+    Singles singles;
     const auto extract_until = [&](std::size_t b) {
         if (first == b) return;
+        extract_singly(batch, interior, singles);
         count_->extracted += visitor_->extract_blocks(batch, first, b, entered.data());
         first = b;
     };
     for (std::size_t b = first; b < end; ++b) {
         if (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before <= b) {
             extract_until(b);
-            take_stopped(batch, b, [&](const Stopped& element) { extract(element); });
+            take_stopped(batch, b, [&](const Stopped& element) {
+                singles.which[singles.count] =
+                    static_cast<std::uint8_t>(&element - batch.stopped.data());
+                singles.part[singles.count++] = Singles::stopped;
+            });
         }
         if (interior.stop[b] != 0) {
             extract_until(b);
-            extract_some_leaves(batch, interior, b);
+            const auto& order = order_of(interior, b);
+            std::memset(singles.which.data() + singles.count, static_cast<int>(b), ends_);
+            std::memcpy(singles.part.data() + singles.count, order.part.data(), ends_);
+            singles.count += order.count;
             first = b + 1;
         }
     }
     extract_until(end);
+    extract_singly(batch, interior, singles);
 }
 
-/// A block of leaves in which something stops.
 template <class Grid, class Field, class Visitor>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_some_leaves(
-    const Batch& batch, const Interior& interior, std::size_t b) {
-    const auto& list = order_of(interior, b);
-    for (std::size_t i = 0; i < list.count; ++i) {
-        const std::size_t part = list.part[i];
-        if (part < ends_) {
-            extract(batch, b, part, interior.bound[part][b]);
+NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_singly(const Queue& batch,
+                                                                       const Interior& interior,
+                                                                       Singles& singles) {
+    for (std::size_t i = 0; i < singles.count; ++i) {
+        const std::size_t which = singles.which[i];
+        const std::size_t part = singles.part[i];
+        if (part == Singles::stopped) {
+            extract(batch.stopped[which]);
             continue;
         }
-        const auto [lo, hi] = range_within(batch, b, part);
-        if (visitor_->glance_at_leaf(lo, hi)) extract(batch, b, part, Real(0));
+        const bool is_end = part >= ends_;
+        const Real bound = is_end ? Real(0) : interior.bound[part % ends_][which];
+        const bool anything = visitor_->extract_part(batch, which, part, bound);
+        count_->extracted += !is_end || anything ? 1 : 0;
     }
+    singles.count = 0;
 }
 
 /// Blocks whose ends are split.

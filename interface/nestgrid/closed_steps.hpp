@@ -4,6 +4,7 @@
 // Which edges and faces a split closes; included by traversal.hpp.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 
 #include <nestgrid/traversal.hpp>
@@ -17,21 +18,26 @@ struct Traversal<Grid, Field, needs>::Parts {
         State::capacity <= 4 ? std::size_t{12} : std::size_t{max_rule_edges};
 
     std::array<typename Closed::Edge, edges> closed_edge;
-    std::array<const typename Closed::Edge*, edges> edge;  // around each edge of the rule
+    std::array<const typename Closed::Edge*, edges + 1> edge;  // around each edge of the rule
     std::array<ClosedFace, max_rule_faces> closed_face;
-    std::array<const ClosedFace*, max_rule_faces> face;  // around parts of each face of the rule
+    std::array<const ClosedFace*, max_rule_faces + 1> face;  // around parts of each of its faces
+
+    Parts() {
+        edge[edges] = nullptr;  // around those that are no edges of the rule
+        face[max_rule_faces] = nullptr;
+    }
 
     void give(const Child& child, const Topology& t, Closed& closed) const {
         bool any = false;
         for (std::size_t e = 0; e < t.edges; ++e) {
-            const std::uint8_t r = child.rule_edge[e];
-            closed.edge[e] = r == no_edge ? nullptr : edge[r];
-            any = any || closed.edge[e] != nullptr;
+            static_assert(no_edge >= edges);
+            closed.edge[e] = edge[std::min<std::size_t>(child.rule_edge[e], edges)];
+            any |= closed.edge[e] != nullptr;
         }
         for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
-            const std::uint8_t r = child.rule_face[f];
-            closed.face[f] = r == no_face ? nullptr : face[r];
-            any = any || closed.face[f] != nullptr;
+            static_assert(no_face >= max_rule_faces);
+            closed.face[f] = face[std::min<std::size_t>(child.rule_face[f], max_rule_faces)];
+            any |= closed.face[f] != nullptr;
         }
         closed.any = any;
     }

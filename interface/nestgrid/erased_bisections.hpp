@@ -70,7 +70,7 @@ public:
     virtual PackedGlance<Real> glance(const PackedElements<Real>& e) = 0;
     virtual void expect(const NodeKey* nodes) const = 0;
     virtual void begin_subtrees() = 0;
-    virtual void extract_part(const ErasedBlocks<dim, Real>& blocks, std::size_t b,
+    virtual bool extract_part(const ErasedBlocks<dim, Real>& blocks, std::size_t b,
                               std::size_t part, Real bound) = 0;
     virtual unsigned extract_blocks(const ErasedBlocks<dim, Real>& blocks, std::size_t first,
                                     std::size_t end, const std::uint8_t* entered) = 0;
@@ -105,8 +105,8 @@ public:
     PackedGlance<Real> glance(const PackedElements<Real>& e) { return to_->glance(e); }
     void expect(const NodeKey* nodes) const { to_->expect(nodes); }
     template <class Batch>
-    void extract_part(const Batch& batch, std::size_t b, std::size_t part, Real bound) {
-        to_->extract_part(Blocks<Batch>(batch), b, part, bound);
+    bool extract_part(const Batch& batch, std::size_t b, std::size_t part, Real bound) {
+        return to_->extract_part(Blocks<Batch>(batch), b, part, bound);
     }
     template <class Batch>
     unsigned extract_blocks(const Batch& batch, std::size_t first, std::size_t end,

@@ -300,6 +300,8 @@ int main(int argc, char** argv) {
         print("dealii_time_ratio_first", memory.first / here.first);
         print("dealii_time_ratio_next", memory.next / here.next);
         print("dealii_file_time_ratio_first", file.first / here.first);
+        print("dealii_time_ratio_first_threshold_0.005", memory.first / coarse.first);
+        print("dealii_time_ratio_next_threshold_0.005", memory.next / coarse.next);
         print_cracks(problem, 0.1);
 #ifdef NESTGRID_WITH_P4EST
         print_solver("p4est", alone([&] { return run_p4est(quick ? 5 : 8); }));

@@ -196,7 +196,7 @@ public:
     unsigned extract_blocks(const Blocks& blocks, std::size_t first, std::size_t end,
                             const std::uint8_t* entered);
     template <class Blocks>
-    void extract_part(const Blocks& blocks, std::size_t b, std::size_t part, Real bound);
+    bool extract_part(const Blocks& blocks, std::size_t b, std::size_t part, Real bound);
     void tick(std::uint64_t calls, std::uint64_t visited) const;
     void count(std::uint64_t calls, std::uint64_t visited);
 

@@ -36,9 +36,9 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 return to->glance(e);
             }
             void expect(const NodeKey* nodes) const override { to->expect(nodes); }
-            void extract_part(const ErasedBlocks<dimension, Real>& blocks, std::size_t b,
+            bool extract_part(const ErasedBlocks<dimension, Real>& blocks, std::size_t b,
                               std::size_t part, Real bound) override {
-                to->extract_part(blocks, b, part, bound);
+                return to->extract_part(blocks, b, part, bound);
             }
             void begin_subtrees() override {
                 if constexpr (indexed) to->begin_subtrees();
@@ -167,9 +167,10 @@ NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::ext
 }
 
 /// One element of a block, of which no more than its corners need be known.
+/// \return whether a level passes through it
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_part(
+NESTGRID_NOINLINE bool IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_part(
     const Blocks& blocks, std::size_t b, std::size_t p, Real bound) {
     constexpr std::size_t corners = Blocks::pattern.corners;
     const auto& part = Blocks::pattern.part[p];
@@ -179,12 +180,14 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
     unrolled<corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
         u[i] = blocks.value(b, part.corner[i]);
     });
+    bool any = false;
     for (Layer& layer : layers_) {
         unsigned bits = 0;
         unrolled<corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
             bits |= unsigned{u[i] >= layer.least_inside} << i;
         });
         if (bits == 0 || bits + 1 == 1U << corners) continue;
+        any = true;
         layer_ = &layer;
         deepest_ = std::max(deepest_, level);
         layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
@@ -219,6 +222,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
             draw(std::integral_constant<std::size_t, 4>{});
         }
     }
+    return any;
 }
 
 /// All ends of blocks first ... end - 1 that a level passes through.
@@ -227,67 +231,63 @@ template <class Blocks>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_blocks(
     const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
     const BlockContours& contours) {
-    constexpr std::size_t nodes = Blocks::pattern.nodes;
-    // As many as the tables have to be asked for at once; or as few as stay in the nearest cache.
-    constexpr std::size_t most = indexed ? most_blocks : 8;
-    using Run = BlockContourRun<Blocks::pattern, most>;
+    using Run = BlockContourRun<Blocks::pattern, most_blocks>;
+    Run run;
+    [[maybe_unused]] std::array<std::array<WidePoint, Blocks::pattern.nodes>,
+                                indexed ? 1 : most_blocks>
+        x;
+    for (std::size_t b = first; b < end; ++b) {
+        const auto& contour = contours.at(static_cast<unsigned>(layer.signs[b]));
+        if (contour.loop_count == 0) continue;
+        run.append(contours, contour, b);
+        if constexpr (!indexed) blocks.all_positions(b, x[b]);
+    }
+    if (run.loop_count == 0) return;
     layer_ = &layer;
-    for (std::size_t begin = first; begin < end; begin += most) {
-        Run run;
-        [[maybe_unused]] std::array<std::array<WidePoint, nodes>, indexed ? 1 : most> x;
-        for (std::size_t b = begin; b < std::min(end, begin + most); ++b) {
-            const auto& contour = contours.at(static_cast<unsigned>(layer.signs[b]));
-            if (contour.loop_count == 0) continue;
-            run.append(contours, contour, b - begin);
-            if constexpr (!indexed) blocks.all_positions(b, x[b - begin]);
-        }
-        if (run.loop_count == 0) continue;
-        const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
-        deepest_ = std::max(deepest_, level);
-        layer.extracted += run.loop_count;
-        count_simplices(run.simplex_count);
+    const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
+    deepest_ = std::max(deepest_, level);
+    layer.extracted += run.loop_count;
+    count_simplices(run.simplex_count);
 
-        std::array<BlockVertex, Run::most_cuts> v;
-        if constexpr (indexed) {
-            const std::array<const VertexNumbers*, 2> table{&layer.number_of, &layer.number_within};
-            std::array<VertexNumbers::Name, Run::most_cuts> names;
-            for (std::size_t i = 0; i < run.cut_count; ++i) {
-                const std::size_t b = begin + run.block_of_cut(i);
-                const auto& [low, high] = run.cut(i);
-                names[i] = layer.number_of.name({blocks.key(b, low), blocks.key(b, high)});
-                const bool within = (blocks.faces(b, low) & blocks.faces(b, high)) == 0;
-                table[within ? 1 : 0]->prefetch(names[i]);
-            }
-            for (std::size_t i = 0; i < run.cut_count; ++i) {
-                const auto& [low, high] = run.cut(i);
-                v[i] = number_in(blocks, begin + run.block_of_cut(i), layer, low, high, names[i]);
-            }
-        } else {
-            for (std::size_t i = 0; i < run.cut_count; ++i) {
-                const std::size_t b = run.block_of_cut(i);
-                const auto& [low, high] = run.cut(i);
-                v[i] = x[b][low] + fraction(layer, blocks.value(begin + b, low),
-                                            blocks.value(begin + b, high)) *
-                                       (x[b][high] - x[b][low]);
-            }
+    std::array<BlockVertex, Run::most_cuts> v;
+    if constexpr (indexed) {
+        const std::array<const VertexNumbers*, 2> table{&layer.number_of, &layer.number_within};
+        std::array<VertexNumbers::Name, Run::most_cuts> names;
+        for (std::size_t i = 0; i < run.cut_count; ++i) {
+            const std::size_t b = run.block_of_cut(i);
+            const auto& [low, high] = run.cut(i);
+            names[i] = layer.number_of.name({blocks.key(b, low), blocks.key(b, high)});
+            const bool within = (blocks.faces(b, low) & blocks.faces(b, high)) == 0;
+            table[within ? 1 : 0]->prefetch(names[i]);
         }
+        for (std::size_t i = 0; i < run.cut_count; ++i) {
+            const auto& [low, high] = run.cut(i);
+            v[i] = number_in(blocks, run.block_of_cut(i), layer, low, high, names[i]);
+        }
+    } else {
+        for (std::size_t i = 0; i < run.cut_count; ++i) {
+            const std::size_t b = run.block_of_cut(i);
+            const auto& [low, high] = run.cut(i);
+            const double part = fraction(layer, blocks.value(b, low), blocks.value(b, high));
+            v[i] = x[b][low] + part * (x[b][high] - x[b][low]);
+        }
+    }
 
-        for (std::size_t i = 0; i < run.loop_count; ++i) {
-            const std::size_t b = begin + run.block_of_loop(i);
-            const BlockContours::Loop& loop = run.loop(i);
-            if (keeps_elements(layer.sink)) {
-                layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end),
-                                       simplex_shape, level);
-            }
-            struct {
-                const BlockVertex* vertex;
-                const std::uint8_t* cut;
-                NESTGRID_INLINE const BlockVertex& operator[](std::size_t k) const {
-                    return vertex[cut[k]];
-                }
-            } const corners{v.data() + run.first_cut(i), loop.cut.data()};
-            put_loop(corners, loop.count, (loop.mirrored != 0) != blocks.mirrored(b));
+    for (std::size_t i = 0; i < run.loop_count; ++i) {
+        const std::size_t b = run.block_of_loop(i);
+        const BlockContours::Loop& loop = run.loop(i);
+        if (keeps_elements(layer.sink)) {
+            layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end),
+                                   simplex_shape, level);
         }
+        struct {
+            const BlockVertex* vertex;
+            const std::uint8_t* cut;
+            NESTGRID_INLINE const BlockVertex& operator[](std::size_t k) const {
+                return vertex[cut[k]];
+            }
+        } const corners{v.data() + run.first_cut(i), loop.cut.data()};
+        put_loop(corners, loop.count, (loop.mirrored != 0) != blocks.mirrored(b));
     }
 }
 

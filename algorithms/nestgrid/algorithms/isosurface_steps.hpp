@@ -252,10 +252,9 @@ NESTGRID_VISITOR::load(const State& s, bool draws) -> void {
 NESTGRID_VISITOR::add_error(const State& s, Layer& layer) const -> void {
     ++layer.extracted;
     double corner = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-        if ((s.interpolated >> i & 1U) != 0) {
-            corner = std::max(corner, indicator_->offset_bound(key_[i]));
-        }
+    for (unsigned left = s.interpolated; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        corner = std::max(corner, indicator_->offset_bound(key_[i]));
     }
     // An interpolated parent that was made in the same split adds its own error.
     if (s.made_by != nullptr) corner *= s.made_by->steps;
