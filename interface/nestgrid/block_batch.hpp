@@ -14,10 +14,16 @@
 
 namespace nestgrid {
 
-/// Which faces of the subtree a node is in the node lies on, one bit each: edges whose ends share
-/// none are edges of no element outside it.
+/// Which faces of the subtree a node is in the node lies on, one bit each from bit 0; and, from bit 4,
+/// of the element with which the walk of blocks began. An edge whose ends share none is an edge of
+/// no element outside it. Above the subtrees all of the lower bits are set, as on no edge in one.
 using SubtreeFaces = std::uint8_t;
-inline constexpr SubtreeFaces no_subtree = 0x80;
+inline constexpr SubtreeFaces subtree_faces = 0x0F;
+inline constexpr SubtreeFaces root_faces = 0xF0;
+
+constexpr bool is_above_subtrees(SubtreeFaces edge) { return (edge & subtree_faces) == subtree_faces; }
+constexpr bool is_within_subtree(SubtreeFaces edge) { return (edge & subtree_faces) == 0; }
+constexpr bool is_within_root(SubtreeFaces edge) { return (edge & root_faces) == 0; }
 
 /// How many are walked side by side.
 inline constexpr std::size_t most_blocks = 32;
@@ -76,14 +82,14 @@ struct BlockBatch {
         level = on_level;
         count = 0;
     }
-    /// The corners of block b, in no subtree.
+    /// The corners of block b, above the subtrees and in no root.
     void put_corners(std::size_t b, const std::array<Node, 4>& n, const std::array<Real, 4>& u,
                      bool mirror) {
         for (std::size_t i = 0; i < pattern.corners; ++i) {
             nodes[i][b] = n[i];
             keys[i][b] = grid->key(n[i]);
             values[i][b] = u[i];
-            sides[i][b] = no_subtree;
+            sides[i][b] = root_faces | subtree_faces;
         }
         orientations[b] = mirror ? 1 : 0;
     }

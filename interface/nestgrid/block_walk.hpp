@@ -146,6 +146,10 @@ private:
     };
 
     NESTGRID_NOINLINE void walk(Queue& batch);
+    /// Faces of an element at one of its corners; face i lies across from corner i.
+    static constexpr unsigned faces_at(std::size_t corner) {
+        return (1U << corners_) - 1 - (1U << corner);
+    }
     void begin_subtrees(Batch& batch);
     template <class Rows, class Middle>
     static void halve(Rows& rows, std::size_t at, std::size_t first, const Middle& middle);

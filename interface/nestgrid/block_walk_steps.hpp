@@ -23,6 +23,9 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     Queue first;
     first.begin(*grid_, last_, path / 2);
     first.put_corners(0, n, u, path % 2 != 0);
+    for (std::size_t i = 0; i < corners_; ++i) {
+        first.sides[i][0] = static_cast<SubtreeFaces>(faces_at(i) << 4U | subtree_faces);
+    }
     first.count = 1;
     const auto [lo, hi] = range_of(u);
     const NodeKey middle = grid_->key(grid_->middle(n[rule.parent[0]], n[rule.parent[1]]));
@@ -77,7 +80,9 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
 template <class Grid, class Field, class Visitor>
 NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& batch) {
     for (std::size_t i = 0; i < corners_; ++i) {
-        batch.sides[i].fill(static_cast<SubtreeFaces>((1U << corners_) - 1 - (1U << i)));
+        for (SubtreeFaces& side : batch.sides[i]) {
+            side = static_cast<SubtreeFaces>((side & root_faces) | faces_at(i));
+        }
     }
     visitor_->begin_subtrees();
 }

@@ -257,7 +257,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_bl
             const std::size_t b = run.block_of_cut(i);
             const auto& [low, high] = run.cut(i);
             names[i] = layer.number_of.name({blocks.key(b, low), blocks.key(b, high)});
-            const bool within = (blocks.faces(b, low) & blocks.faces(b, high)) == 0;
+            const bool within = is_within_subtree(blocks.faces(b, low) & blocks.faces(b, high));
             table[within ? 1 : 0]->prefetch(names[i]);
         }
         for (std::size_t i = 0; i < run.cut_count; ++i) {

@@ -77,7 +77,7 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(con
     if constexpr (!indexed) {
         return make().x;
     } else {
-        return add_within(layer_->number_of.name(name), no_subtree, make);
+        return add_within(layer_->number_of.name(name), root_faces | subtree_faces, make);
     }
 }
 
@@ -95,18 +95,17 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_wit
         const Cut cut = make();
         if constexpr (logs) {
             if (layer.vertex_count == none) throw_too_many_vertices();
-            layer.sink.add_cut(cut, faces == 0);
+            layer.sink.add_cut(cut, is_within_root(faces));
             return layer.vertex_count++;
         } else {
             return add_new(cut);
         }
     };
     const auto find_anywhere = [&] { return layer.number_of.find(name, make_number); };
-    const Number number = faces == no_subtree
-                              ? find_anywhere()
-                              : layer.number_within.find(name, [&] {
-                                    return faces == 0 ? make_number() : find_anywhere();
-                                });
+    const Number number =
+        is_above_subtrees(faces) ? find_anywhere() : layer.number_within.find(name, [&] {
+            return is_within_subtree(faces) ? make_number() : find_anywhere();
+        });
     if (options_->verify && !is_new && layer.sink.position(number) != make().x) {
         throw GridError("two elements put the vertex " + std::to_string(number) +
                         " at different places");

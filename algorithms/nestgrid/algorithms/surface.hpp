@@ -13,6 +13,8 @@
 //         optional; where it says no, add_element() may not be called
 //     void add_simplex(const Simplex& vertices, std::span<const Point> reference)
 //         reference: where they lie in the element; empty unless asked for
+//     void add_simplices(std::span<const Simplex> all)
+//         optional: several from one element, or from any where it keeps none
 //     void add_boundary(const Ridge& vertices)        on the boundary of the domain
 //     void set_normal(std::uint32_t vertex, const Point& unit)   at the end, where asked for
 // A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
@@ -30,6 +32,7 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/inlining.hpp>
 #include <nestgrid/shape.hpp>
 
 namespace nestgrid {
@@ -98,13 +101,21 @@ public:
         surface_->shape_of.push_back(shape);
         surface_->level_of.push_back(static_cast<std::uint16_t>(level));
     }
-    void add_simplex(const typename Target::Simplex& vertices, std::span<const Point> reference) {
+    NESTGRID_INLINE void add_simplex(const typename Target::Simplex& vertices,
+                                     std::span<const Point> reference) {
         surface_->simplices.push_back(vertices);
         if (elements_) {
             surface_->element_of.push_back(
                 static_cast<std::uint32_t>(surface_->elements.size() - 1));
         }
         for (const Point& x : reference) surface_->reference.push_back(x);
+    }
+    void add_simplices(std::span<const typename Target::Simplex> all) {
+        surface_->simplices.insert(surface_->simplices.end(), all.begin(), all.end());
+        if (elements_) {
+            surface_->element_of.resize(surface_->simplices.size(),
+                                        static_cast<std::uint32_t>(surface_->elements.size() - 1));
+        }
     }
     void add_boundary(const typename Target::Ridge& vertices) {
         surface_->boundary.push_back(vertices);
@@ -139,8 +150,8 @@ public:
     bool keeps_elements() const { return false; }
     template <class Element>
     void add_element(const Element&, Shape, int) {}
-    void add_simplex(const std::array<Point, static_cast<std::size_t>(dimension)>& x,
-                     std::span<const Point>) {
+    NESTGRID_INLINE void add_simplex(
+        const std::array<Point, static_cast<std::size_t>(dimension)>& x, std::span<const Point>) {
         Simplex& simplex = target_->emplace_back();
         for (std::size_t i = 0; i < simplex.size(); ++i) {
             simplex[i] = static_cast<Real>(x[i / 3][i % 3]);

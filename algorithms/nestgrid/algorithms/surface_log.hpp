@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <nestgrid/inlining.hpp>
 #include <nestgrid/key_table.hpp>
 #include <nestgrid/shape.hpp>
 
@@ -46,7 +47,7 @@ public:
     explicit SurfaceLog(bool elements) : keeps_elements_{elements} {}
 
     /// \param alone no other task knows it
-    void add_cut(const Cut& cut, bool alone) {
+    NESTGRID_INLINE void add_cut(const Cut& cut, bool alone) {
         kinds_.push_back(alone ? Kind::alone : Kind::shared);
         cuts_.push_back(cut);
     }
@@ -61,9 +62,9 @@ public:
     void add_element(const Element& element, Shape shape, int level) {
         if (keeps_elements_) elements_.push_back({element, shape, level, simplices_.size()});
     }
-    void add_simplex(const Simplex& corners, std::span<const Point> reference) {
+    NESTGRID_INLINE void add_simplex(const Simplex& corners, std::span<const Point> reference) {
         simplices_.push_back(corners);
-        reference_.insert(reference_.end(), reference.begin(), reference.end());
+        for (const Point& x : reference) reference_.push_back(x);
     }
     void add_boundary(const Ridge& corners) { boundary_.push_back(corners); }
 
@@ -99,6 +100,8 @@ public:
                     break;
             }
         }
+        for (const Ridge& corners : boundary_) to.boundary(corners);
+        if (elements_.empty() && reference_.empty()) return to.simplices(simplices_);
         auto element = elements_.begin();
         std::span<const Point> reference(reference_);
         const std::size_t step = reference_.empty() ? 0 : dimension;
@@ -107,7 +110,6 @@ public:
             to.simplex(simplices_[i], reference.first(step));
             reference = reference.subspan(step);
         }
-        for (const Ridge& corners : boundary_) to.boundary(corners);
     }
 
 private:
