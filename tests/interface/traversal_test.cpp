@@ -111,10 +111,12 @@ void expect_single_valued(const Forest<dim>& forest) {
         EXPECT_GE(elements, before);
         before = elements;
     }
-    // Saturation: S true at any corner implies S true at all new nodes.
+    // Saturation: S true at any corner implies S true at all new nodes. One look tells of them all.
     for (int level = 0; level < count_levels(walk); ++level) {
         for_each_on_level(walk, level, [&](const auto& s, const Split& split) {
             for (const NodeKey node : split.keys) {
+                EXPECT_GE(indicator.largest_stop(*split.rule, split.keys), indicator.stop(node));
+                EXPECT_GE(indicator.bound(*split.rule, split.keys), indicator.bound(node));
                 for (std::size_t k = 0; k < static_cast<std::size_t>(s.corner_count()); ++k) {
                     EXPECT_GE(indicator.stop(s.key[k]), indicator.stop(node));
                     EXPECT_GE(indicator.bound(s.key[k]), indicator.bound(node));
