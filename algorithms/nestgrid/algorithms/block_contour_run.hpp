@@ -5,7 +5,9 @@
 // cuts of one block ends where no processor predicts it; one over those of many blocks does not.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 
 #include <nestgrid/algorithms/block_contours.hpp>
@@ -38,7 +40,7 @@ public:
     }();
     static constexpr std::size_t most_cuts = most * edges;
 
-    /// Block b, a small number, any but those that were there.
+    /// \param b number of the block, below `most`; not one that is there already
     NESTGRID_INLINE void append(const BlockContours& contours,
                                 const BlockContours::Contour& contour, std::size_t b) {
         constexpr std::size_t cuts = BlockContours::cuts_at_once;
