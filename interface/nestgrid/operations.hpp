@@ -30,7 +30,7 @@
 //         faces on the boundary of the domain, one bit each, any of them for an element that
 //         reaches across it; default: derived from coarse ids
 //     void for_each_star_row(f)
-//         calls f(StarRow) fine to coarse, each node in one row; default: sweeps
+//         calls f(StarRow) fine to coarse, each node of any element in one row; default: sweeps
 //     bool knows_stars()
 //         whether it does, where that is decided at run time; of a field, whether it has value()
 //     Point node_position(NodeKey)

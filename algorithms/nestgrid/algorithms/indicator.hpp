@@ -26,10 +26,8 @@
 
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <memory>
-#include <new>
 
 #include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
@@ -37,25 +35,6 @@
 #include <nestgrid/levels.hpp>
 
 namespace nestgrid {
-
-namespace detail {
-
-struct Free {
-    void operator()(void* memory) const { std::free(memory); }
-};
-/// An array of numbers that are 0 at first: the system often has such memory, and need not be told
-/// to clear it again.
-template <class T>
-using Zeros = std::unique_ptr<T[], Free>;
-
-template <class T>
-Zeros<T> make_zeros(std::size_t count) {
-    void* const memory = std::calloc(std::max<std::size_t>(count, 1), sizeof(T));
-    if (memory == nullptr) throw std::bad_alloc();
-    return Zeros<T>(static_cast<T*>(memory));
-}
-
-}  // namespace detail
 
 class HierarchicalIndicator {
 public:
@@ -171,11 +150,11 @@ public:
 
 private:
     struct Entry {
-        std::uint16_t stop = 0;   // bfloat16, rounded up
-        std::uint16_t bound = 0;  // bfloat16, rounded up
+        std::uint16_t stop;   // bfloat16, rounded up
+        std::uint16_t bound;  // bfloat16, rounded up
     };
     struct Node {
-        Entry entry;
+        Entry entry{};
         float offset = 0;  // |U_delta|, rounded up
         float finer = 0;   // largest bound of finer nodes
     };
@@ -207,7 +186,7 @@ private:
     template <class Grid, class Field, class LeafError>
     void sweep_levels(const Grid& grid, const Field& field, const LeafError& leaf_error);
 
-    detail::Zeros<Entry> dense_;  // by node, where keys are dense; else null
+    std::unique_ptr<Entry[]> dense_;  // by node, where keys are dense; else null
     KeyTable<NodeKey, Entry> sparse_;
     HangingNodes hanging_;
     double least_ = std::numeric_limits<double>::infinity();

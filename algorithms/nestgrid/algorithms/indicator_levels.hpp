@@ -172,7 +172,7 @@ void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
     }
     node_count_ = nodes.size();
     if (number_of.are_keys()) {
-        dense_ = detail::make_zeros<Entry>(nodes.size());
+        dense_ = std::make_unique<Entry[]>(nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) dense_[i] = nodes[i].entry;
     } else {
         sparse_.reserve(nodes.size());

@@ -53,8 +53,14 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     node_count_ = grid.node_count();
     largest_split_ = 1;  // a star is the midpoint of two nodes, the only one in its elements
     add_values(field);
-    dense_ = detail::make_zeros<Entry>(node_count_);
-    const auto full = detail::make_zeros<detail::FullEntry>(node_count_);
+    // Nodes of no element are in no row, and count as 0; a whole grid has none.
+    bool in_rows = false;
+    if constexpr (requires { grid.whole(); }) in_rows = grid.whole();
+    using Full = detail::FullEntry[];
+    dense_ = in_rows ? std::make_unique_for_overwrite<Entry[]>(node_count_)
+                     : std::make_unique<Entry[]>(node_count_);
+    const auto full = in_rows ? std::make_unique_for_overwrite<Full>(node_count_)
+                              : std::make_unique<Full>(node_count_);
     grid.for_each_star_row([&, entries = dense_.get(), full = full.get()](const StarRow& row) {
         const auto value = [&](std::size_t node) {
             return static_cast<Real>(field.value(static_cast<NodeKey>(node)));

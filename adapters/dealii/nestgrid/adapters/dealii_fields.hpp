@@ -64,4 +64,41 @@ private:
     std::array<unsigned, component_count> offset_{};  // among the degrees of freedom of a vertex
 };
 
+template <int dim, class Vector, int component_count, int spacedim>
+DealiiField<dim, Vector, component_count, spacedim>::DealiiField(
+    const Grid& grid, const dealii::DoFHandler<dim, spacedim>& dofs, const Vector& values,
+    const std::array<unsigned, component_count>& which)
+    : grid_{&grid}, dofs_{&dofs}, values_{&values} {
+    if (&dofs.get_triangulation() != &grid.triangulation()) {
+        throw InvalidInput("the degrees of freedom are those of another triangulation");
+    }
+    if (dofs.has_hp_capabilities()) {
+        throw InvalidInput("degrees of freedom of hp elements are not supported");
+    }
+    if (values.size() != dofs.n_dofs()) {
+        throw InvalidInput("the vector has " + std::to_string(values.size()) + " entries for " +
+                           std::to_string(dofs.n_dofs()) + " degrees of freedom");
+    }
+    const auto& fe = dofs.get_fe();
+    const unsigned per_vertex = fe.n_dofs_per_vertex();
+    for (std::size_t c = 0; c < which.size(); ++c) {
+        if (which[c] >= fe.n_components()) {
+            throw InvalidInput("the finite element has " + std::to_string(fe.n_components()) +
+                               " components and no number " + std::to_string(which[c]));
+        }
+        bool found = false;
+        for (unsigned i = 0; i < per_vertex && !found; ++i) {
+            // A node of the component at the vertex itself.
+            if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != which[c]) continue;
+            const unsigned base = fe.system_to_base_index(i).first.first;
+            found = fe.base_element(base).has_support_points();
+            offset_[c] = i;
+        }
+        if (!found) {
+            throw InvalidInput("component " + std::to_string(which[c]) + " of " + fe.get_name() +
+                               " has no nodal values at vertices");
+        }
+    }
+}
+
 }  // namespace nestgrid

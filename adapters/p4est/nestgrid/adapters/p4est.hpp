@@ -155,5 +155,6 @@ P4estGrid(const p8est_t*, Map) -> P4estGrid<3, Map>;
 
 }  // namespace nestgrid
 
+#include <nestgrid/adapters/p4est_balanced.hpp>
 #include <nestgrid/adapters/p4est_fields.hpp>
 #include <nestgrid/adapters/p4est_steps.hpp>
