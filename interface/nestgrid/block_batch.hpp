@@ -14,14 +14,17 @@
 
 namespace nestgrid {
 
-/// Which faces of the subtree a node is in the node lies on, one bit each from bit 0; and, from bit 4,
-/// of the element with which the walk of blocks began. An edge whose ends share none is an edge of
-/// no element outside it. Above the subtrees all of the lower bits are set, as on no edge in one.
+/// Which faces of the subtree a node is in the node lies on, one bit each from bit 0; and, from bit
+/// 4, of the element with which the walk of blocks began. An edge whose ends share none is an edge
+/// of no element outside it. Above the subtrees all of the lower bits are set, as on no edge in
+/// one.
 using SubtreeFaces = std::uint8_t;
 inline constexpr SubtreeFaces subtree_faces = 0x0F;
 inline constexpr SubtreeFaces root_faces = 0xF0;
 
-constexpr bool is_above_subtrees(SubtreeFaces edge) { return (edge & subtree_faces) == subtree_faces; }
+constexpr bool is_above_subtrees(SubtreeFaces edge) {
+    return (edge & subtree_faces) == subtree_faces;
+}
 constexpr bool is_within_subtree(SubtreeFaces edge) { return (edge & subtree_faces) == 0; }
 constexpr bool is_within_root(SubtreeFaces edge) { return (edge & root_faces) == 0; }
 

@@ -121,7 +121,7 @@ auto Traversal<Grid, Field, needs>::positions(const typename State::Closed::Edge
     if (edge.places != nullptr) return {edge.places[edge.end[0]], edge.places[edge.end[1]]};
     const auto corners = static_cast<std::size_t>(edge.element->corner_count());
     std::array<Point, node_capacity_> x;
-    positions(*edge.element, std::span<Point>(x.data(), max_corners));
+    positions(*edge.element, x);
     const std::size_t last = std::max(edge.end[0], edge.end[1]);
     for (std::size_t n = corners; n <= last; ++n) {
         const bool asked = n == edge.end[0] || n == edge.end[1];

@@ -148,7 +148,9 @@ NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::ext
     unsigned extracted = 0;
     for (std::size_t b = first; b < end; ++b) {
         unsigned ends = 0;
-        for (Layer& layer : layers_) ends |= contours.at(static_cast<unsigned>(layer.signs[b])).ends;
+        for (const Layer& layer : layers_) {
+            ends |= contours.at(static_cast<unsigned>(layer.signs[b])).ends;
+        }
         bool plainly = (ends & ~entered[b]) == 0;
         if constexpr (indexed) plainly = plainly && (ends == 0 || blocks.boundary(b, 1) == 0);
         if (!plainly) {
@@ -205,8 +207,9 @@ NESTGRID_NOINLINE bool IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extra
                 if constexpr (indexed) {
                     const std::size_t from = part.corner[low];
                     const std::size_t to = part.corner[high];
-                    v[i] = number_in(blocks, b, layer, from, to,
-                                     layer.number_of.name({blocks.key(b, from), blocks.key(b, to)}));
+                    const auto name =
+                        layer.number_of.name({blocks.key(b, from), blocks.key(b, to)});
+                    v[i] = number_in(blocks, b, layer, from, to, name);
                 } else {
                     v[i] = x[low] + fraction(layer, u[low], u[high]) * (x[high] - x[low]);
                 }

@@ -50,7 +50,9 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
         if (s.closed.face[f] == nullptr) continue;
         const FaceTopology& face = t.face[f];
         unsigned signs = 0;
-        for (std::size_t i = 0; i < face.corners; ++i) signs |= (pattern >> face.corner[i] & 1U) << i;
+        for (std::size_t i = 0; i < face.corners; ++i) {
+            signs |= (pattern >> face.corner[i] & 1U) << i;
+        }
         const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
         const FaceContour contour =
             face_contour(face.corners, signs, alternating && joined(s, face));
@@ -184,7 +186,8 @@ NESTGRID_VISITOR::fill_gaps(Layer& layer) -> void {
         const double weight = 1.0 / static_cast<double>(gap.loop.size());
         for (const Number v : gap.loop) {
             const Cut& cut = layer.transitions.cut(v);
-            number_of(add({cut.node[0], cut.node[1]}, [&] { return cut; }), {unknown, unknown, unknown});
+            number_of(add({cut.node[0], cut.node[1]}, [&] { return cut; }),
+                      {unknown, unknown, unknown});
             x = x + weight * cut.x;
             for (std::size_t i = 0; i < attribute_count; ++i) {
                 attributes[i] += weight * cut.attributes[i];
