@@ -110,12 +110,24 @@ private:
         Row<MaskOf<Real>> stop;
         std::array<Row<Real>, ends_> bound;  // by part
     };
-    /// Parts of blocks in the order of the traversal: ends, which are split, and what stops.
-    struct Steps {
-        static constexpr std::size_t room = room_ * ends_;
+    /// Parts of blocks in the order of the traversal.
+    template <std::size_t most>
+    struct PartList {
+        static constexpr std::size_t room = most;
         std::size_t count = 0;
         std::array<std::uint8_t, room + ends_> block;
         std::array<std::uint8_t, room + ends_> part;
+
+        /// Those of block b. Nothing depends on how many they are.
+        NESTGRID_INLINE void append(const BlockOrder<ends_>& order, std::size_t b) {
+            std::memcpy(part.data() + count, order.part.data(), ends_);
+            std::memset(block.data() + count, static_cast<int>(b), ends_);
+            count += order.count;
+        }
+    };
+    /// Ends, which are split, and what stops.
+    struct Steps : PartList<room_ * ends_> {
+        using PartList<room_ * ends_>::room;
         // Of the ends alone:
         std::size_t end_count = 0;
         alignas(64) std::array<Real, room + 1> lo;
@@ -128,14 +140,10 @@ private:
         alignas(64) std::array<Real, room + 1> bound;
     };
 
-    /// What is extracted one by one, in the order of the traversal: parts of blocks in which
-    /// something stops, and elements that stopped above.
-    struct Singles {
-        static constexpr std::size_t room = room_ * ends_ + stopped_room_;
+    /// What is extracted one by one: parts of blocks in which something stops, and elements that
+    /// stopped above, which have their number in the place of a block.
+    struct Singles : PartList<room_ * ends_ + stopped_room_> {
         static constexpr std::uint8_t stopped = 2 * ends_;  ///< in the place of a part
-        std::size_t count = 0;
-        std::array<std::uint8_t, room + ends_> which;  ///< block; or which of those that stopped
-        std::array<std::uint8_t, room + ends_> part;
     };
 
     /// The parts of a batch that the blocks of the next one are.

@@ -135,17 +135,14 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::extract_leaves(Queue& batc
         if (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before <= b) {
             extract_until(b);
             take_stopped(batch, b, [&](const Stopped& element) {
-                singles.which[singles.count] =
+                singles.block[singles.count] =
                     static_cast<std::uint8_t>(&element - batch.stopped.data());
                 singles.part[singles.count++] = Singles::stopped;
             });
         }
         if (interior.stop[b] != 0) {
             extract_until(b);
-            const auto& order = order_of(interior, b);
-            std::memset(singles.which.data() + singles.count, static_cast<int>(b), ends_);
-            std::memcpy(singles.part.data() + singles.count, order.part.data(), ends_);
-            singles.count += order.count;
+            singles.append(order_of(interior, b), b);
             first = b + 1;
         }
     }
@@ -158,15 +155,15 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_singly(const Que
                                                                        const Interior& interior,
                                                                        Singles& singles) {
     for (std::size_t i = 0; i < singles.count; ++i) {
-        const std::size_t which = singles.which[i];
+        const std::size_t b = singles.block[i];
         const std::size_t part = singles.part[i];
         if (part == Singles::stopped) {
-            extract(batch.stopped[which]);
+            extract(batch.stopped[b]);
             continue;
         }
         const bool is_end = part >= ends_;
-        const Real bound = is_end ? Real(0) : interior.bound[part % ends_][which];
-        const bool anything = visitor_->extract_part(batch, which, part, bound);
+        const Real bound = is_end ? Real(0) : interior.bound[part % ends_][b];
+        const bool anything = visitor_->extract_part(batch, b, part, bound);
         count_->extracted += !is_end || anything ? 1 : 0;
     }
     singles.count = 0;
@@ -223,10 +220,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Batch& batch,
                                                            std::size_t first, std::size_t end,
                                                            Steps& steps) const {
     for (std::size_t b = first; b < end; ++b) {
-        const auto& order = order_of(interior, b);
-        std::memcpy(steps.part.data() + steps.count, order.part.data(), ends_);
-        std::memset(steps.block.data() + steps.count, static_cast<int>(b), ends_);
-        steps.count += order.count;
+        steps.append(order_of(interior, b), b);
     }
     for (std::size_t i = 0; i < steps.count; ++i) {
         const std::size_t b = steps.block[i];

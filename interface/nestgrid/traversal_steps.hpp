@@ -209,12 +209,6 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
     std::array<Element, detail::child_capacity<Grid>()> elements;
     detail::call_children(*grid_, *s.context, s.element,
                           std::span<Element>(elements.data(), rule.children.size()));
-    const auto is_interpolated = [&, all = s.interpolated | nodes.interpolated << corners,
-                                  in_one = corners + rule.new_nodes.size() <= 64](std::size_t n) {
-        if (in_one) return all >> n & 1U;
-        return (n < corners ? NodeMask{s.interpolated} >> n : nodes.interpolated >> (n - corners)) &
-               1U;
-    };
     const bool any_interpolated = s.interpolated != 0 || nodes.interpolated != 0;
     bool passes_over_leaves = false;
     if constexpr (requires { visitor.passes_over_leaves(); }) {
@@ -262,7 +256,11 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
             if constexpr (State::carries_positions) k.position[i] = nodes.position[n];
         }
         for (std::size_t i = 0; any_interpolated && i < child_corners; ++i) {
-            k.interpolated |= static_cast<std::uint8_t>(is_interpolated(child.corner[i]) << i);
+            const std::size_t n = child.corner[i];
+            const NodeMask flag = (n < corners ? NodeMask{s.interpolated} >> n
+                                               : nodes.interpolated >> (n - corners)) &
+                                  1U;
+            k.interpolated |= static_cast<std::uint8_t>(flag << i);
         }
         if constexpr (needs.closed) {
             k.closed.any = false;

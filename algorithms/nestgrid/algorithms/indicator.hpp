@@ -81,6 +81,11 @@ public:
 #endif
     }
 
+    /// The same for the new nodes of one split; where one look tells of them all, it is enough.
+    NESTGRID_INLINE void prefetch(const Rule& rule, std::span<const NodeKey> nodes) const {
+        prefetch(rule.inside == no_new_node ? nodes : nodes.subspan(rule.inside, 1));
+    }
+
     /// Both of eight nodes.
     class Known {
     public:

@@ -263,9 +263,7 @@ private:
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s, bool draws);
     void add_error(const State& s, Layer& layer) const;
-    void load_gradients(const State& s);
     void draw(const State& s, Layer& layer, unsigned pattern);
-    void set_normals(Layer& layer);
 
     // isosurface_transitions.hpp
     void record(const State& s, Layer& layer, unsigned pattern);
@@ -348,10 +346,14 @@ private:
     void put_simplex(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
                      std::span<const Point> reference);
     void add_boundary(const std::array<Number, static_cast<std::size_t>(dimension - 1)>& locals);
+
+    // isosurface_normals.hpp
+    void load_gradients(const State& s);
     std::array<Point, max_corners> own_gradients(const State& s) const;
     Point projected_gradient(const State& s, std::size_t corner) const;
     Point node_gradient(const State& father, const Rule& rule, std::size_t node) const;
     void add_gradient(Number slot, const CornerGradient& g);
+    void set_normals(Layer& layer);
 
     // isosurface_tasks.hpp
     template <class Executor>

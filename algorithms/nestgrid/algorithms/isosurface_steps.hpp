@@ -156,10 +156,8 @@ NESTGRID_VISITOR::tick(std::uint64_t calls, std::uint64_t visited) const -> void
 
 /// What to do with an element.
 NESTGRID_VISITOR::look(const State& s, const Split& split) -> Decision {
-    if constexpr (requires { indicator_->prefetch(split.keys); }) {
-        if (split.rule != nullptr && split.rule->inside == no_new_node) {
-            indicator_->prefetch(split.keys);
-        }
+    if constexpr (requires { indicator_->prefetch(*split.rule, split.keys); }) {
+        if (split.rule != nullptr) indicator_->prefetch(*split.rule, split.keys);
     }
     Real lo = s.value[0];
     Real hi = lo;
@@ -316,28 +314,12 @@ NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
     }
 }
 
-NESTGRID_VISITOR::set_normals(Layer& layer) -> void {
-    for (Number v = 0; v < layer.where.size(); ++v) {
-        const Where& w = layer.where[v];
-        const bool low = w.low != none && gradients_.known(w.low);
-        const bool high = w.high != none && gradients_.known(w.high);
-        Point n = w.around;
-        if (low || high) {
-            const Point a = gradients_.mean(low ? w.low : w.high);
-            const Point b = gradients_.mean(high ? w.high : w.low);
-            const Point g = (1 - w.fraction) * a + w.fraction * b;
-            if (norm(g) > 0) n = -1.0 * g;
-        }
-        const double length = norm(n);
-        layer.sink.set_normal(v, length > 0 ? (1 / length) * n : n);
-    }
-}
-
 }  // namespace nestgrid::detail
 
 #undef NESTGRID_VISITOR
 
 #include <nestgrid/algorithms/isosurface_cap.hpp>
+#include <nestgrid/algorithms/isosurface_normals.hpp>
 #include <nestgrid/algorithms/isosurface_tasks.hpp>
 #include <nestgrid/algorithms/isosurface_transitions.hpp>
 #include <nestgrid/algorithms/isosurface_vertices.hpp>

@@ -59,8 +59,8 @@ void DealiiGrid<dim, spacedim>::new_positions(const Element& e, NodeMask which,
     new_keys(e, vertex);
     const auto& position_of = triangulation_->get_vertices();
     for (std::size_t n = 0; which >> n != 0; ++n) {
-        if ((which >> n & 1U) != 0)
-            out[n] = point(position_of[static_cast<std::size_t>(vertex[n])]);
+        if ((which >> n & 1U) == 0) continue;
+        out[n] = point(position_of[static_cast<std::size_t>(vertex[n])]);
     }
 }
 
