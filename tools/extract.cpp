@@ -74,13 +74,13 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
     memory::reset_peak();
     const double start = now();
     if (request.progress) request.progress("preroll");
-    const nestgrid::HierarchicalIndicator indicator(grid, field);
+    const nestgrid::TbbExecutor executor(request.threads);
+    const nestgrid::HierarchicalIndicator indicator(grid, field, executor);
     run.preroll_seconds = now() - start;
     run.preroll_peak_bytes = memory::peak() - before;
     run.preroll_kept_bytes = indicator.memory_bytes();
     run.least = indicator.least();
     run.greatest = indicator.greatest();
-    const nestgrid::TbbExecutor executor(request.threads);
     // One kind of criterion, with a region that may be empty: each would be compiled for every
     // grid.
     nestgrid::Region region;

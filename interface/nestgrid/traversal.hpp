@@ -139,6 +139,9 @@ struct ElementState {
 /// allocates nothing. A visitor has
 ///     Decision inspect(const State&, const Split&);
 ///     void extract(const State&);              called for elements where it said stop, and leaves
+///     void made(const State&, const Split&, std::span<const Real> values)
+///                                              optional: P_S U at the corners and, behind them, at
+///                                              the new nodes of an element about to be entered
 ///     bool passes_over_leaves() const;         optional: whether leaves around which nothing is
 ///                                              closed may be left out, unless coarse
 ///     NodeMask children_to_enter(const State&) optional: one bit each, where it said descend

@@ -188,6 +188,14 @@ void Traversal<Grid, Field, needs>::descend(const State& s, const Split& split,
     nodes.mean = interpolated | split.constrained;
     nodes.key = keys;
     project(s, split, interpolated, nodes.value.data());
+    if constexpr (requires { visitor.made(s, split, std::span<const Real>()); }) {
+        const std::size_t count =
+            static_cast<std::size_t>(s.corner_count()) + rule.new_nodes.size();
+        if (!rule.new_nodes.empty()) {
+            visitor.made(s, split,
+                         std::span<const Real>(nodes.value).first(count * State::components));
+        }
+    }
     if constexpr (State::carries_positions) {
         if (!own_positions_) project_positions(s, split, interpolated, nodes.position.data());
     }

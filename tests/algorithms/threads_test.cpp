@@ -52,6 +52,71 @@ TYPED_TEST(Threads, DrawWhatOneDraws) {
     }
 }
 
+template <class Grid, class Field>
+void expect_same_indicators(const Grid& grid, const Field& field, const HierarchicalIndicator& one,
+                            const HierarchicalIndicator& other) {
+    EXPECT_EQ(one.node_count(), other.node_count());
+    EXPECT_EQ(one.least(), other.least());
+    EXPECT_EQ(one.greatest(), other.greatest());
+    EXPECT_EQ(one.finest_level(), other.finest_level());
+    EXPECT_EQ(one.stops_conform(), other.stops_conform());
+    EXPECT_EQ(one.hanging_violation(), other.hanging_violation());
+    const Traversal<Grid, Field, Needs{.keys = true}> walk(grid, field, one.hanging());
+    std::size_t differ = 0;
+    for_each_element(walk, [&](const auto&, const Split& split) {
+        for (const NodeKey key : split.keys) {
+            differ += one.stop(key) != other.stop(key) || one.bound(key) != other.bound(key);
+        }
+    });
+    EXPECT_EQ(differ, 0U);
+}
+
+/// \param error of leaves, or nothing
+template <class Grid, class Field, class... LeafError>
+void expect_same_prerolls(const Grid& grid, const Field& field, const LeafError&... error) {
+    const HierarchicalIndicator alone(grid, field, error...);
+    EXPECT_GT(alone.node_count(), 50U);
+    for (const std::size_t threads : {2U, 3U}) {
+        const ThreadExecutor together(threads);
+        expect_same_indicators(grid, field, alone,
+                               HierarchicalIndicator(grid, field, error..., together));
+    }
+}
+
+TYPED_TEST(Threads, PrepareWhatOnePrepares) {
+    for (auto& grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 7)) {
+            SCOPED_TRACE(samples.name);
+            expect_same_prerolls(
+                grid, NodeField<std::decay_t<decltype(grid)>, double>(grid, samples.values));
+        }
+    }
+}
+
+TEST(ThreadsOnSamples, PrepareWhatOnePrepares) {
+    const Samples n{34, 20, 33};
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        const LatticeOctree<3> grid({.samples = n});
+        const LatticeField field(grid, std::span<const float>(data.values));
+        expect_same_prerolls(grid, field);
+        expect_same_prerolls(grid, field, [](const auto& e) { return e.low % 13 * 0.1; });
+    }
+}
+
+TEST(ThreadsOnSamples, FindWhatCannotBeUsed) {
+    const Samples n{17, 17, 17};
+    const LatticeOctree<3> grid({.samples = n});
+    std::vector<float> values = sampled_fields(n)[0].values;
+    const LatticeField field(grid, std::span<const float>(values));
+    const auto least = [](const auto& e) { return e.low == 0 ? -1.0 : 1.0; };
+    const ThreadExecutor two(2);
+    EXPECT_THROW(HierarchicalIndicator(grid, field, least, two), InvalidInput);
+    values[1000] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(HierarchicalIndicator(grid, field, two), InvalidInput);
+}
+
 TEST(ThreadsOnSamples, DrawWhatOneDraws) {
     const Samples n{34, 20, 33};
     const LatticeBisection<3> tetrahedra({.samples = n});

@@ -3,22 +3,23 @@
 //
 // An isosurface of a solution on an adaptive triangulation of deal.II: straight from the solver's
 // vector, and as it is done otherwise, by dealii::DataOut and VTK's contour, in memory or through a
-// file. Each contestant runs in a process of its own on the same solution, so that its peak of
-// memory is its own. Then, where they are there, p4est and Dune's UGGrid: what an element that is
-// visited costs in each. Prints one "name value" line per figure; --quick takes a small grid.
+// file, each with one thread and with two. Each contestant runs in a process of its own on the same
+// solution, so that its peak of memory and its threads are its own. Then, where they are there,
+// p4est and Dune's UGGrid: what an element that is visited costs in each. Prints one "name value"
+// line per figure; --quick takes a small grid.
 #include <malloc.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
 
+#include <deal.II/base/multithread_info.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/mapping_q.h>
@@ -42,6 +43,7 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <nestgrid/adapters/dealii.hpp>
+#include <nestgrid/adapters/tbb.hpp>
 
 #include "open_edges.hpp"
 #include "solver_runs.hpp"
@@ -59,30 +61,6 @@ double peak_bytes() {
         if (word == "VmHWM:" && status >> kilobytes) return 1024 * kilobytes;
     }
     return 0;
-}
-
-/// Runs in a process of its own; its peak is counted from here.
-Run alone(const std::function<Run()>& contestant) {
-    std::array<int, 2> ends{};
-    malloc_trim(0);
-    if (pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
-    const pid_t child = fork();
-    if (child == 0) {
-        std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts here
-        const double before = peak_bytes();
-        Run run = contestant();
-        run.bytes = peak_bytes() - before;
-        const bool told = write(ends[1], &run, sizeof run) == sizeof run;
-        _exit(told ? 0 : 1);
-    }
-    close(ends[1]);
-    Run run;
-    const bool told = read(ends[0], &run, sizeof run) == sizeof run;
-    close(ends[0]);
-    int status = 0;
-    waitpid(child, &status, 0);
-    if (!told || status != 0) throw std::runtime_error("a contestant failed");
-    return run;
 }
 
 struct Problem {
@@ -113,12 +91,16 @@ struct Problem {
     }
 };
 
-Run ours(const Problem& p, double threshold) {
+Run ours(const Problem& p, double threshold, int threads) {
     Run run;
     const auto start = Clock::now();
     const nestgrid::DealiiGrid<3> grid(p.triangulation);
     const nestgrid::DealiiField field(grid, p.dofs, p.values);
-    time_isosurfaces(grid, field, threshold, start, run);
+    if (threads > 1) {
+        time_isosurfaces(grid, field, threshold, start, run, nestgrid::TbbExecutor(threads));
+    } else {
+        time_isosurfaces(grid, field, threshold, start, run);
+    }
     return run;
 }
 
@@ -164,11 +146,12 @@ vtkNew<vtkUnstructuredGrid> leaves_of(const Problem& p, int type) {
 
 /// The contour of leaves: by VTK's fast filter for linear cells.
 template <class Input>
-void contour(Input&& connect, Run& run, Clock::time_point start) {
+void contour(Input&& connect, int threads, Run& run, Clock::time_point start) {
     const vtkNew<vtkContour3DLinearGrid> filter;
     connect(filter.Get());
     filter->SetMergePoints(true);
-    filter->SetSequentialProcessing(true);
+    setenv("VTK_SMP_MAX_THREADS", std::to_string(threads).c_str(), 1);
+    filter->SetSequentialProcessing(threads == 1);
     filter->SetValue(0, isovalue);
     filter->Update();
     run.first = seconds_since(start);
@@ -180,15 +163,16 @@ void contour(Input&& connect, Run& run, Clock::time_point start) {
     run.next = seconds_since(again);
 }
 
-Run in_memory(const Problem& p) {
+Run in_memory(const Problem& p, int threads) {
     Run run;
     const auto start = Clock::now();
     const vtkNew<vtkUnstructuredGrid> leaves = leaves_of(p, VTK_FLOAT);
-    contour([&](vtkContour3DLinearGrid* filter) { filter->SetInputData(leaves); }, run, start);
+    contour([&](vtkContour3DLinearGrid* filter) { filter->SetInputData(leaves); }, threads, run,
+            start);
     return run;
 }
 
-Run through_file(const Problem& p) {
+Run through_file(const Problem& p, int threads) {
     Run run;
     const auto path = std::filesystem::temp_directory_path() /
                       ("bench_solvers_" + std::to_string(getpid()) + ".vtu");
@@ -203,8 +187,8 @@ Run through_file(const Problem& p) {
     reader->SetFileName(path.c_str());
     reader->Update();
     reader->GetOutput()->GetPointData()->SetActiveScalars("u");
-    contour([&](vtkContour3DLinearGrid* filter) { filter->SetInputData(reader->GetOutput()); }, run,
-            start);
+    contour([&](vtkContour3DLinearGrid* filter) { filter->SetInputData(reader->GetOutput()); },
+            threads, run, start);
     std::filesystem::remove(path);
     return run;
 }
@@ -279,35 +263,91 @@ void print_run(const std::string& name, const Run& run) {
     print(name + "_ns_per_visited", 1e9 * run.next / run.visited);
 }
 
+constexpr std::array<const char*, 4> contestants{"ours", "ours_threshold_0.005",
+                                                 "data_out_in_memory", "data_out_file"};
+
+Run run_contestant(const std::string& name, int threads, bool quick) {
+#ifdef NESTGRID_WITH_P4EST
+    if (name == "p4est") return run_p4est(quick ? 5 : 8);
+#endif
+#ifdef NESTGRID_WITH_DUNE
+    if (name == "dune_ug") return run_dune_ug(quick ? 2 : 5);
+#endif
+    dealii::MultithreadInfo::set_thread_limit(static_cast<unsigned>(threads));
+    const Problem p(quick ? 20000 : 1000000);
+    malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts here
+    const double before = peak_bytes();
+    Run run = name == contestants[0]   ? ours(p, 0, threads)
+              : name == contestants[1] ? ours(p, 0.005, threads)
+              : name == contestants[2] ? in_memory(p, threads)
+                                       : through_file(p, threads);
+    run.bytes = peak_bytes() - before;
+    return run;
+}
+
+/// Runs a contestant in a process of its own, which is this program again.
+Run alone(const std::string& name, int threads, bool quick) {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
+    const pid_t child = fork();
+    if (child == 0) {
+        const std::string to = std::to_string(ends[1]);
+        const std::string count = std::to_string(threads);
+        execl("/proc/self/exe", "bench_solvers", "--contestant", name.c_str(), count.c_str(),
+              quick ? "quick" : "full", to.c_str(), nullptr);
+        _exit(1);
+    }
+    close(ends[1]);
+    Run run;
+    const bool told = read(ends[0], &run, sizeof run) == sizeof run;
+    close(ends[0]);
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (!told || status != 0) throw std::runtime_error("contestant " + name + " failed");
+    return run;
+}
+
+/// \param with what stands behind the names: the threads, where there are several
+void print_contest(const std::string& with, int threads, bool quick) {
+    std::array<Run, contestants.size()> run;
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        if (threads > 1 && i == 3) continue;  // writing the file takes one
+        run[i] = alone(contestants[i], threads, quick);
+        print_run(std::string("dealii_") + contestants[i] + with, run[i]);
+    }
+    const auto& [here, coarse, memory, file] = run;
+    print("dealii_memory_ratio" + with, memory.bytes / here.bytes);
+    print("dealii_time_ratio_first" + with, memory.first / here.first);
+    print("dealii_time_ratio_next" + with, memory.next / here.next);
+    print("dealii_time_ratio_first_threshold_0.005" + with, memory.first / coarse.first);
+    print("dealii_time_ratio_next_threshold_0.005" + with, memory.next / coarse.next);
+    if (threads > 1) return;
+    print("dealii_file_time_ratio_first", file.first / here.first);
+    print("dealii_ns_per_visited", 1e9 * here.next / here.visited);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
     try {
+        if (argc == 6 && std::strcmp(argv[1], "--contestant") == 0) {
+            const Run run =
+                run_contestant(argv[2], std::atoi(argv[3]), std::strcmp(argv[4], "quick") == 0);
+            return write(std::atoi(argv[5]), &run, sizeof run) == sizeof run ? 0 : 1;
+        }
+        const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
+        print_contest("", 1, quick);
+        print_contest("_two_threads", 2, quick);
         const Problem problem(quick ? 20000 : 1000000);
         print("dealii_cells", problem.triangulation.n_active_cells());
         print("dealii_levels", problem.triangulation.n_levels());
-        const Run here = alone([&] { return ours(problem, 0); });
-        const Run coarse = alone([&] { return ours(problem, 0.005); });
-        const Run memory = alone([&] { return in_memory(problem); });
-        const Run file = alone([&] { return through_file(problem); });
-        print_run("dealii_ours", here);
-        print_run("dealii_ours_threshold_0.005", coarse);
-        print_run("dealii_data_out_in_memory", memory);
-        print_run("dealii_data_out_file", file);
-        print("dealii_ns_per_visited", 1e9 * here.next / here.visited);
-        print("dealii_memory_ratio", memory.bytes / here.bytes);
-        print("dealii_time_ratio_first", memory.first / here.first);
-        print("dealii_time_ratio_next", memory.next / here.next);
-        print("dealii_file_time_ratio_first", file.first / here.first);
-        print("dealii_time_ratio_first_threshold_0.005", memory.first / coarse.first);
-        print("dealii_time_ratio_next_threshold_0.005", memory.next / coarse.next);
         print_cracks(problem, 0.1);
 #ifdef NESTGRID_WITH_P4EST
-        print_solver("p4est", alone([&] { return run_p4est(quick ? 5 : 8); }));
+        print_solver("p4est", alone("p4est", 1, quick));
 #endif
 #ifdef NESTGRID_WITH_DUNE
-        print_solver("dune_ug", alone([&] { return run_dune_ug(quick ? 2 : 5); }));
+        print_solver("dune_ug", alone("dune_ug", 1, quick));
 #endif
     } catch (const std::exception& error) {
         std::fprintf(stderr, "bench_solvers: %s\n", error.what());

@@ -25,19 +25,19 @@ struct Run {
 };
 
 /// Two surfaces, the first of them counted from `start`.
-template <class Grid, class Field>
+template <class Grid, class Field, class E = nestgrid::SequentialExecutor>
 void time_isosurfaces(const Grid& grid, const Field& field, double threshold,
-                      Clock::time_point start, Run& run) {
-    const nestgrid::HierarchicalIndicator indicator(grid, field);
+                      Clock::time_point start, Run& run, const E& executor = {}) {
+    const nestgrid::HierarchicalIndicator indicator(grid, field, executor);
+    const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
     {
-        const auto result = nestgrid::isosurface(grid, field, 0.0, indicator,
-                                                 {.threshold = threshold, .elements = false});
+        const auto result = nestgrid::isosurface(grid, field, 0.0, indicator, options, executor);
         run.first = seconds_since(start);
         run.triangles = static_cast<double>(result.surface.simplices.size());
         run.visited = static_cast<double>(result.counts.visited);
     }
     const auto again = Clock::now();
-    nestgrid::isosurface(grid, field, 1e-3, indicator, {.threshold = threshold, .elements = false});
+    nestgrid::isosurface(grid, field, 1e-3, indicator, options, executor);
     run.next = seconds_since(again);
 }
 

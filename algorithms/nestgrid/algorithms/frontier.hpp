@@ -114,6 +114,11 @@ private:
             ++frontier->entries_;
             return {Visit::skip, 0};
         }
+        template <class State, class Values>
+        void made(const State& s, const Split& split,
+                  const Values& values) requires(requires { visitor->made(s, split, values); }) {
+            visitor->made(s, split, values);
+        }
         template <class State>
         void extract(const State&) {}
     };

@@ -30,9 +30,9 @@
 #include <memory>
 
 #include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/indicator_walk.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/derive_hanging.hpp>
-#include <nestgrid/levels.hpp>
 
 namespace nestgrid {
 
@@ -46,11 +46,21 @@ public:
     /// \param leaf_error errors of leaves in the place of offsets, such as a Kelly or residual
     ///        estimate; then thresholds have their unit. Called as double(const Element&) for every
     ///        leaf; not negative
+    /// \param executor of several threads, all of which call leaf_error, or of one (executor.hpp);
+    ///        the result does not depend on it
     /// \throw InvalidInput also where an error is negative or not a number
-    template <class Grid, class Field, class LeafError = detail::Nothing>
-        requires(std::is_same_v<LeafError, detail::Nothing> ||
-                 std::is_invocable_r_v<double, const LeafError&, const ElementOf<Grid>&>)
-    HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error = {});
+    template <class Grid, class Field, class LeafError, Executor E = SequentialExecutor>
+        requires(std::is_invocable_r_v<double, const LeafError&, const ElementOf<Grid>&>)
+    HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error,
+                          const E& executor = {})
+        : epoch_{nestgrid::epoch(grid)}, own_errors_{true} {
+        sweep(grid, field, leaf_error, executor);
+    }
+    template <class Grid, class Field, Executor E = SequentialExecutor>
+    HierarchicalIndicator(const Grid& grid, const Field& field, const E& executor = {})
+        : epoch_{nestgrid::epoch(grid)} {
+        sweep(grid, field, detail::Nothing{}, executor);
+    }
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
     NESTGRID_INLINE float stop(NodeKey node) const { return bfloat16_value(entry(node).stop); }
@@ -129,11 +139,11 @@ public:
 
     /// Whether elements that stop conform on a grid without hanging nodes, because each split makes
     /// one new node at most (bisection): a saturated S stops all elements at it, or none.
-    bool stops_conform() const { return largest_split_ <= 1; }
+    bool stops_conform() const { return facts_.largest_split <= 1; }
 
     /// The deepest level, where every split divides all edges and faces of its element, so that
     /// what lies on that level has no finer neighbour; else -1.
-    int finest_level() const { return finest_level_; }
+    int finest_level() const { return facts_.all_divided ? facts_.finest_level : -1; }
 
     /// Nodes that hang, where the grid did not say so itself: hand them to every Traversal.
     const HangingNodes* hanging() const { return hanging_.size() > 0 ? &hanging_ : nullptr; }
@@ -141,10 +151,10 @@ public:
     /// The largest difference between the field at a hanging node and its interpolant there, where
     /// the field gives one. Not 0 up to rounding: constraints were not distributed. The field is
     /// interpolated there all the same.
-    double hanging_violation() const { return hanging_violation_; }
+    double hanging_violation() const { return facts_.hanging_violation; }
 
-    double least() const { return least_; }        ///< of the values at all nodes
-    double greatest() const { return greatest_; }  ///< of the values at all nodes
+    double least() const { return facts_.least; }        ///< of the values at all nodes
+    double greatest() const { return facts_.greatest; }  ///< of the values at all nodes
     std::size_t node_count() const { return node_count_; }
     std::uint64_t epoch() const { return epoch_; }  ///< of the grid this was computed on
 
@@ -158,12 +168,6 @@ private:
         std::uint16_t stop;   // bfloat16, rounded up
         std::uint16_t bound;  // bfloat16, rounded up
     };
-    struct Node {
-        Entry entry{};
-        float offset = 0;  // |U_delta|, rounded up
-        float finer = 0;   // largest bound of finer nodes
-    };
-
     NESTGRID_INLINE Entry entry(NodeKey node) const {
         if (dense_ != nullptr) return dense_[static_cast<std::size_t>(node)];
         return sparse_entry(node);
@@ -173,34 +177,26 @@ private:
         return e == nullptr ? Entry{} : *e;
     }
 
-    void add_value(double value, double limit) {
-        if (!(std::abs(value) <= limit)) {
-            throw InvalidInput("a value of the field is not a usable number: " +
-                               std::to_string(value));
-        }
-        least_ = std::min(least_, value);
-        greatest_ = std::max(greatest_, value);
-    }
-
+    template <class Grid, class Field, class LeafError, class E>
+    void sweep(const Grid& grid, const Field& field, const LeafError& leaf_error,
+               const E& executor);
     // indicator_stars.hpp
     template <class Field>
     void add_values(const Field& field);
     template <class Grid, class Field>
     void sweep_stars(const Grid& grid, const Field& field);
     // indicator_levels.hpp
-    template <class Grid, class Field, class LeafError>
-    void sweep_levels(const Grid& grid, const Field& field, const LeafError& leaf_error);
+    class Sweeps;
+    template <class Grid, class Field, class LeafError, class E>
+    void sweep_levels(const Grid& grid, const Field& field, const LeafError& leaf_error,
+                      const E& executor);
 
     std::unique_ptr<Entry[]> dense_;  // by node, where keys are dense; else null
     KeyTable<NodeKey, Entry> sparse_;
     HangingNodes hanging_;
-    double least_ = std::numeric_limits<double>::infinity();
-    double greatest_ = -std::numeric_limits<double>::infinity();
+    detail::PrerollFacts facts_;
     std::size_t node_count_ = 0;
     std::uint64_t epoch_ = 0;
-    std::size_t largest_split_ = 0;  // number of new nodes
-    int finest_level_ = -1;
-    double hanging_violation_ = 0;
     bool own_errors_ = false;  // of leaves, instead of offsets
 };
 
@@ -212,20 +208,11 @@ concept KnowsStars = requires(const Grid& g, const Field& f) {
     f.value(NodeKey{});
 };
 
-/// |U - sum omega U| at a new node, rounded up.
-inline float offset_above(double value, double mean) {
-    return float_above(distance_above(value, mean));
-}
-inline float offset_above(float value, float mean) { return distance_above(value, mean); }
-
 }  // namespace detail
 
-template <class Grid, class Field, class LeafError>
-    requires(std::is_same_v<LeafError, detail::Nothing> ||
-             std::is_invocable_r_v<double, const LeafError&, const ElementOf<Grid>&>)
-HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& field,
-                                             const LeafError& leaf_error)
-    : epoch_{nestgrid::epoch(grid)}, own_errors_{!std::is_same_v<LeafError, detail::Nothing>} {
+template <class Grid, class Field, class LeafError, class E>
+void HierarchicalIndicator::sweep(const Grid& grid, const Field& field, const LeafError& leaf_error,
+                                  const E& executor) {
     static_assert(require_nested_grid<Grid>());
     static_assert(require_nodal_field<Field, Grid>());
     if (hanging_nodes_unknown(grid)) hanging_ = derive_hanging_nodes(grid);
@@ -235,7 +222,7 @@ HierarchicalIndicator::HierarchicalIndicator(const Grid& grid, const Field& fiel
             return;
         }
     }
-    sweep_levels(grid, field, leaf_error);
+    sweep_levels(grid, field, leaf_error, executor);
 }
 
 }  // namespace nestgrid

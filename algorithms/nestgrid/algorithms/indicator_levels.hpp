@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The preroll of any hierarchy: one walk, and sweeps over its splits, fine to coarse, since "a
-// depth first traversal of the hierarchy in the adjustment procedure would not be sufficient"
-// (paper, section 2). Included by indicator.hpp.
+// The preroll of any hierarchy: one walk (indicator_walk.hpp), and sweeps over its splits, fine to
+// coarse, since "a depth first traversal of the hierarchy in the adjustment procedure would not be
+// sufficient" (paper, section 2). Included by indicator.hpp.
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
@@ -12,172 +12,162 @@
 
 namespace nestgrid {
 
-namespace detail {
+/// All nodes and splits of a hierarchy, while their entries are computed.
+class HierarchicalIndicator::Sweeps {
+public:
+    /// \param dense how many dense keys there are, or 0
+    /// \param of_leaves whether `stop` comes from errors of leaves and not from offsets
+    Sweeps(std::size_t dense, bool of_leaves)
+        : number_of_{dense},
+          nodes_(number_of_.count()),
+          made_on_(nodes_.size(), 0),
+          splits_{nodes_.size()},
+          of_leaves_{of_leaves} {}
 
-/// A field on its way through a walk whose visitor has fetched the values at new nodes itself.
-template <class Grid, class Field>
-struct FetchedField {
-    using value_type = typename Field::value_type;
-    static constexpr int components = components_of<Field>();
+    template <class Offset>
+    void split(const detail::MetSplit& s, Offset&& offset);
+    void leaf(std::span<const NodeKey> corners, float error);
 
-    const Field* field;
-    const value_type* fetched;  ///< for the element inspected last
+    /// To be called when all splits are known.
+    void saturate();
 
-    NodeMask coarse_values(std::size_t i, std::span<value_type> out, Context<Grid>& context) const {
-        return call_coarse_values(*field, context, i, out);
+    std::size_t node_count() const { return nodes_.size(); }
+    bool numbers_are_keys() const { return number_of_.are_keys(); }
+    /// Calls function(key, entry) for every node.
+    template <class Function>
+    void for_each(Function&& function) const;
+
+private:
+    struct Node {
+        Entry entry{};
+        float offset = 0;  // |U_delta|, rounded up
+        float finer = 0;   // largest bound of finer nodes
+    };
+
+    std::span<const std::size_t> numbers(std::span<const NodeKey> keys) {
+        number_of_.find(keys, numbers_);
+        nodes_.resize(number_of_.count());
+        made_on_.resize(number_of_.count());
+        return std::span(numbers_).first(keys.size());
     }
-    NodeMask new_values(const ElementOf<Grid>&, NodeMask, std::span<value_type> out) const {
-        std::copy_n(fetched, out.size(), out.begin());
-        return 0;
-    }
+    bool sweep(std::size_t level);
+
+    NodeNumbers number_of_;
+    std::vector<Node> nodes_;
+    std::vector<std::uint8_t> made_on_;  // 1 + level, modulo 255; 0: not known yet
+    SplitsByLevel splits_;
+    bool of_leaves_;
+    bool one_sweep_ = true;  // is enough
+    std::array<std::size_t, max_corners + max_new_nodes> numbers_{};
 };
 
-}  // namespace detail
+template <class Offset>
+void HierarchicalIndicator::Sweeps::split(const detail::MetSplit& s, Offset&& offset) {
+    const Rule& rule = *s.rule;
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    const std::span<const std::size_t> number = numbers(s.keys);
+    one_sweep_ = one_sweep_ && rule.steps == 1;
+    const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        const std::size_t at = number[corners + n];
+        Node& node = nodes_[at];
+        const bool is_new = made_on_[at] == 0;
+        one_sweep_ = one_sweep_ && (is_new || made_on_[at] == level);
+        made_on_[at] = level;
+        if (is_new) node.offset = offset(n);  // every element that makes it has the same parents
+        const std::uint16_t own = (s.outside >> n & 1U) != 0 ? bfloat16_infinity
+                                  : of_leaves_               ? std::uint16_t{0}
+                                                             : bfloat16_above(node.offset);
+        node.entry.stop = std::max(node.entry.stop, own);
+    }
+    splits_.add(static_cast<std::size_t>(s.level), rule, number);
+}
 
-template <class Grid, class Field, class LeafError>
-void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
-                                         [[maybe_unused]] const LeafError& leaf_error) {
-    constexpr bool of_leaves = !std::is_same_v<LeafError, detail::Nothing>;
-    using Real = typename Field::value_type;
-    constexpr double limit = std::numeric_limits<Real>::max() / 8;
-    constexpr auto stride = static_cast<std::size_t>(detail::components_of<Field>());
-    std::array<Real, max_new_nodes * stride> given;
-    using Fetched = detail::FetchedField<Grid, Field>;
-    const Fetched fetched{&field, given.data()};
-    const Traversal<Grid, Fetched, Needs{.keys = true}> walk(grid, fetched, hanging());
-    NodeNumbers number_of(dense_key_count(grid));
-    std::vector<Node> nodes(number_of.count());
-    std::vector<std::uint8_t> made_on(nodes.size(), 0);  // 1 + level, modulo 255; 0: not known yet
-    SplitsByLevel splits(nodes.size());
-    bool one_sweep = true;
-    bool all_divided = true;
-    finest_level_ = 0;
-    std::array<NodeKey, max_corners> corner_keys;
-    std::array<std::size_t, max_corners + max_new_nodes> numbers;
+inline void HierarchicalIndicator::Sweeps::leaf(std::span<const NodeKey> corners, float error) {
+    for (const std::size_t at : numbers(corners)) {
+        std::uint16_t& stop = nodes_[at].entry.stop;
+        stop = std::max(stop, bfloat16_above(error));
+    }
+}
 
-    // Offsets, from the true values.
-    for_each_element<!of_leaves>(walk, [&](const auto& s, const Split& split) {
-        const auto corners = static_cast<std::size_t>(s.corner_count());
-        walk.keys(s, corner_keys);
-        number_of.find(std::span(corner_keys).first(corners), numbers);
-        number_of.find(split.keys, std::span(numbers).subspan(corners));
-        nodes.resize(number_of.count());
-        made_on.resize(number_of.count());
-        if (s.level == 0) {
-            for (std::size_t i = 0; i < corners; ++i) add_value(s.value[i * stride], limit);
-        }
-        if (split.rule == nullptr) {
-            if constexpr (of_leaves) {
-                const double error = leaf_error(s.element);
-                if (!(error >= 0)) {
-                    throw InvalidInput("the error of a leaf is not a usable number: " +
-                                       std::to_string(error));
-                }
-                for (std::size_t i = 0; i < corners; ++i) {
-                    std::uint16_t& stop = nodes[numbers[i]].entry.stop;
-                    stop = std::max(stop, bfloat16_above(float_above(error)));
-                }
-            }
-            return;
-        }
-        const Rule& rule = *split.rule;
-        largest_split_ = std::max(largest_split_, rule.new_nodes.size());
-        one_sweep = one_sweep && rule.steps == 1;
-        all_divided = all_divided && rule.divides_all;
-        finest_level_ = std::max(finest_level_, s.level + 1);
-        std::array<Real, max_corners + max_new_nodes> value;
-        for (std::size_t i = 0; i < corners; ++i) value[i] = s.value[i * stride];
-        const NodeMask which = rule.all() & ~split.constrained;
-        const NodeMask missing =
-            detail::call_new_values(field, *s.context, s.element, rule.all(),
-                                    std::span<Real>(given.data(), rule.new_nodes.size() * stride));
-        detail::require_no_missing(missing & which, s);
-        const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
-        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-            const Stencil& stencil = rule.new_nodes[n];
-            const std::size_t at = numbers[corners + n];
-            Node& node = nodes[at];
-            const bool is_new = made_on[at] == 0;
-            one_sweep = one_sweep && (is_new || made_on[at] == level);
-            made_on[at] = level;
-            if ((which >> n & 1U) == 0) {
-                value[corners + n] = detail::interpolate(stencil, value.data(), 1);
-                if ((missing >> n & 1U) == 0) {
-                    const double off = std::abs(static_cast<double>(given[n * stride]) -
-                                                static_cast<double>(value[corners + n]));
-                    if (!(off <= hanging_violation_)) hanging_violation_ = off;
-                }
-            } else {
-                value[corners + n] = given[n * stride];
-                add_value(given[n * stride], limit);
-                if (is_new) {  // every element that makes it has the same parents for it
-                    node.offset = detail::offset_above(
-                        value[corners + n], detail::interpolate(stencil, value.data(), 1));
-                }
-            }
-            const std::uint16_t own = (split.outside >> n & 1U) != 0 ? bfloat16_infinity
-                                      : of_leaves                    ? std::uint16_t{0}
-                                                                     : bfloat16_above(node.offset);
-            node.entry.stop = std::max(node.entry.stop, own);
-        }
-        splits.add(static_cast<std::size_t>(s.level), rule,
-                   std::span<const std::size_t>(numbers).first(corners + rule.new_nodes.size()));
-    });
-
-    if (!all_divided) finest_level_ = -1;
-
-    // Saturation and bounds: fine to coarse until nothing changes, since a node may be created on
-    // different levels of the tree. Where none is, one sweep does it.
+/// Fine to coarse until nothing changes, since a node may be created on different levels of the
+/// tree. Where none is, one sweep does it.
+inline void HierarchicalIndicator::Sweeps::saturate() {
     for (bool changed = true; changed;) {
         changed = false;
-        for (std::size_t level = splits.levels(); level-- > 0;) {
-            splits.for_each(level, [&](const Rule& rule, std::span<const std::size_t> of) {
-                const auto raise = [&](std::size_t at, std::uint16_t stop, float bound) {
-                    Node& node = nodes[at];
-                    if (node.entry.stop < stop || node.finer < bound) changed = true;
-                    node.entry.stop = std::max(node.entry.stop, stop);
-                    node.finer = std::max(node.finer, bound);
-                };
-                const auto corners = static_cast<std::size_t>(rule.corner_count());
-                const std::span<const std::size_t> made = of.subspan(corners);
-                std::uint16_t stop = 0;
-                float bound = 0;
-                for (std::size_t n = made.size(); n-- > 0;) {
-                    const Node node = nodes[made[n]];
-                    const float below = sum_above(node.offset, node.finer);
-                    stop = std::max(stop, node.entry.stop);
-                    bound = std::max(bound, below);
-                    if (rule.steps == 1) continue;
-                    // A parent that is a new node itself is to this one as a corner is.
-                    const Stencil& stencil = rule.new_nodes[n];
-                    for (std::size_t i = 0; i < stencil.count; ++i) {
-                        if (stencil.parent[i] < corners) continue;
-                        raise(of[stencil.parent[i]], node.entry.stop, below);
-                    }
-                }
-                if (rule.inside != no_new_node) {
-                    Entry& within = nodes[made[rule.inside]].entry;
-                    within.stop = std::max(within.stop, stop);
-                    within.bound = std::max(within.bound, bfloat16_above(bound));
-                }
-                for (const std::size_t corner : of.first(corners)) raise(corner, stop, bound);
-            });
-        }
-        changed = changed && !one_sweep;
+        for (std::size_t level = splits_.levels(); level-- > 0;) changed |= sweep(level);
+        changed = changed && !one_sweep_;
     }
-
-    for (Node& node : nodes) {
+    for (Node& node : nodes_) {
         node.entry.bound =
             std::max(node.entry.bound, bfloat16_above(sum_above(node.offset, node.finer)));
     }
-    node_count_ = nodes.size();
-    if (number_of.are_keys()) {
-        dense_ = std::make_unique<Entry[]>(nodes.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i) dense_[i] = nodes[i].entry;
+}
+
+/// \return whether anything has changed
+inline bool HierarchicalIndicator::Sweeps::sweep(std::size_t level) {
+    bool changed = false;
+    splits_.for_each(level, [&](const Rule& rule, std::span<const std::size_t> of) {
+        const auto raise = [&](std::size_t at, std::uint16_t stop, float bound) {
+            Node& node = nodes_[at];
+            if (node.entry.stop < stop || node.finer < bound) changed = true;
+            node.entry.stop = std::max(node.entry.stop, stop);
+            node.finer = std::max(node.finer, bound);
+        };
+        const auto corners = static_cast<std::size_t>(rule.corner_count());
+        const std::span<const std::size_t> made = of.subspan(corners);
+        std::uint16_t stop = 0;
+        float bound = 0;
+        for (std::size_t n = made.size(); n-- > 0;) {
+            const Node node = nodes_[made[n]];
+            const float below = sum_above(node.offset, node.finer);
+            stop = std::max(stop, node.entry.stop);
+            bound = std::max(bound, below);
+            if (rule.steps == 1) continue;
+            // A parent that is a new node itself is to this one as a corner is.
+            const Stencil& stencil = rule.new_nodes[n];
+            for (std::size_t i = 0; i < stencil.count; ++i) {
+                if (stencil.parent[i] < corners) continue;
+                raise(of[stencil.parent[i]], node.entry.stop, below);
+            }
+        }
+        if (rule.inside != no_new_node) {
+            Entry& within = nodes_[made[rule.inside]].entry;
+            within.stop = std::max(within.stop, stop);
+            within.bound = std::max(within.bound, bfloat16_above(bound));
+        }
+        for (const std::size_t corner : of.first(corners)) raise(corner, stop, bound);
+    });
+    return changed;
+}
+
+template <class Function>
+void HierarchicalIndicator::Sweeps::for_each(Function&& function) const {
+    if (!number_of_.are_keys()) {
+        number_of_.for_each([&](NodeKey key, std::size_t at) { function(key, nodes_[at].entry); });
+        return;
+    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        function(static_cast<NodeKey>(i), nodes_[i].entry);
+    }
+}
+
+template <class Grid, class Field, class LeafError, class E>
+void HierarchicalIndicator::sweep_levels(const Grid& grid, const Field& field,
+                                         const LeafError& leaf_error, const E& executor) {
+    const Traversal<Grid, Field, Needs{.keys = true}> walk(grid, field, hanging());
+    Sweeps sweeps(dense_key_count(grid), own_errors_);
+    facts_ = detail::walk_preroll(walk, leaf_error, sweeps, executor);
+    sweeps.saturate();
+    node_count_ = sweeps.node_count();
+    if (sweeps.numbers_are_keys()) {
+        dense_ = std::make_unique_for_overwrite<Entry[]>(node_count_);
+        sweeps.for_each([entries = dense_.get()](NodeKey key, const Entry& entry) {
+            entries[static_cast<std::size_t>(key)] = entry;
+        });
     } else {
-        sparse_.reserve(nodes.size());
-        number_of.for_each(
-            [&](NodeKey key, std::size_t at) { sparse_.insert(key, nodes[at].entry); });
+        sparse_.reserve(node_count_);
+        sweeps.for_each([&](NodeKey key, const Entry& entry) { sparse_.insert(key, entry); });
     }
 }
 

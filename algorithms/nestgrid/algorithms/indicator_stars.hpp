@@ -40,18 +40,19 @@ void HierarchicalIndicator::add_values(const Field& field) {
     }
     if (std::ranges::any_of(unusable, [](std::uint32_t u) { return u != 0; })) {
         for (std::size_t i = 0; i < node_count_; ++i) {
-            add_value(static_cast<double>(field.value(static_cast<NodeKey>(i))), double{limit});
+            facts_.add_value(static_cast<double>(field.value(static_cast<NodeKey>(i))), limit);
         }
     }
-    least_ = static_cast<double>(std::ranges::min(lo));
-    greatest_ = static_cast<double>(std::ranges::max(hi));
+    facts_.least = static_cast<double>(std::ranges::min(lo));
+    facts_.greatest = static_cast<double>(std::ranges::max(hi));
 }
 
 template <class Grid, class Field>
 void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     using Real = typename Field::value_type;
     node_count_ = grid.node_count();
-    largest_split_ = 1;  // a star is the midpoint of two nodes, the only one in its elements
+    facts_.all_divided = false;
+    facts_.largest_split = 1;  // a star is the midpoint of two nodes, the only one in its elements
     add_values(field);
     // Nodes of no element are in no row, and count as 0; a whole grid has none.
     bool in_rows = false;

@@ -240,6 +240,7 @@ private:
         std::array<MaskOf<Real>, most_blocks> signs{};  // of blocks
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
+    using VertexName = std::conditional_t<indexed, VertexNumbers::Name, Nothing>;
     static constexpr Number none = std::numeric_limits<Number>::max();
 
     // isosurface_steps.hpp
@@ -293,7 +294,7 @@ private:
     // isosurface_plain.hpp
     const Contour* plain_contour(Shape shape, unsigned bits);
     void draw_plainly(const State& s, Layer& layer, const Contour* contour, unsigned bits);
-    NESTGRID_NOINLINE Vertex add_closed(const State& s, std::uint8_t edge);
+    NESTGRID_NOINLINE Vertex add_closed(const State& s, std::uint8_t edge, const VertexName& name);
     template <class Vertices>
     void put_triangle(const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored);
     template <class Vertices>
@@ -326,6 +327,8 @@ private:
     Cut make_node(const State& s, std::size_t corner) const;
     template <class Make>
     Vertex add(const KeyPair& name, Make&& make);
+    template <class Make>
+    Vertex add_named(const VertexName& name, Make&& make);
     template <class Make>
     Number add_within(const VertexNumbers::Name& name, SubtreeFaces faces, Make&& make);
     Number add_new(const Cut& cut);
@@ -507,12 +510,13 @@ Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const 
                                                         const E& executor = {});
 
 /// The same with its own preroll: one call for one surface.
-template <class Grid, class Field>
+template <class Grid, class Field, Executor E = SequentialExecutor>
 Isosurface<Grid::dimension, ElementOf<Grid>> isosurface(const Grid& grid, const Field& field,
                                                         double isovalue,
-                                                        const IsosurfaceOptions& options = {}) {
-    const HierarchicalIndicator indicator(grid, field);
-    return isosurface(grid, field, isovalue, indicator, options);
+                                                        const IsosurfaceOptions& options = {},
+                                                        const E& executor = {}) {
+    const HierarchicalIndicator indicator(grid, field, executor);
+    return isosurface(grid, field, isovalue, indicator, options, executor);
 }
 
 }  // namespace nestgrid

@@ -38,10 +38,17 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
         const ContourLoop& loop = contour->loop[l];
         const std::size_t n = loop.count;
         std::array<Vertex, simplices ? 4 : max_edges> v;
+        std::array<VertexName, simplices ? 4 : max_edges> names;
+        if constexpr (indexed) {  // all of a loop, so that none waits for another one's slot
+            for (std::size_t i = 0; i < n; ++i) {
+                names[i] = layer.number_of.name(name(s, loop.edge[i]));
+                layer.number_of.prefetch(names[i]);
+            }
+        }
         for (std::size_t i = 0; i < n; ++i) {
             const std::uint8_t edge = loop.edge[i];
             if (s.closed.any && s.closed.edge[edge] != nullptr) {
-                v[i] = add_closed(s, edge);
+                v[i] = add_closed(s, edge, names[i]);
                 continue;
             }
             const auto& [a, b] = t.edge[edge];
@@ -57,7 +64,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
                 if constexpr (indexed) cut.node = {key_[low], key_[high]};
                 return cut;
             };
-            v[i] = add({key_[low], key_[high]}, make);
+            v[i] = add_named(names[i], make);
         }
         if (l == 0) layer.sink.add_element(s.element, s.shape, s.level);
         count_simplices(n <= 3 ? 1 : n - 2);
@@ -74,8 +81,8 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
 }
 
 /// A vertex on a closed edge.
-NESTGRID_VISITOR::add_closed(const State& s, std::uint8_t edge) -> Vertex {
-    return add(name(s, edge), [&] { return make_cut(s, *layer_, edge); });
+NESTGRID_VISITOR::add_closed(const State& s, std::uint8_t edge, const VertexName& name) -> Vertex {
+    return add_named(name, [&] { return make_cut(s, *layer_, edge); });
 }
 
 /// Three vertices of a loop; a segment of its first two in two dimensions.

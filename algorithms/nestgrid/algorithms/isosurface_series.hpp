@@ -19,10 +19,11 @@ class IsosurfaceSeries {
 public:
     using Result = Isosurface<Grid::dimension, ElementOf<Grid>>;
 
-    /// Does the preroll.
+    /// Does the preroll, by the threads of an executor.
     /// \throw InvalidInput, GridError as HierarchicalIndicator
-    IsosurfaceSeries(const Grid& grid, const Field& field)
-        : indicator_{grid, field},
+    template <Executor E = SequentialExecutor>
+    IsosurfaceSeries(const Grid& grid, const Field& field, const E& executor = {})
+        : indicator_{grid, field, executor},
           criterion_{&indicator_, 0},
           walk_{grid, field, indicator_.hanging()} {}
     IsosurfaceSeries(const IsosurfaceSeries&) = delete;

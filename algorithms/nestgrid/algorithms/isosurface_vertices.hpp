@@ -77,7 +77,19 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add(con
     if constexpr (!indexed) {
         return make().x;
     } else {
-        return add_within(layer_->number_of.name(name), root_faces | subtree_faces, make);
+        return add_named(layer_->number_of.name(name), make);
+    }
+}
+
+/// The same with the name that it has in the table, where there is one.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Make>
+NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_named(
+    [[maybe_unused]] const VertexName& name, Make&& make) -> Vertex {
+    if constexpr (!indexed) {
+        return make().x;
+    } else {
+        return add_within(name, root_faces | subtree_faces, make);
     }
 }
 

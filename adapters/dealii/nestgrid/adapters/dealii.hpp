@@ -7,10 +7,12 @@
 // Elements are cells of any level, nodes are deal.II's vertices, whose indices are shared by all
 // levels: they are the node keys. Quadrilaterals and hexahedra may be refined locally, simplices
 // everywhere or locally; refinement must be isotropic.
-// Kept beside the triangulation: one bit per vertex, whether it hangs; it follows every refinement.
+// Kept beside the triangulation: one byte per vertex, whether it hangs; it follows every
+// refinement, looked for by deal.II's own threads (dealii::MultithreadInfo).
 #pragma once
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/parallel.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe.h>
 #include <deal.II/fe/mapping.h>
@@ -105,9 +107,12 @@ private:
         return result;
     }
     std::vector<PlacedChild> simplex_children(const Cell& c) const;
+    template <class Function>
+    void for_each_cell(Function&& f) const;
     template <class Object>
     void mark(const Object& line_or_face, int level, bool lines_too,
               const std::vector<std::uint8_t>& finest);
+    void find_rules();
     void update();
 
     const Triangulation* triangulation_;
@@ -116,7 +121,7 @@ private:
     bool all_cubes_ = false;
     RuleTable simplex_rules_;
     const Rule* only_simplex_rule_ = nullptr;
-    std::vector<bool> hangs_;  // by vertex
+    std::vector<std::uint8_t> hangs_;  // by vertex
     std::uint64_t epoch_ = 0;
     boost::signals2::scoped_connection refined_;
 };

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 
 #include <nestgrid/adapters/dealii.hpp>
@@ -140,7 +141,7 @@ void DealiiGrid<dim, spacedim>::mark(const Object& object, int level, bool lines
     if (!object->has_children()) return;
     if (is_line || object->n_vertices() == 4) {
         const unsigned middle = object->child(0)->vertex_index(is_line ? 1 : 3);
-        hangs_[middle] = true;
+        std::atomic_ref(hangs_[middle]).store(1, std::memory_order_relaxed);
         if (finest[middle] <= level + 1) return;
     }
     for (unsigned i = 0; i < object->n_children(); ++i) {
@@ -148,29 +149,61 @@ void DealiiGrid<dim, spacedim>::mark(const Object& object, int level, bool lines
     }
 }
 
+/// Calls f(cell) for the cells of all levels: several threads of deal.II do.
+template <int dim, int spacedim>
+template <class Function>
+void DealiiGrid<dim, spacedim>::for_each_cell(Function&& f) const {
+    using Accessor = dealii::CellAccessor<dim, spacedim>;
+    for (unsigned level = 0; level < triangulation_->n_levels(); ++level) {
+        dealii::parallel::apply_to_subranges(
+            0U, triangulation_->n_raw_cells(level),
+            [&](unsigned first, unsigned last) {
+                for (unsigned i = first; i < last; ++i) {
+                    if (Accessor(triangulation_, int(level), int(i)).used()) {
+                        f(cell({int(level), int(i)}));
+                    }
+                }
+            },
+            4096);
+    }
+}
+
+/// What divides the cells that are not all cubes.
+template <int dim, int spacedim>
+void DealiiGrid<dim, spacedim>::find_rules() {
+    only_simplex_rule_ = nullptr;
+    for (const auto& c : triangulation_->cell_iterators()) {
+        if (!c->has_children() || c->n_vertices() == unsigned{max_corners}) continue;
+        only_simplex_rule_ = &simplex_rules_.add(shape(c), simplex_children(c));
+    }
+    if (simplex_rules_.size() > 1) only_simplex_rule_ = nullptr;
+}
+
 template <int dim, int spacedim>
 void DealiiGrid<dim, spacedim>::update() {
     all_cubes_ = triangulation_->all_reference_cells_are_hyper_cube();
+    if (!all_cubes_) find_rules();
     const auto corners_of = [&](const Cell& c) {
         return all_cubes_ ? unsigned{max_corners} : c->n_vertices();
     };
-    hangs_.assign(triangulation_->n_vertices(), false);
-    only_simplex_rule_ = nullptr;
+    hangs_.assign(triangulation_->n_vertices(), 0);
     std::vector<std::uint8_t> finest(triangulation_->n_vertices(), 0);  // level around a vertex
-    for (const auto& c : triangulation_->cell_iterators()) {
+    for_each_cell([&](const Cell& c) {
         if (!c->has_children()) {
+            const auto level = static_cast<std::uint8_t>(c->level());
             for (unsigned k = 0; k < corners_of(c); ++k) {
-                std::uint8_t& level = finest[c->vertex_index(k)];
-                level = std::max(level, static_cast<std::uint8_t>(c->level()));
+                const std::atomic_ref at(finest[c->vertex_index(k)]);
+                std::uint8_t known = at.load(std::memory_order_relaxed);
+                while (known < level &&
+                       !at.compare_exchange_weak(known, level, std::memory_order_relaxed)) {
+                }
             }
-        } else if (corners_of(c) != unsigned{max_corners}) {
-            only_simplex_rule_ = &simplex_rules_.add(shape(c), simplex_children(c));
-        } else if (c->n_children() != unsigned{max_children}) {
+        } else if (corners_of(c) == unsigned{max_corners} &&
+                   c->n_children() != unsigned{max_children}) {
             throw InvalidInput("cell " + c->id().to_string() +
                                " is refined in some directions only");
         }
-    }
-    if (simplex_rules_.size() > 1) only_simplex_rule_ = nullptr;
+    });
     if constexpr (dim > 1) {
         // Corners of the lines and faces of a cube, one bit each.
         using Cube = dealii::GeometryInfo<dim>;
@@ -185,13 +218,14 @@ void DealiiGrid<dim, spacedim>::update() {
                 face[f] |= 1U << Cube::face_to_cell_vertices(f, k);
             }
         }
-        for (const auto& c : triangulation_->active_cell_iterators()) {
+        for_each_cell([&](const Cell& c) {
+            if (c->has_children()) return;
             // Where an edge or a face is refined on another side, so are cells at all its corners.
             unsigned finer = 0;
             for (unsigned k = 0; k < corners_of(c); ++k) {
                 finer |= unsigned{finest[c->vertex_index(k)] > c->level()} << k;
             }
-            if (std::popcount(finer) < 2) continue;
+            if (std::popcount(finer) < 2) return;
             const bool simplex = corners_of(c) != unsigned{max_corners};
             const auto may_be_refined = [&](unsigned corners) {
                 return simplex || (finer & corners) == corners;
@@ -206,7 +240,7 @@ void DealiiGrid<dim, spacedim>::update() {
                     if (may_be_refined(face[f])) mark(c->face(f), c->level(), false, finest);
                 }
             }
-        }
+        });
     }
 }
 
