@@ -7,7 +7,7 @@
 
 #include <chrono>
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_series.hpp>
 
 using Clock = std::chrono::steady_clock;
 
@@ -24,20 +24,18 @@ struct Run {
     double leaves = 0;
 };
 
-/// Two surfaces, the first of them counted from `start`.
+/// Two surfaces of a series, the first of them counted from `start`.
 template <class Grid, class Field, class E = nestgrid::SequentialExecutor>
 void time_isosurfaces(const Grid& grid, const Field& field, double threshold,
                       Clock::time_point start, Run& run, const E& executor = {}) {
-    const nestgrid::HierarchicalIndicator indicator(grid, field, executor);
+    nestgrid::IsosurfaceSeries series(grid, field, executor);
     const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
-    {
-        const auto result = nestgrid::isosurface(grid, field, 0.0, indicator, options, executor);
-        run.first = seconds_since(start);
-        run.triangles = static_cast<double>(result.surface.simplices.size());
-        run.visited = static_cast<double>(result.counts.visited);
-    }
+    const auto& result = series.draw(0.0, options, executor);
+    run.first = seconds_since(start);
+    run.triangles = static_cast<double>(result.surface.simplices.size());
+    run.visited = static_cast<double>(result.counts.visited);
     const auto again = Clock::now();
-    nestgrid::isosurface(grid, field, 1e-3, indicator, options, executor);
+    series.draw(1e-3, options, executor);
     run.next = seconds_since(again);
 }
 
