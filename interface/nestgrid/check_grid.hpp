@@ -26,7 +26,7 @@ namespace nestgrid {
 /// What can be violated.
 enum class Law : std::uint8_t {
     rule,            ///< weights, children inside their father, volume, orientation of a rule
-    rule_shape,      ///< split() gave a rule for another shape
+    rule_shape,      ///< split() gave a rule for another shape, or with another one than promised
     split_repeats,   ///< split() answers the same when asked twice
     coarse_element,  ///< finite, not flat, oriented as said, distinct ids, right dimension
     coarse_node,     ///< one id, one place

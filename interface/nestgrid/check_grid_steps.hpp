@@ -32,6 +32,9 @@ public:
     }
 
 private:
+    static constexpr Shape only_ = only_shape<Grid>();
+    const std::string promised_ = ", but the grid says that all elements are " +
+                                  std::string(topology(only_).name) + "s";
     static constexpr std::size_t components_ = static_cast<std::size_t>(components_of<Field>());
     using Values = std::array<Real, components_>;
     using Weights = std::array<double, max_corners>;  // over the corners of the coarse element
@@ -138,6 +141,9 @@ void GridChecker<Grid, Field>::check_coarse(std::size_t i) {
     if (t.dimension != Grid::dimension) {
         fail(Law::coarse_element, who + " is a " + std::string(t.name) +
                                       " on a grid of dimension " + std::to_string(Grid::dimension));
+    }
+    if (only_ != Shape::point && c.shape != only_) {
+        fail(Law::coarse_element, who + " is a " + std::string(t.name) + promised_);
     }
     for (std::size_t k = 0; k < t.corners; ++k) {
         if (!std::isfinite(norm(c.corners[k]))) {

@@ -187,6 +187,10 @@ void GridChecker<Grid, Field>::walk(const State& s) {
             }
         }
         const Child& child = rule->children[k];
+        if (only_ != Shape::point && child.shape != only_) {
+            fail(Law::rule_shape, "child " + std::to_string(k) + " of " + name(s.step) + " is a " +
+                                      std::string(topology(child.shape).name) + promised_);
+        }
         State next;
         next.element = children[k];
         next.shape = child.shape;

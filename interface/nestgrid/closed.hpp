@@ -6,9 +6,9 @@
 // above the division.
 //
 // Invariants, for an element on the way down:
-//   - closed.edge[e] is the maximal edge around edge e: the longest one on which all nodes are
+//   - closed.edge(e) is the maximal edge around edge e: the longest one on which all nodes are
 //     interpolated; or null, where that is the edge itself;
-//   - closed.face[f] is the least closed face that face f is a proper part of, or null;
+//   - closed.face(f) is the least closed face that face f is a proper part of, or null;
 //     `outer` leads from it to the greater ones.
 // Consequence: a cut is named by, and computed from, its maximal edge, so that elements on both
 // sides of a change of level find the same; and what is drawn below a closed face can be told to
@@ -16,6 +16,7 @@
 // They live in the frames of the splits that closed them: valid while the element is on the stack.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -56,11 +57,23 @@ template <class State, class Real, std::size_t components, std::size_t corners>
 struct ClosedParts {
     using Edge = MaximalEdge<State, Real, components>;
     static constexpr std::size_t edges = corners == 3 ? 3 : corners <= 4 ? 6 : max_edges;
-    static constexpr std::size_t faces = corners == 3 ? 3 : corners == 4 ? 4 : max_faces;
+    static constexpr std::size_t rule_edges = corners <= 4 ? 12 : max_rule_edges;
 
     bool any;  ///< otherwise nothing else is set
-    std::array<const Edge*, edges> edge;
-    std::array<const ClosedFace*, faces> face;
+    const Child* child;  ///< the element in the rule that made it
+    /// Around the edges of that rule and around parts of its faces; behind them null.
+    const Edge* const* around_edge;
+    const ClosedFace* const* around_face;
+
+    const Edge* edge(std::size_t e) const {
+        static_assert(no_edge >= rule_edges);
+        return any ? around_edge[std::min<std::size_t>(child->rule_edge[e], rule_edges)] : nullptr;
+    }
+    const ClosedFace* face(std::size_t f) const {
+        static_assert(no_face >= max_rule_faces);
+        if (!any) return nullptr;
+        return around_face[std::min<std::size_t>(child->rule_face[f], max_rule_faces)];
+    }
 };
 
 }  // namespace nestgrid

@@ -14,32 +14,24 @@ namespace nestgrid {
 template <class Grid, class Field, Needs needs>
 struct Traversal<Grid, Field, needs>::Parts {
     using Closed = typename State::Closed;
-    static constexpr std::size_t edges =
-        State::capacity <= 4 ? std::size_t{12} : std::size_t{max_rule_edges};
+    static constexpr std::size_t edges = Closed::rule_edges;
 
     std::array<typename Closed::Edge, edges> closed_edge;
     std::array<const typename Closed::Edge*, edges + 1> edge;  // around each edge of the rule
     std::array<ClosedFace, max_rule_faces> closed_face;
     std::array<const ClosedFace*, max_rule_faces + 1> face;  // around parts of each of its faces
+    std::uint32_t edges_closed = 0;                          // those around which there is any
+    std::uint32_t faces_closed = 0;
 
     Parts() {
         edge[edges] = nullptr;  // around those that are no edges of the rule
         face[max_rule_faces] = nullptr;
     }
 
-    void give(const Child& child, const Topology& t, Closed& closed) const {
-        bool any = false;
-        for (std::size_t e = 0; e < t.edges; ++e) {
-            static_assert(no_edge >= edges);
-            closed.edge[e] = edge[std::min<std::size_t>(child.rule_edge[e], edges)];
-            any |= closed.edge[e] != nullptr;
-        }
-        for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
-            static_assert(no_face >= max_rule_faces);
-            closed.face[f] = face[std::min<std::size_t>(child.rule_face[f], max_rule_faces)];
-            any |= closed.face[f] != nullptr;
-        }
-        closed.any = any;
+    Closed of(const Child& child) const {
+        const bool any =
+            ((edges_closed & child.rule_edges) | (faces_closed & child.rule_faces)) != 0;
+        return {any, &child, edge.data(), face.data()};
     }
 };
 
@@ -73,11 +65,10 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
         }
         for (std::size_t e = 0; e < rule.edges.size(); ++e) {
             const RuleEdge& edge = rule.edges[e];
-            parts.edge[e] = s.closed.any && e < t.edges ? s.closed.edge[e] : nullptr;
-            if (edge.inner == 0) continue;
+            parts.edge[e] = e < t.edges ? s.closed.edge(e) : nullptr;
             if ((edge.inner & ~nodes.mean) != 0) {
                 parts.edge[e] = nullptr;
-            } else if (parts.edge[e] == nullptr) {
+            } else if (parts.edge[e] == nullptr && edge.inner != 0) {
                 auto& closed = parts.closed_edge[e];
                 closed.end = edge.end;
                 closed.element = &s;
@@ -92,12 +83,13 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
                 }
                 parts.edge[e] = &closed;
             }
+            parts.edges_closed |= std::uint32_t{parts.edge[e] != nullptr} << e;
         }
         for (std::size_t f = 0; f < rule.faces.size(); ++f) {
             const RuleFace& face = rule.faces[f];
-            parts.face[f] = face.parent != no_face ? parts.face[face.parent]
-                            : s.closed.any         ? s.closed.face[f]
-                                                   : nullptr;
+            parts.face[f] =
+                face.parent != no_face ? parts.face[face.parent] : s.closed.face(f);
+            parts.faces_closed |= std::uint32_t{parts.face[f] != nullptr} << f;
             if (!face.divided || (face.inner & ~nodes.mean) != 0) continue;
             std::array<NodeKey, 4> loop;
             for (std::size_t i = 0; i < face.corners; ++i) loop[i] = key(face.corner[i]);
@@ -109,6 +101,7 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
             }
             parts.closed_face[f] = {face_key(of), parts.face[f], divided_by};
             parts.face[f] = &parts.closed_face[f];
+            parts.faces_closed |= std::uint32_t{1} << f;
         }
     }
 }

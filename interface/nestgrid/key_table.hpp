@@ -36,7 +36,7 @@ public:
 
     /// The value of `key` and whether it is new; new ones start as `value`.
     std::pair<Value*, bool> insert(const Key& key, const Value& value) {
-        if (2 * (size_ + 1) > slots_.size()) rehash(slots_.empty() ? 64 : 2 * slots_.size());
+        if (2 * (size_ + 1) > slots_.size()) grow();
         Slot& slot = slots_[place(key)];
         if (slot.used) return {&slot.value, false};
         slot = {key, value, true};
@@ -97,6 +97,11 @@ private:
         return at;
     }
 
+    void grow() {
+        // Twice the memory of a small table costs nothing, and moving its slots less often does.
+        const std::size_t factor = slots_.size() < (std::size_t{1} << 14U) ? 4 : 2;
+        rehash(slots_.empty() ? 64 : factor * slots_.size());
+    }
     void rehash(std::size_t capacity) {
         std::vector<Slot> old(capacity);
         old.swap(slots_);

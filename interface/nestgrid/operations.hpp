@@ -37,6 +37,11 @@
 //         random access, with for_each_star_row
 //     std::uint64_t epoch()
 //         changes with the grid: tells stale prerolls
+// It may also name constants, from which the sizes of arrays and the lengths of loops follow:
+//     static constexpr int max_corners, max_new_nodes, max_children
+//         of its elements and rules; default: those of all shapes and rules
+//     static constexpr Shape only_shape
+//         of all elements; default: simplices where there are no more corners, else any
 // and a field
 //     void corner_gradients(e, std::span<Point> out)   gradients at the corners, per unit length
 //     value_type value(NodeKey)                        random access, with for_each_star_row

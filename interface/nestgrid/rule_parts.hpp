@@ -163,6 +163,15 @@ inline void place_in_parts(Rule& rule) {
             }
         }
     }
+    static_assert(max_rule_edges <= 32 && max_rule_faces <= 32);
+    for (Child& child : rule.children) {
+        for (const std::uint8_t e : child.rule_edge) {
+            if (e != no_edge) child.rule_edges |= 1U << e;
+        }
+        for (const std::uint8_t f : child.rule_face) {
+            if (f != no_face) child.rule_faces |= 1U << f;
+        }
+    }
     NodeMask around = 0;
     for (const RuleEdge& edge : rule.edges) around |= edge.inner;
     for (const RuleFace& face : rule.faces) around |= face.inner;

@@ -80,6 +80,20 @@ constexpr std::size_t child_capacity() {
         return max_children;
     }
 }
+/// Of all elements, where it is known when the grid is compiled; else Shape::point.
+template <class Grid>
+constexpr Shape only_shape() {
+    constexpr bool simplices = corner_capacity<Grid>() == std::size_t{Grid::dimension} + 1;
+    if constexpr (requires { Grid::only_shape; }) {
+        return Grid::only_shape;
+    } else if constexpr (simplices) {
+        return Grid::dimension == 1   ? Shape::segment
+               : Grid::dimension == 2 ? Shape::triangle
+                                      : Shape::tetrahedron;
+    } else {
+        return Shape::point;
+    }
+}
 template <class Grid>
 constexpr bool by_heart(Feature feature) {
     return may_offer<Grid>(feature) && !DecidesAtRunTime<Grid>;
@@ -120,19 +134,19 @@ struct ElementState {
     std::uint8_t interpolated;  ///< corners whose value is interpolated by S, one bit each
     const Rule* made_by;        ///< the father's rule, and
     std::uint8_t child;         ///< this element's number in it
+    [[no_unique_address]] detail::CarriedIf<needs.closed, NodeKey> path;  ///< a hash of the way down
     std::array<Real, capacity * components> value;  ///< P_S U at the corners
     [[no_unique_address]] detail::CarriedIf<carries_keys, std::array<NodeKey, capacity>> key;
     [[no_unique_address]] detail::CarriedIf<carries_positions, std::array<Point, capacity>>
         position;
     [[no_unique_address]] detail::CarriedIf<needs.closed, Closed> closed;
 
-    int corner_count() const {
-        if constexpr (capacity == static_cast<std::size_t>(Grid::dimension) + 1) {
-            return Grid::dimension + 1;  // nothing but simplices, so that loops are unrolled
-        } else {
-            return topology(shape).corners;
-        }
+    /// Of its shape; where all elements have one, loops over it are unrolled.
+    constexpr const Topology& topology() const {
+        constexpr Shape only = detail::only_shape<Grid>();
+        return nestgrid::topology(only == Shape::point ? shape : only);
     }
+    constexpr int corner_count() const { return topology().corners; }
 };
 
 /// Walks a grid with a field on it. Construction looks at the coarse grid once; the walk itself

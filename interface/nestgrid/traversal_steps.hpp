@@ -92,7 +92,15 @@ bool Traversal<Grid, Field, needs>::make_coarse(std::size_t i, State& s) const {
     s.interpolated = 0;
     s.made_by = nullptr;
     s.child = 0;
-    if constexpr (needs.closed) s.closed.any = false;
+    if constexpr (needs.closed) {
+        s.closed.any = false;
+        s.path = detail::mix(static_cast<NodeKey>(i));
+    }
+    if (constexpr Shape only = detail::only_shape<Grid>(); only != Shape::point && s.shape != only) {
+        throw GridError("coarse element " + std::to_string(i) + " is a " +
+                        std::string(topology(s.shape).name) + ", but the grid says that all are " +
+                        std::string(topology(only).name) + "s");
+    }
     if constexpr (may_offer<Grid>(Feature::masked)) {
         if (offers(*grid_, Feature::masked) && detail::call_masked(*grid_, *s.context, s.element)) {
             return false;
@@ -265,14 +273,18 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
         }
         for (std::size_t i = 0; any_interpolated && i < child_corners; ++i) {
             const std::size_t n = child.corner[i];
-            const NodeMask flag = (n < corners ? NodeMask{s.interpolated} >> n
-                                               : nodes.interpolated >> (n - corners)) &
-                                  1U;
-            k.interpolated |= static_cast<std::uint8_t>(flag << i);
+            NodeMask flag = NodeMask{s.interpolated} >> n;
+            if constexpr (node_capacity_ <= 64) {
+                flag = (s.interpolated | nodes.interpolated << corners) >> n;
+            } else if (n >= corners) {
+                flag = nodes.interpolated >> (n - corners);
+            }
+            k.interpolated |= static_cast<std::uint8_t>((flag & 1U) << i);
         }
         if constexpr (needs.closed) {
+            k.path = s.path * NodeKey{0x9e3779b97f4a7c15ULL} + c + 1U;
             k.closed.any = false;
-            if (parts != nullptr) parts->give(child, t, k.closed);
+            if (parts != nullptr) k.closed = parts->of(child);
         }
         inspect(k, visitor);
     }
@@ -294,8 +306,8 @@ void Traversal<Grid, Field, needs>::project(const State& s, const Split& split,
         detail::require_no_missing(missing & which, s);
     }
     if ((mean & rule.all()) == 0) return;
-    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-        if ((mean >> n & 1U) == 0) continue;
+    for (NodeMask left = mean & rule.all(); left != 0; left &= left - 1) {
+        const auto n = static_cast<std::size_t>(std::countr_zero(left));
         for (std::size_t q = 0; q < c_count; ++q) {
             value[(corners + n) * c_count + q] =
                 detail::interpolate(rule.new_nodes[n], value, c_count, q);

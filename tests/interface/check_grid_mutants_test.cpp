@@ -3,9 +3,12 @@
 //
 // Every law of check_grid has a mutator that breaks it at a random place of a random grid; more
 // than a thousand mutants, each named by the right law and a sentence.
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include <nestgrid/check_grid.hpp>
+#include <nestgrid/levels.hpp>
 
 #include "mutant.hpp"
 
@@ -302,6 +305,50 @@ TEST_P(Mutants, AreNamed) {
     int made = run_mutants<3>(law);
     if (law != Law::one_stencil) made += run_mutants<2>(law);
     EXPECT_GE(made, law == Law::one_stencil ? mutants_per_law / 2 : mutants_per_law);
+}
+
+/// A square, divided into a triangle and a quadrilateral.
+template <Shape promised>
+struct Square {
+    using Element = int;
+    static constexpr int dimension = 2;
+    static constexpr Shape only_shape = promised;
+    Rule rule = make_rule("cut", Shape::quadrilateral, {mean_of({0, 1})},
+                          {Child{.shape = Shape::triangle, .corner = {0, 4, 2}},
+                           Child{.shape = Shape::quadrilateral, .corner = {4, 1, 2, 3}}});
+    std::size_t coarse_count() const { return 1; }
+    CoarseElement<int> coarse(std::size_t) const {
+        CoarseElement<int> c;
+        c.shape = Shape::quadrilateral;
+        for (std::size_t k = 0; k < 4; ++k) {
+            c.corners[k] = topology(c.shape).reference[k];
+            c.ids[k] = k;
+        }
+        return c;
+    }
+    const Rule* split(int e) const { return e == 0 ? &rule : nullptr; }
+    void children(int, std::span<int> out) const { std::iota(out.begin(), out.end(), 1); }
+};
+
+template <Shape promised>
+std::optional<GridViolation> check_square() {
+    return check_grid(Square<promised>{}, ZeroField<Square<promised>>{});
+}
+
+TEST(Promises, OfOneShapeAreKept) {
+    EXPECT_FALSE(check_square<Shape::point>());  // nothing promised
+
+    const auto child = check_square<Shape::quadrilateral>();
+    ASSERT_TRUE(child);
+    EXPECT_EQ(child->law, Law::rule_shape) << child->sentence;
+
+    const auto coarse = check_square<Shape::triangle>();
+    ASSERT_TRUE(coarse);
+    EXPECT_EQ(coarse->law, Law::coarse_element) << coarse->sentence;
+    using Wrong = Square<Shape::triangle>;
+    const Wrong grid;
+    const ZeroField<Wrong> zero;
+    EXPECT_THROW(count_levels(Traversal<Wrong, ZeroField<Wrong>>(grid, zero)), GridError);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, Mutants, testing::Range(0, int(Law::hidden) + 1));

@@ -37,16 +37,15 @@ namespace detail {
 /// bit, as those of boxes along the axes are.
 template <std::size_t n>
 bool is_parallelepiped(std::span<const Point, n> x) {
+    bool same = true;  // no branch on each: nobody could predict where they end
     for (std::size_t i = 3; i < n; ++i) {
         if (std::has_single_bit(i)) continue;
         const std::size_t first = i & (~i + 1);
         for (std::size_t d = 0; d < 3; ++d) {
-            if (x[i][d] - x[0][d] != (x[first][d] - x[0][d]) + (x[i - first][d] - x[0][d])) {
-                return false;
-            }
+            same &= x[i][d] - x[0][d] == (x[first][d] - x[0][d]) + (x[i - first][d] - x[0][d]);
         }
     }
-    return true;
+    return same;
 }
 
 /// The same residual: there the fit is the mean and half the mean difference in each direction.

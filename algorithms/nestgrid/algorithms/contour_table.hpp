@@ -63,7 +63,8 @@ struct FaceContour {
     std::array<FaceSegment, 2> segment{};
 };
 
-constexpr FaceContour face_contour(std::size_t corners, unsigned signs, bool joined) {
+namespace detail {
+constexpr FaceContour make_face_contour(std::size_t corners, unsigned signs, bool joined) {
     FaceContour contour;
     const auto positive = [&](std::size_t i) { return (signs >> (i % corners) & 1U) != 0; };
     const bool alternating = corners == 4 && (signs == 5 || signs == 10);
@@ -81,6 +82,24 @@ constexpr FaceContour face_contour(std::size_t corners, unsigned signs, bool joi
     return contour;
 }
 
+inline constexpr auto face_contours = [] {
+    std::array<std::array<std::array<FaceContour, 2>, 16>, 5> contours{};
+    for (const std::size_t corners : {3U, 4U}) {
+        for (unsigned signs = 0; signs < 1U << corners; ++signs) {
+            for (const bool joined : {false, true}) {
+                contours[corners][signs][joined ? 1 : 0] = make_face_contour(corners, signs, joined);
+            }
+        }
+    }
+    return contours;
+}();
+}  // namespace detail
+
+/// The segments on a face of three or four corners.
+constexpr const FaceContour& face_contour(std::size_t corners, unsigned signs, bool joined) {
+    return detail::face_contours[corners][signs][joined ? 1 : 0];
+}
+
 /// The contours of one shape.
 class ContourTable {
 public:
@@ -90,6 +109,11 @@ public:
     /// Faces whose signs alternate, one bit each; bit i of `pattern` says that corner i has U >= C.
     /// In two dimensions bit 0 stands for the element itself.
     unsigned alternating(unsigned pattern) const { return alternating_[pattern]; }
+
+    /// Edges whose ends have different signs, one bit each.
+    unsigned cut_edges(unsigned pattern) const { return cut_edges_[pattern]; }
+    /// Faces with such edges, one bit each; 1 in two dimensions.
+    unsigned cut_faces(unsigned pattern) const { return cut_faces_[pattern]; }
 
     /// \param joined which alternating faces join their corners with U >= C, one bit each
     const Contour& at(unsigned pattern, unsigned joined = 0) const {
@@ -123,6 +147,8 @@ private:
     Shape shape_;
     const Topology* topology_;
     std::vector<std::uint8_t> alternating_;
+    std::vector<std::uint16_t> cut_edges_;
+    std::vector<std::uint8_t> cut_faces_;
     std::vector<std::uint32_t> first_;
     std::vector<std::uint8_t> plain_;
     std::vector<Contour> contours_;

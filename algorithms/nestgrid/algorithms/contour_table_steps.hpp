@@ -39,15 +39,27 @@ inline FaceTopology ContourTable::face(std::size_t f) const {
 inline ContourTable::ContourTable(Shape shape) : shape_{shape}, topology_{&topology(shape)} {
     const unsigned patterns = 1U << topology_->corners;
     for (unsigned pattern = 0; pattern < patterns; ++pattern) {
+        std::uint16_t cut_edges = 0;
+        for (std::size_t e = 0; e < topology_->edges; ++e) {
+            const auto& [a, b] = topology_->edge[e];
+            cut_edges |= static_cast<std::uint16_t>(((pattern >> a ^ pattern >> b) & 1U) << e);
+        }
+        cut_edges_.push_back(cut_edges);
         std::uint8_t alternating = 0;
+        std::uint8_t cut_faces = 0;
         for (std::size_t f = 0; f < face_count(); ++f) {
             const FaceTopology loop = face(f);
-            if (loop.corners != 4) continue;
             unsigned signs = 0;
-            for (std::size_t i = 0; i < 4; ++i) signs |= (pattern >> loop.corner[i] & 1U) << i;
+            for (std::size_t i = 0; i < loop.corners; ++i) {
+                signs |= (pattern >> loop.corner[i] & 1U) << i;
+            }
+            const bool cut = signs != 0 && signs != (1U << loop.corners) - 1;
+            cut_faces |= static_cast<std::uint8_t>(unsigned{cut} << f);
+            if (loop.corners != 4) continue;
             if (signs == 5 || signs == 10) alternating |= static_cast<std::uint8_t>(1U << f);
         }
         alternating_.push_back(alternating);
+        cut_faces_.push_back(cut_faces);
         first_.push_back(static_cast<std::uint32_t>(contours_.size()));
         const unsigned choices = 1U << std::popcount(alternating);
         for (unsigned choice = 0; choice < choices; ++choice) {

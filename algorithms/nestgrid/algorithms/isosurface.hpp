@@ -167,7 +167,7 @@ public:
     /// The second time, those that lead to what is not drawn yet.
     NodeMask children_to_enter(const State& s) const {
         if (!finishing_) return ~NodeMask{0};
-        const NodeMask* children = enter_->find(path(s));
+        const NodeMask* children = enter_->find(s.path);
         return children == nullptr ? 0 : *children;
     }
     /// What hidden elements would draw on faces around them is recorded all the same.
@@ -268,12 +268,11 @@ private:
 
     // isosurface_transitions.hpp
     void record(const State& s, Layer& layer, unsigned pattern);
-    unsigned recorded_edges(const State& s, const Layer& layer, unsigned pattern) const;
+    unsigned recorded_edges(const State& s, const Layer& layer, unsigned pattern);
     unsigned choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating);
     bool adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
                unsigned signs, bool& is_joined);
     void fill_gaps(Layer& layer);
-    static NodeKey path(const State& s);
     void leave_for_later(const State& s);
 
     // isosurface_bisections.hpp
@@ -292,6 +291,7 @@ private:
                      std::size_t high, const VertexNumbers::Name& name);
 
     // isosurface_plain.hpp
+    const ContourTable& contours_of(Shape shape);
     const Contour* plain_contour(Shape shape, unsigned bits);
     void draw_plainly(const State& s, Layer& layer, const Contour* contour, unsigned bits);
     NESTGRID_NOINLINE Vertex add_closed(const State& s, std::uint8_t edge, const VertexName& name);

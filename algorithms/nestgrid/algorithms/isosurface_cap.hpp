@@ -68,7 +68,7 @@ NESTGRID_VISITOR::side_key(const State& s, std::uint8_t edge, const FaceTopology
     const std::uint8_t b = face.corner[(from + 1U) % face.corners];
     bool upwards = key_[a] < key_[b];
     std::array<NodeKey, 2> ends{key_[a], key_[b]};
-    if (const auto* m = s.closed.any ? s.closed.edge[edge] : nullptr) {
+    if (const auto* m = s.closed.edge(edge)) {
         ends = m->key;
         const auto [begin, end] = walk_->positions(*m);
         const bool along = dot(x_[b] - x_[a], end - begin) > 0;
@@ -83,7 +83,7 @@ NESTGRID_VISITOR::record_cap(const State& s, Layer& layer, unsigned pattern) -> 
         for_each_cap_polygon(s, pattern, [&](const FaceTopology& face, const CapPolygon& polygon) {
             for (std::size_t i = 0; i < polygon.count; ++i) {
                 const std::uint8_t edge = polygon.edge[i];
-                if (edge == no_edge || s.closed.edge[edge] == nullptr) continue;
+                if (edge == no_edge || s.closed.edge(edge) == nullptr) continue;
                 const auto end = [&](const CapPoint& p) {
                     const std::uint8_t corner = face.corner[p.from];
                     if (!p.cut) {

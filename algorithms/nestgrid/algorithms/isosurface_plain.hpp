@@ -16,13 +16,20 @@
 
 namespace nestgrid::detail {
 
+/// The table of a shape, which is made when it is met.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+NESTGRID_INLINE const ContourTable&
+IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::contours_of(Shape shape) {
+    const ContourTable*& table = table_[static_cast<std::size_t>(shape)];
+    if (table == nullptr) table = &ContourTable::of(shape);
+    return *table;
+}
+
 /// The contour of a sign pattern, where it is plain; else null.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 NESTGRID_INLINE const Contour* IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::plain_contour(
     Shape shape, unsigned bits) {
-    const ContourTable*& table = table_[static_cast<std::size_t>(shape)];
-    if (table == nullptr) table = &ContourTable::of(shape);
-    return table->plain(bits);
+    return contours_of(shape).plain(bits);
 }
 
 /// Draws a plain contour; positions (and keys) of the corners are loaded.
@@ -47,7 +54,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
         }
         for (std::size_t i = 0; i < n; ++i) {
             const std::uint8_t edge = loop.edge[i];
-            if (s.closed.any && s.closed.edge[edge] != nullptr) {
+            if (s.closed.edge(edge) != nullptr) {
                 v[i] = add_closed(s, edge, names[i]);
                 continue;
             }

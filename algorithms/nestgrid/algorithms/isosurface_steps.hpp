@@ -132,7 +132,7 @@ NESTGRID_INLINE bool IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::of_inte
 NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
     ++counts_.calls;
     if ((counts_.calls & 0xFFFFU) == 0) tick(0, 0);
-    if (finishing_ && s.father == nullptr && enter_->find(path(s)) == nullptr) {
+    if (finishing_ && s.father == nullptr && enter_->find(s.path) == nullptr) {
         return {Visit::skip, 0};
     }
     const Decision decision = look(s, split);
@@ -281,9 +281,7 @@ NESTGRID_VISITOR::loop_of(const State& s, std::size_t face) -> FaceTopology {
 }
 
 NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
-    const ContourTable*& known = table_[static_cast<std::size_t>(s.shape)];
-    if (known == nullptr) known = &ContourTable::of(s.shape);
-    const ContourTable& table = *known;
+    const ContourTable& table = contours_of(s.shape);
     const unsigned alternating = table.alternating(pattern);
     const Contour& contour = table.at(pattern, choose(s, layer, pattern, alternating));
     const unsigned boundary = walk_->boundary(s);

@@ -30,31 +30,32 @@ NESTGRID_VISITOR::must_record() const -> bool {
     }
 }
 
-/// A name for the way down to an element. Where two ways have the same, more is entered.
-NESTGRID_VISITOR::path(const State& s) -> NodeKey {
-    if (s.father == nullptr) return mix(static_cast<NodeKey>(s.coarse));
-    return mix(path(*s.father) + s.child + 1U);
-}
-
+/// By the names of ways: where two have the same, more is entered.
 NESTGRID_VISITOR::leave_for_later(const State& s) -> void {
-    if (s.father == nullptr) later_below_.insert(path(s), 0);
+    if (s.father == nullptr) later_below_.insert(s.path, 0);
     for (const State* at = &s; at->father != nullptr; at = at->father) {
-        NodeMask& children = *later_below_.insert(path(*at->father), 0).first;
+        NodeMask& children = *later_below_.insert(at->father->path, 0).first;
         if (std::exchange(children, children | NodeMask{1} << at->child) != 0) break;
     }
 }
 
 NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void {
-    const Topology& t = topology(s.shape);
+    const Topology& t = s.topology();
+    unsigned closed = 0;
     for (std::size_t f = 0; f < t.faces; ++f) {
-        if (s.closed.face[f] == nullptr) continue;
+        closed |= unsigned{s.closed.face(f) != nullptr} << f;
+    }
+    for (unsigned left = closed & contours_of(s.shape).cut_faces(pattern); left != 0;
+         left &= left - 1) {
+        const auto f = static_cast<std::size_t>(std::countr_zero(left));
         const FaceTopology& face = t.face[f];
+        const ClosedFace* around = s.closed.face(f);
         unsigned signs = 0;
         for (std::size_t i = 0; i < face.corners; ++i) {
             signs |= (pattern >> face.corner[i] & 1U) << i;
         }
         const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
-        const FaceContour contour =
+        const FaceContour& contour =
             face_contour(face.corners, signs, alternating && joined(s, face));
         const auto end = [&](std::uint8_t side) {
             const std::uint8_t edge = edge_between(s.shape, face.corner[side],
@@ -67,22 +68,19 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
             const Number to = end(contour.segment[i].rises);
             // A mirrored element sees its faces, and the segments on them, the other way round.
             if (s.orientation > 0) {
-                layer.transitions.record(s.closed.face[f], from, to, {s.element, s.shape, s.level});
+                layer.transitions.record(around, from, to, {s.element, s.shape, s.level});
             } else {
-                layer.transitions.record(s.closed.face[f], to, from, {s.element, s.shape, s.level});
+                layer.transitions.record(around, to, from, {s.element, s.shape, s.level});
             }
         }
     }
 }
 
-NESTGRID_VISITOR::recorded_edges(const State& s, const Layer& layer, unsigned pattern) const
-    -> unsigned {
+NESTGRID_VISITOR::recorded_edges(const State& s, const Layer& layer, unsigned pattern) -> unsigned {
     if (dimension == 2 || layer.drawn_below->empty()) return 0;
-    const Topology& t = topology(s.shape);
     unsigned edges = 0;
-    for (std::uint8_t e = 0; e < t.edges; ++e) {
-        const auto& [a, b] = t.edge[e];
-        if (((pattern >> a ^ pattern >> b) & 1U) == 0) continue;
+    for (unsigned left = contours_of(s.shape).cut_edges(pattern); left != 0; left &= left - 1) {
+        const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
         edges |= unsigned{layer.drawn_below->find(name(s, e)) != nullptr} << e;
     }
     return edges;
@@ -147,8 +145,9 @@ NESTGRID_VISITOR::choose(const State& s, Layer& layer, unsigned pattern, unsigne
         if (joined(s, loop_of(s, f))) joins |= 1U << f;
     }
     if (recorded_ == 0) return joins;
-    const Topology& t = topology(s.shape);
-    for (std::size_t f = 0; f < t.faces; ++f) {
+    const Topology& t = s.topology();
+    for (unsigned left = contours_of(s.shape).cut_faces(pattern); left != 0; left &= left - 1) {
+        const auto f = static_cast<std::size_t>(std::countr_zero(left));
         const FaceTopology& face = t.face[f];
         unsigned signs = 0;
         unsigned known = 0;

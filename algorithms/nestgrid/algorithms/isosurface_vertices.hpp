@@ -13,10 +13,7 @@
 namespace nestgrid::detail {
 
 NESTGRID_VISITOR::name(const State& s, std::uint8_t edge) const -> KeyPair {
-    if (s.closed.any && s.closed.edge[edge] != nullptr) {
-        const auto& key = s.closed.edge[edge]->key;
-        return {key[0], key[1]};
-    }
+    if (const auto* maximal = s.closed.edge(edge)) return {maximal->key[0], maximal->key[1]};
     const auto& [a, b] = topology(s.shape).edge[edge];
     return {key_[a], key_[b]};
 }
@@ -27,12 +24,11 @@ NESTGRID_VISITOR::make_cut(const State& s, const Layer& layer, std::uint8_t edge
     std::array<Point, 2> x;
     std::array<std::array<double, stride>, 2> value;
     Cut cut;
-    if (s.closed.any && s.closed.edge[edge] != nullptr) {
-        const auto& maximal = *s.closed.edge[edge];
-        x = walk_->positions(maximal);
-        cut.node = maximal.key;
+    if (const auto* maximal = s.closed.edge(edge)) {
+        x = walk_->positions(*maximal);
+        cut.node = maximal->key;
         for (std::size_t i = 0; i < 2 * stride; ++i) {
-            value[i / stride][i % stride] = static_cast<double>(maximal.value[i]);
+            value[i / stride][i % stride] = static_cast<double>(maximal->value[i]);
         }
     } else {
         for (std::size_t end = 0; end < 2; ++end) {

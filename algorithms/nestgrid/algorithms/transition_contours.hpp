@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include <nestgrid/closed.hpp>
@@ -71,17 +73,12 @@ public:
 
     /// To be called once between the last record() and the first lookup.
     void finish() {
-        std::sort(segments_.begin(), segments_.end(), before);
-        segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
+        group_segments();
         conflicts_.for_each([&](NodeKey face, const Owner& owner) { find_gaps(face, owner); });
         std::sort(gaps_.begin(), gaps_.end(),
                   [](const Gap& a, const Gap& b) { return a.loop < b.loop; });
         conflicts_ = {};
         split_of_ = {};
-        for (std::size_t i = 0; i < segments_.size(); ++i) {
-            const auto here = static_cast<Index>(i);
-            segments_on_.insert(segments_[i].face, {here, here}).first->last = here + 1;
-        }
         names_.reset(cuts_.size());
         vertex_of_.for_each([&](const KeyPair& name, Index) { names_.add(hash(name)); });
     }
@@ -101,13 +98,11 @@ public:
     /// pass(vertex) for those between. \return whether it got there
     template <class Stop, class Pass>
     bool follow(NodeKey face, Index from, Stop&& stop, Pass&& pass) const {
-        const Range* on_face = segments_on_.find(face);
-        if (on_face == nullptr) return false;
-        const auto end = segments_.begin() + on_face->last;
-        for (std::size_t steps = 0; steps <= segments_.size(); ++steps) {
-            const auto next = std::lower_bound(segments_.begin() + on_face->first, end,
-                                               Segment{face, from, 0}, before);
-            if (next == end || next->from != from) return false;
+        const std::span<const Segment> on_face = segments_on(face);
+        for (std::size_t steps = 0; steps < on_face.size(); ++steps) {
+            const auto next =
+                std::lower_bound(on_face.begin(), on_face.end(), Segment{face, from, 0}, before);
+            if (next == on_face.end() || next->from != from) return false;
             from = next->to;
             if (stop(from)) return true;
             pass(from);
@@ -122,12 +117,14 @@ public:
         conflicts_.clear();
         cuts_.clear();
         vertex_of_.clear();
-        segments_on_.clear();
+        face_number_.clear();
+        first_on_.clear();
     }
 
     std::size_t memory_bytes() const {
         return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Cut) +
-               names_.memory_bytes() + vertex_of_.memory_bytes() + segments_on_.memory_bytes();
+               names_.memory_bytes() + vertex_of_.memory_bytes() + face_number_.memory_bytes() +
+               first_on_.capacity() * sizeof(Index);
     }
 
 private:
@@ -136,10 +133,6 @@ private:
         Index from;
         Index to;
         bool operator==(const Segment&) const = default;
-    };
-    struct Range {  // of the segments on one face
-        Index first;
-        Index last;  // one behind it
     };
     /// How a face is divided, where it is divided one way, as first seen by an element below it.
     struct Split {
@@ -151,21 +144,47 @@ private:
         if (first->by != split.by) conflicts_.insert(face, first->owner);
     }
 
+    /// Of segments on one face.
     static bool before(const Segment& a, const Segment& b) {
-        return a.face != b.face   ? a.face < b.face
-               : a.from != b.from ? a.from < b.from
-                                  : a.to < b.to;
+        return a.from != b.from ? a.from < b.from : a.to < b.to;
+    }
+
+    /// Puts those on one face behind each other, in order.
+    void group_segments() {
+        std::vector<Index> face_of(segments_.size());
+        for (std::size_t i = 0; i < segments_.size(); ++i) {
+            const auto next = static_cast<Index>(face_number_.size());
+            face_of[i] = *face_number_.insert(segments_[i].face, next).first;
+        }
+        first_on_.assign(face_number_.size() + 1, 0);
+        for (const Index f : face_of) ++first_on_[f + 1U];
+        std::partial_sum(first_on_.begin(), first_on_.end(), first_on_.begin());
+        std::vector<Index> place(first_on_.begin(), first_on_.end() - 1);
+        std::vector<Segment> grouped(segments_.size());
+        for (std::size_t i = 0; i < segments_.size(); ++i) {
+            grouped[place[face_of[i]]++] = segments_[i];
+        }
+        segments_ = std::move(grouped);
+        for (std::size_t f = 0; f + 1 < first_on_.size(); ++f) {
+            std::sort(segments_.begin() + first_on_[f], segments_.begin() + first_on_[f + 1],
+                      before);
+        }
+    }
+
+    std::span<const Segment> segments_on(NodeKey face) const {
+        const Index* number = face_number_.find(face);
+        if (number == nullptr) return {};
+        return std::span(segments_).subspan(first_on_[*number],
+                                            first_on_[*number + 1U] - first_on_[*number]);
     }
 
     /// Segments that only one side draws link up to loops: each vertex is as often left as met.
     void find_gaps(NodeKey face, const Owner& owner) {
         std::vector<Segment> left;
-        const auto [first, last] =
-            std::equal_range(segments_.begin(), segments_.end(), Segment{face, 0, 0},
-                             [](const Segment& a, const Segment& b) { return a.face < b.face; });
-        for (auto s = first; s != last; ++s) {
-            if (!std::binary_search(first, last, Segment{face, s->to, s->from}, before)) {
-                left.push_back(*s);
+        const std::span<const Segment> all = segments_on(face);
+        for (const Segment& s : all) {
+            if (!std::binary_search(all.begin(), all.end(), Segment{face, s.to, s.from}, before)) {
+                if (left.empty() || !(left.back() == s)) left.push_back(s);
             }
         }
         while (!left.empty()) {
@@ -189,7 +208,8 @@ private:
     KeyTable<NodeKey, Owner> conflicts_;  // divided in two directions
     std::vector<Cut> cuts_;
     KeyTable<KeyPair, Index> vertex_of_;
-    KeyTable<NodeKey, Range> segments_on_;
+    KeyTable<NodeKey, Index> face_number_;
+    std::vector<Index> first_on_;  // by number of face: where its segments begin
     KeyFilter names_;
 };
 

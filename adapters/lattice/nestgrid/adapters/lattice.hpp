@@ -89,6 +89,27 @@ public:
         }
         return x;
     }
+    /// Of the corners of a cube with edges of that many cells, in tensor order; the same bits.
+    void positions_of_box(Place low, Place cells, std::span<Point> out) const {
+        constexpr std::size_t corners = std::size_t{1} << size_;
+        if (!aligned_) {
+            for (std::size_t k = 0; k < corners; ++k) {
+                Place p = low;
+                for (std::size_t d = 0; d < size_; ++d) p += (k >> d & 1U) * cells << (bits_ * d);
+                out[k] = position(p);
+            }
+            return;
+        }
+        out[0] = position(low);
+        for (std::size_t d = 0; d < size_; ++d) {
+            const double beyond = along_[d][at(low, d) + cells];
+            for (std::size_t k = 0; k < std::size_t{1} << d; ++k) {
+                Point& x = out[k + (std::size_t{1} << d)];
+                x = out[k];
+                x[d] = beyond;
+            }
+        }
+    }
     Point node_position(NodeKey node) const { return position(place(node)); }
     const LatticeGeometry<dim>& geometry() const { return geometry_; }
     std::size_t sample_count() const { return sample_stride_[size_ - 1] * samples(size_ - 1); }
@@ -153,6 +174,12 @@ public:
         return 0;
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<value_type> out) const {
+        if (grid_->whole()) {
+            std::array<NodeKey, static_cast<std::size_t>(Grid::max_new_nodes)> node;
+            grid_->new_keys(e, node);
+            for (std::size_t k = 0; which >> k != 0; ++k) out[k] = sample(node[k]);
+            return 0;
+        }
         for (std::size_t k = 0; which >> k != 0; ++k) {
             if ((which >> k & 1U) != 0) out[k] = at(grid_->new_place(e, k));
         }

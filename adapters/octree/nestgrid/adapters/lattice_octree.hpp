@@ -37,6 +37,7 @@ public:
     static constexpr int max_corners = 1 << dim;
     static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
     static constexpr int max_children = 1 << dim;
+    static constexpr Shape only_shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
 
     /// \throw InvalidInput as the Lattice
     explicit LatticeOctree(const LatticeGeometry<dim>& geometry)
@@ -92,7 +93,7 @@ public:
         }
     }
     void corner_positions(const Element& e, std::span<Point> out) const {
-        for (std::size_t k = 0; k < max_corners; ++k) out[k] = position(corner_place(e, k));
+        this->positions_of_box(e.low, Place{1} << e.level, out);
     }
     bool masked(const Element& e) const {
         for (std::size_t d = 0; padded_ && d < size_; ++d) {

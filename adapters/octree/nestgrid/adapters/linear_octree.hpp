@@ -27,6 +27,7 @@ public:
     static constexpr int max_corners = 1 << dim;
     static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
     static constexpr int max_children = 1 << dim;
+    static constexpr Shape only_shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
 
     struct Element {
         std::size_t first;  ///< leaf of the whole array

@@ -20,7 +20,7 @@ struct Octree {
     static constexpr int block_height = 1;
     static constexpr bool conforming = false;
     static constexpr const char* name = "octree";
-    static constexpr Shape shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
+    static constexpr Shape only_shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
 
     /// Elements that share an edge or a face differ by one level at most.
     bool balanced = true;
@@ -28,11 +28,11 @@ struct Octree {
     std::uint32_t options() const { return balanced ? 1 : 0; }
     static Octree from_options(std::uint32_t options) { return {.balanced = options == 1}; }
 
-    static bool refines(Shape s) { return s == shape; }
+    static bool refines(Shape s) { return s == only_shape; }
 
     static std::shared_ptr<const Rule> make_rule(std::uint64_t descriptor) {
         if (descriptor != 1) throw InvalidInput("an octree has one rule only");
-        return {std::shared_ptr<const Rule>(), &dyadic_rule(shape)};
+        return {std::shared_ptr<const Rule>(), &dyadic_rule(only_shape)};
     }
 
     template <class Tree>
@@ -49,7 +49,7 @@ struct Octree {
     template <class Tree>
     void close(Tree& tree) const {
         if (!balanced) return;
-        const Topology& t = topology(shape);
+        const Topology& t = topology(only_shape);
         // A face whose other side is two levels finer has halves of its edges split.
         tree.close([&](const typename Tree::Element& e) -> std::uint16_t {
             for (std::size_t i = 0; i < t.edges; ++i) {

@@ -81,6 +81,7 @@ public:
     static constexpr int max_corners = Family::max_corners;
     static constexpr int max_new_nodes = Family::max_new_nodes;
     static constexpr int max_children = Family::max_children;
+    static constexpr Shape only_shape = detail::only_shape<Family>();
 
     struct Element {
         std::array<std::uint32_t, static_cast<std::size_t>(Family::max_corners)> corner;
