@@ -3,8 +3,9 @@
 //
 // What a second thread brings (oneTBB), on the bucky ball: triangles into a buffer that may be
 // filled in parts, triangles handed to a function one by one, and an indexed surface, which is the
-// same to the last bit. One "name value" line per figure; --quick takes 33^3 samples instead of
-// 129^3.
+// same to the last bit; and the preroll of the octree over the same samples. One "name value" line
+// per figure; --quick takes 33^3 samples instead of 129^3.
+#include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
 
@@ -28,10 +29,24 @@ void fill(Bucky<n>& bucky, float threshold, std::vector<Soup::Simplex>& soup,
 }
 
 template <int n>
+void compare_prerolls(const Bucky<n>& bucky, const nestgrid::TbbExecutor& two, std::size_t rounds) {
+    const nestgrid::LatticeOctree<3> grid(bucky.grid.geometry());
+    const nestgrid::LatticeField field(grid, std::span<const float>(bucky.samples));
+    Contest contest(rounds);
+    contest.add("one", [&] { nestgrid::HierarchicalIndicator(grid, field); });
+    contest.add("two", [&] { nestgrid::HierarchicalIndicator(grid, field, two); });
+    contest.run();
+    Contest::print_figure("octree_preroll_one_ms", contest.time("one"));
+    Contest::print_figure("octree_preroll_two_threads_speedup",
+                          contest.time("one") / contest.time("two"));
+}
+
+template <int n>
 void compare(std::size_t rounds) {
     Bucky<n> bucky;
     const nestgrid::TbbExecutor two(2);
     Contest::print_figure("threads", static_cast<double>(two.concurrency()));
+    compare_prerolls(bucky, two, rounds);
     std::vector<Soup::Simplex> soup;
     nestgrid::IsosurfaceSeries one_series(bucky.grid, bucky.field);
     nestgrid::IsosurfaceSeries two_series(bucky.grid, bucky.field);
