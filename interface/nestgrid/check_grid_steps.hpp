@@ -33,8 +33,8 @@ public:
 
 private:
     static constexpr Shape only_ = only_shape<Grid>();
-    const std::string promised_ = ", but the grid says that all elements are " +
-                                  std::string(topology(only_).name) + "s";
+    const std::string promised_ =
+        ", but the grid says that all elements are " + std::string(topology(only_).name) + "s";
     static constexpr std::size_t components_ = static_cast<std::size_t>(components_of<Field>());
     using Values = std::array<Real, components_>;
     using Weights = std::array<double, max_corners>;  // over the corners of the coarse element

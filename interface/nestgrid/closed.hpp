@@ -59,7 +59,7 @@ struct ClosedParts {
     static constexpr std::size_t edges = corners == 3 ? 3 : corners <= 4 ? 6 : max_edges;
     static constexpr std::size_t rule_edges = corners <= 4 ? 12 : max_rule_edges;
 
-    bool any;  ///< otherwise nothing else is set
+    bool any;            ///< otherwise nothing else is set
     const Child* child;  ///< the element in the rule that made it
     /// Around the edges of that rule and around parts of its faces; behind them null.
     const Edge* const* around_edge;

@@ -87,8 +87,7 @@ void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, cons
         }
         for (std::size_t f = 0; f < rule.faces.size(); ++f) {
             const RuleFace& face = rule.faces[f];
-            parts.face[f] =
-                face.parent != no_face ? parts.face[face.parent] : s.closed.face(f);
+            parts.face[f] = face.parent != no_face ? parts.face[face.parent] : s.closed.face(f);
             parts.faces_closed |= std::uint32_t{parts.face[f] != nullptr} << f;
             if (!face.divided || (face.inner & ~nodes.mean) != 0) continue;
             std::array<NodeKey, 4> loop;

@@ -63,8 +63,8 @@ struct Child {
     std::array<std::uint8_t, max_edges> rule_edge{};    // derived: the rule's edge it lies on
     std::array<std::uint8_t, max_faces> rule_face{};    // derived: the least of the rule's faces
                                                         // around it, or no_face
-    std::uint32_t rule_edges = 0;  // derived: all of rule_edge, one bit each
-    std::uint32_t rule_faces = 0;  // derived: all of rule_face, one bit each
+    std::uint32_t rule_edges = 0;                       // derived: all of rule_edge, one bit each
+    std::uint32_t rule_faces = 0;                       // derived: all of rule_face, one bit each
 };
 
 /// An edge of the parent; or one inside a face of it, whose middle node has its ends for parents:

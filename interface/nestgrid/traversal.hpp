@@ -134,7 +134,8 @@ struct ElementState {
     std::uint8_t interpolated;  ///< corners whose value is interpolated by S, one bit each
     const Rule* made_by;        ///< the father's rule, and
     std::uint8_t child;         ///< this element's number in it
-    [[no_unique_address]] detail::CarriedIf<needs.closed, NodeKey> path;  ///< a hash of the way down
+    /// A hash of the way down.
+    [[no_unique_address]] detail::CarriedIf<needs.closed, NodeKey> path;
     std::array<Real, capacity * components> value;  ///< P_S U at the corners
     [[no_unique_address]] detail::CarriedIf<carries_keys, std::array<NodeKey, capacity>> key;
     [[no_unique_address]] detail::CarriedIf<carries_positions, std::array<Point, capacity>>

@@ -96,7 +96,8 @@ bool Traversal<Grid, Field, needs>::make_coarse(std::size_t i, State& s) const {
         s.closed.any = false;
         s.path = detail::mix(static_cast<NodeKey>(i));
     }
-    if (constexpr Shape only = detail::only_shape<Grid>(); only != Shape::point && s.shape != only) {
+    if (constexpr Shape only = detail::only_shape<Grid>();
+        only != Shape::point && s.shape != only) {
         throw GridError("coarse element " + std::to_string(i) + " is a " +
                         std::string(topology(s.shape).name) + ", but the grid says that all are " +
                         std::string(topology(only).name) + "s");

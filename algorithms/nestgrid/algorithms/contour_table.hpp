@@ -87,7 +87,8 @@ inline constexpr auto face_contours = [] {
     for (const std::size_t corners : {3U, 4U}) {
         for (unsigned signs = 0; signs < 1U << corners; ++signs) {
             for (const bool joined : {false, true}) {
-                contours[corners][signs][joined ? 1 : 0] = make_face_contour(corners, signs, joined);
+                contours[corners][signs][joined ? 1 : 0] =
+                    make_face_contour(corners, signs, joined);
             }
         }
     }

@@ -20,7 +20,7 @@
 
 namespace nestgrid::detail {
 
-/// One split as a preroll meets it; or a leaf with an error of its own, which has no rule.
+/// One split as a preroll meets it.
 struct MetSplit {
     const Rule* rule;
     int level;
@@ -117,7 +117,7 @@ private:
 
 /// Walks everything and tells of it:
 ///     receiver.split(const MetSplit&, offset)   offset(n) is |U_delta| of new node n, rounded up
-///     receiver.leaf(keys of corners, error)
+///     receiver.leaf(keys of corners, error)     where leaves have errors; else coarse ones, with 0
 template <class Walk, class LeafError, class Receiver>
 class PrerollVisitor {
 public:
@@ -148,6 +148,8 @@ public:
                 }
                 receiver_->leaf(corner_keys(s), float_above(error));
             }
+        } else if (split.rule == nullptr && s.level == 0) {
+            receiver_->leaf(corner_keys(s), 0);  // its nodes count, too
         }
         return {};
     }
