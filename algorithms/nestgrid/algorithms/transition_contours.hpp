@@ -122,9 +122,10 @@ public:
     }
 
     std::size_t memory_bytes() const {
-        return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Cut) +
+        return (segments_.capacity() + grouped_.capacity()) * sizeof(Segment) +
+               cuts_.capacity() * sizeof(Cut) +
                names_.memory_bytes() + vertex_of_.memory_bytes() + face_number_.memory_bytes() +
-               first_on_.capacity() * sizeof(Index);
+               (first_on_.capacity() + face_of_.capacity() + place_.capacity()) * sizeof(Index);
     }
 
 private:
@@ -151,20 +152,20 @@ private:
 
     /// Puts those on one face behind each other, in order.
     void group_segments() {
-        std::vector<Index> face_of(segments_.size());
+        face_of_.resize(segments_.size());
         for (std::size_t i = 0; i < segments_.size(); ++i) {
             const auto next = static_cast<Index>(face_number_.size());
-            face_of[i] = *face_number_.insert(segments_[i].face, next).first;
+            face_of_[i] = *face_number_.insert(segments_[i].face, next).first;
         }
         first_on_.assign(face_number_.size() + 1, 0);
-        for (const Index f : face_of) ++first_on_[f + 1U];
+        for (const Index f : face_of_) ++first_on_[f + 1U];
         std::partial_sum(first_on_.begin(), first_on_.end(), first_on_.begin());
-        std::vector<Index> place(first_on_.begin(), first_on_.end() - 1);
-        std::vector<Segment> grouped(segments_.size());
+        place_.assign(first_on_.begin(), first_on_.end());
+        grouped_.resize(segments_.size());
         for (std::size_t i = 0; i < segments_.size(); ++i) {
-            grouped[place[face_of[i]]++] = segments_[i];
+            grouped_[place_[face_of_[i]]++] = segments_[i];
         }
-        segments_ = std::move(grouped);
+        segments_.swap(grouped_);
         for (std::size_t f = 0; f + 1 < first_on_.size(); ++f) {
             std::sort(segments_.begin() + first_on_[f], segments_.begin() + first_on_[f + 1],
                       before);
@@ -210,6 +211,9 @@ private:
     KeyTable<KeyPair, Index> vertex_of_;
     KeyTable<NodeKey, Index> face_number_;
     std::vector<Index> first_on_;  // by number of face: where its segments begin
+    std::vector<Index> face_of_;   // what group_segments() needs
+    std::vector<Index> place_;
+    std::vector<Segment> grouped_;
     KeyFilter names_;
 };
 
