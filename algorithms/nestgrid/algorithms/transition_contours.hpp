@@ -123,8 +123,8 @@ public:
 
     std::size_t memory_bytes() const {
         return (segments_.capacity() + grouped_.capacity()) * sizeof(Segment) +
-               cuts_.capacity() * sizeof(Cut) +
-               names_.memory_bytes() + vertex_of_.memory_bytes() + face_number_.memory_bytes() +
+               cuts_.capacity() * sizeof(Cut) + names_.memory_bytes() + vertex_of_.memory_bytes() +
+               face_number_.memory_bytes() +
                (first_on_.capacity() + face_of_.capacity() + place_.capacity()) * sizeof(Index);
     }
 
