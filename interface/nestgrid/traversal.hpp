@@ -57,44 +57,6 @@ template <bool wanted, class T>
 using CarriedIf = std::conditional_t<wanted, T, Nothing>;
 
 template <class Grid>
-constexpr std::size_t corner_capacity() {
-    if constexpr (requires { Grid::max_corners; }) {
-        return static_cast<std::size_t>(Grid::max_corners);
-    } else {
-        return max_corners;
-    }
-}
-template <class Grid>
-constexpr std::size_t new_node_capacity() {
-    if constexpr (requires { Grid::max_new_nodes; }) {
-        return static_cast<std::size_t>(Grid::max_new_nodes);
-    } else {
-        return max_new_nodes;
-    }
-}
-template <class Grid>
-constexpr std::size_t child_capacity() {
-    if constexpr (requires { Grid::max_children; }) {
-        return static_cast<std::size_t>(Grid::max_children);
-    } else {
-        return max_children;
-    }
-}
-/// Of all elements, where it is known when the grid is compiled; else Shape::point.
-template <class Grid>
-constexpr Shape only_shape() {
-    constexpr bool simplices = corner_capacity<Grid>() == std::size_t{Grid::dimension} + 1;
-    if constexpr (requires { Grid::only_shape; }) {
-        return Grid::only_shape;
-    } else if constexpr (simplices) {
-        return Grid::dimension == 1   ? Shape::segment
-               : Grid::dimension == 2 ? Shape::triangle
-                                      : Shape::tetrahedron;
-    } else {
-        return Shape::point;
-    }
-}
-template <class Grid>
 constexpr bool by_heart(Feature feature) {
     return may_offer<Grid>(feature) && !DecidesAtRunTime<Grid>;
 }
