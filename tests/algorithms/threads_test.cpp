@@ -101,7 +101,8 @@ TEST(ThreadsOnSamples, PrepareWhatOnePrepares) {
         const LatticeOctree<3> grid({.samples = n});
         const LatticeField field(grid, std::span<const float>(data.values));
         expect_same_prerolls(grid, field);
-        expect_same_prerolls(grid, field, [](const auto& e) { return 0.1 * static_cast<double>(e.low % 13); });
+        expect_same_prerolls(grid, field,
+                             [](const auto& e) { return 0.1 * static_cast<double>(e.low % 13); });
     }
 }
 
