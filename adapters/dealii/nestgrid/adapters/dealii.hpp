@@ -7,8 +7,8 @@
 // Elements are cells of any level, nodes are deal.II's vertices, whose indices are shared by all
 // levels: they are the node keys. Quadrilaterals and hexahedra may be refined locally, simplices
 // everywhere or locally; refinement must be isotropic.
-// Kept beside the triangulation: one byte per vertex, whether it hangs; it follows every
-// refinement, looked for by deal.II's own threads (dealii::MultithreadInfo).
+// Kept beside the triangulation: one bit per vertex, whether it hangs; it follows every refinement,
+// looked for by deal.II's own threads (dealii::MultithreadInfo).
 #pragma once
 
 #include <deal.II/base/mpi.h>
@@ -72,7 +72,7 @@ public:
     NodeMask constrained(const Element& e) const {
         NodeMask hanging = 0;
         for_each_new_node(e, [&](std::size_t n, const Cell& child, unsigned corner) {
-            hanging |= NodeMask{hangs_[child->vertex_index(corner)]} << n;
+            hanging |= NodeMask{hangs(child->vertex_index(corner))} << n;
         });
         return hanging;
     }
@@ -98,6 +98,7 @@ public:
     }
 
 private:
+    bool hangs(unsigned vertex) const { return (hangs_[vertex / 64] >> vertex % 64 & 1U) != 0; }
     const Rule* other_split(const Cell& c) const;
     static Shape shape(const Cell& c);
     Point position(const Cell& c, unsigned corner) const;
@@ -121,7 +122,7 @@ private:
     bool all_cubes_ = false;
     RuleTable simplex_rules_;
     const Rule* only_simplex_rule_ = nullptr;
-    std::vector<std::uint8_t> hangs_;  // by vertex
+    std::vector<std::uint64_t> hangs_;  // one bit a vertex
     std::uint64_t epoch_ = 0;
     boost::signals2::scoped_connection refined_;
 };

@@ -141,7 +141,8 @@ void DealiiGrid<dim, spacedim>::mark(const Object& object, int level, bool lines
     if (!object->has_children()) return;
     if (is_line || object->n_vertices() == 4) {
         const unsigned middle = object->child(0)->vertex_index(is_line ? 1 : 3);
-        std::atomic_ref(hangs_[middle]).store(1, std::memory_order_relaxed);
+        std::atomic_ref(hangs_[middle / 64])
+            .fetch_or(std::uint64_t{1} << middle % 64, std::memory_order_relaxed);
         if (finest[middle] <= level + 1) return;
     }
     for (unsigned i = 0; i < object->n_children(); ++i) {
@@ -186,7 +187,7 @@ void DealiiGrid<dim, spacedim>::update() {
     const auto corners_of = [&](const Cell& c) {
         return all_cubes_ ? unsigned{max_corners} : c->n_vertices();
     };
-    hangs_.assign(triangulation_->n_vertices(), 0);
+    hangs_.assign(triangulation_->n_vertices() / 64 + 1, 0);
     std::vector<std::uint8_t> finest(triangulation_->n_vertices(), 0);  // level around a vertex
     for_each_cell([&](const Cell& c) {
         if (!c->has_children()) {
