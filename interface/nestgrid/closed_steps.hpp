@@ -51,7 +51,7 @@ template <class Grid, class Field, Needs needs>
 void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, const Nodes& nodes,
                                           Parts& parts) const {
     if constexpr (needs.closed) {
-        const Topology& t = topology(s.shape);
+        const Topology& t = s.topology();
         const auto corners = static_cast<std::size_t>(s.corner_count());
         if (rule.edges.size() > Parts::edges) {
             throw GridError("rule '" + rule.name + "' has too many edges for this grid");

@@ -24,7 +24,6 @@ namespace nestgrid::detail {
 struct MetSplit {
     const Rule* rule;
     int level;
-    NodeMask constrained;           ///< new nodes that hang
     NodeMask outside;               ///< see the operation `outside`
     std::span<const NodeKey> keys;  ///< of the corners and the new nodes behind them
 };
@@ -72,12 +71,12 @@ class PrerollLog {
 public:
     template <class Offset>
     void split(const MetSplit& s, Offset&& offset) {
-        items_.push_back({s.rule, s.level, s.constrained, s.outside, s.keys.size()});
+        items_.push_back({s.rule, s.level, s.outside, s.keys.size()});
         keys_.insert(keys_.end(), s.keys.begin(), s.keys.end());
         for (std::size_t n = 0; n < s.rule->new_nodes.size(); ++n) numbers_.push_back(offset(n));
     }
     void leaf(std::span<const NodeKey> corners, float error) {
-        items_.push_back({nullptr, 0, 0, 0, corners.size()});
+        items_.push_back({nullptr, 0, 0, corners.size()});
         keys_.insert(keys_.end(), corners.begin(), corners.end());
         numbers_.push_back(error);
     }
@@ -93,7 +92,7 @@ public:
                 receiver.leaf(of, numbers.front());
                 numbers = numbers.subspan(1);
             } else {
-                receiver.split({i.rule, i.level, i.constrained, i.outside, of},
+                receiver.split({i.rule, i.level, i.outside, of},
                                [&](std::size_t n) { return numbers[n]; });
                 numbers = numbers.subspan(i.rule->new_nodes.size());
             }
@@ -106,7 +105,6 @@ private:
     struct Item {
         const Rule* rule;
         int level;
-        NodeMask constrained;
         NodeMask outside;
         std::size_t keys;
     };
@@ -116,7 +114,8 @@ private:
 };
 
 /// Walks everything and tells of it:
-///     receiver.split(const MetSplit&, offset)   offset(n) is |U_delta| of new node n, rounded up
+///     receiver.split(const MetSplit&, offset)   offset(n) is |U_delta| of new node n, rounded up,
+///                                               0 where it hangs
 ///     receiver.leaf(keys of corners, error)     where leaves have errors; else coarse ones, with 0
 template <class Walk, class LeafError, class Receiver>
 class PrerollVisitor {
@@ -169,7 +168,7 @@ public:
         }
         std::copy(split.keys.begin(), split.keys.end(),
                   keys_.begin() + static_cast<std::ptrdiff_t>(corners));
-        receiver_->split({split.rule, s.level, split.constrained, split.outside,
+        receiver_->split({split.rule, s.level, split.outside,
                           std::span<const NodeKey>(keys_).first(corners + split.keys.size())},
                          [&](std::size_t n) {
                              if ((split.constrained >> n & 1U) != 0) return 0.0F;

@@ -21,7 +21,7 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Function>
 void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::for_each_cap_polygon(
     const State& s, unsigned pattern, Function&& function) const {
-    const Topology& t = topology(s.shape);
+    const Topology& t = s.topology();
     const unsigned boundary = walk_->boundary(s);
     for (std::size_t f = 0; f < t.faces; ++f) {
         if ((boundary >> f & 1U) == 0) continue;
@@ -133,7 +133,7 @@ NESTGRID_VISITOR::cap_chain(const State& s, Layer& layer, const FaceTopology& fa
 
 NESTGRID_VISITOR::draw_cap(const State& s, Layer& layer, unsigned pattern) -> void {
     if constexpr (dimension == 2) {
-        const Topology& t = topology(s.shape);
+        const Topology& t = s.topology();
         const unsigned boundary = walk_->boundary(s);
         for (std::size_t f = 0; f < t.faces; ++f) {
             const auto& [a, b, unused0, unused1] = t.face[f].corner;

@@ -56,7 +56,7 @@ NESTGRID_VISITOR::load_gradients(const State& s) -> void {
     for (std::size_t i = 0; i < corners; ++i) {
         const Number slot = gradients_.slot(key_[i]);
         if (!own) {
-            add_gradient(slot, corner_gradient(topology(s.shape), x_, value, i));
+            add_gradient(slot, corner_gradient(s.topology(), x_, value, i));
         } else if (!gradients_.known(slot)) {
             const bool interpolated = (s.interpolated >> i & 1U) != 0;
             if (!interpolated && !asked) {

@@ -38,7 +38,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
     const State& s, Layer& layer, const Contour* contour, unsigned bits) {
     constexpr bool simplices = State::capacity == static_cast<std::size_t>(dimension) + 1;
     layer_ = &layer;
-    const Topology& t = topology(s.shape);
+    const Topology& t = s.topology();
     const bool mirrored = s.orientation < 0;
     const std::size_t loops = simplices ? 1 : contour->loop_count;
     for (std::size_t l = 0; l < loops; ++l) {

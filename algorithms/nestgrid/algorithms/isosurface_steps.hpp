@@ -276,7 +276,7 @@ NESTGRID_VISITOR::loop_of(const State& s, std::size_t face) -> FaceTopology {
     if constexpr (dimension == 2) {
         return {Shape::quadrilateral, 4, {0, 1, 3, 2}};
     } else {
-        return topology(s.shape).face[face];
+        return s.topology().face[face];
     }
 }
 

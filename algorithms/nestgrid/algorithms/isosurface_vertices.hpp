@@ -14,7 +14,7 @@ namespace nestgrid::detail {
 
 NESTGRID_VISITOR::name(const State& s, std::uint8_t edge) const -> KeyPair {
     if (const auto* maximal = s.closed.edge(edge)) return {maximal->key[0], maximal->key[1]};
-    const auto& [a, b] = topology(s.shape).edge[edge];
+    const auto& [a, b] = s.topology().edge[edge];
     return {key_[a], key_[b]};
 }
 
@@ -32,7 +32,7 @@ NESTGRID_VISITOR::make_cut(const State& s, const Layer& layer, std::uint8_t edge
         }
     } else {
         for (std::size_t end = 0; end < 2; ++end) {
-            const std::size_t c = topology(s.shape).edge[edge][end];
+            const std::size_t c = s.topology().edge[edge][end];
             x[end] = x_[c];
             cut.node[end] = key_[c];
             for (std::size_t i = 0; i < stride; ++i) {
@@ -153,7 +153,7 @@ NESTGRID_VISITOR::vertex(std::uint8_t edge) -> Number {
     const State& s = *state_;
     Point reference{};
     if (wants_reference()) {
-        const Topology& t = topology(s.shape);
+        const Topology& t = s.topology();
         const auto& [a, b] = t.edge[edge];
         const double fraction = std::clamp(u_[a] / (u_[a] - u_[b]), 0.0, 1.0);
         reference = t.reference[a] + fraction * (t.reference[b] - t.reference[a]);

@@ -89,20 +89,22 @@ public:
         }
         return x;
     }
-    /// Of the corners of a cube with edges of that many cells, in tensor order; the same bits.
-    void positions_of_box(Place low, Place cells, std::span<Point> out) const {
+    /// Corner k, in tensor order, of the cube with edges of 2^level cells.
+    static Place corner_of_box(Place low, unsigned level, std::size_t k) {
+        for (std::size_t d = 0; d < size_; ++d) low += Place{k >> d & 1U} << (bits_ * d + level);
+        return low;
+    }
+    /// Those of all its corners; the same bits as position().
+    void positions_of_box(Place low, unsigned level, std::span<Point> out) const {
         constexpr std::size_t corners = std::size_t{1} << size_;
         if (!aligned_) {
-            for (std::size_t k = 0; k < corners; ++k) {
-                Place p = low;
-                for (std::size_t d = 0; d < size_; ++d) p += (k >> d & 1U) * cells << (bits_ * d);
-                out[k] = position(p);
-            }
+            for (std::size_t k = 0; k < corners; ++k)
+                out[k] = position(corner_of_box(low, level, k));
             return;
         }
         out[0] = position(low);
         for (std::size_t d = 0; d < size_; ++d) {
-            const double beyond = along_[d][at(low, d) + cells];
+            const double beyond = along_[d][at(low, d) + (1U << level)];
             for (std::size_t k = 0; k < std::size_t{1} << d; ++k) {
                 Point& x = out[k + (std::size_t{1} << d)];
                 x = out[k];

@@ -93,7 +93,7 @@ public:
         }
     }
     void corner_positions(const Element& e, std::span<Point> out) const {
-        this->positions_of_box(e.low, Place{1} << e.level, out);
+        this->positions_of_box(e.low, e.level, out);
     }
     bool masked(const Element& e) const {
         for (std::size_t d = 0; padded_ && d < size_; ++d) {
@@ -128,9 +128,7 @@ public:
 
     // What fields need.
     Place corner_place(const Element& e, std::size_t k) const {
-        Place p = e.low;
-        for (std::size_t d = 0; d < size_; ++d) p += Place{k >> d & 1U} << (bits_ * d + e.level);
-        return p;
+        return this->corner_of_box(e.low, e.level, k);
     }
     Place new_place(const Element& e, std::size_t k) const {
         return e.low + (half_steps_[k] << (e.level - 1U));
