@@ -44,8 +44,13 @@ struct BisectionBlock {
         friend constexpr bool operator==(const Reached&, const Reached&) = default;
     };
 
+    /// Sets of parts 2 ... ends - 1.
+    static constexpr std::size_t part_sets = std::size_t{1} << (height == 0 ? 0 : ends - 2);
+
     std::array<Part, 2 * ends> part{};
-    std::array<Reached, std::size_t{1} << (height == 0 ? 0 : ends - 2)> reached{};
+    std::array<Reached, part_sets> reached{};
+    /// The first end in each part of such a set, one bit each.
+    std::array<std::uint8_t, part_sets> first_ends{};
     std::size_t nodes = corners;
     /// Of every node but the corners of part 1, which come first.
     std::array<std::array<std::uint8_t, 2>, most_nodes> parent{};
@@ -83,10 +88,27 @@ struct BisectionBlock {
             const unsigned those = (1U << ends) - 1;
             reached[entered].interior = static_cast<std::uint8_t>((parts & those) >> 2U);
             reached[entered].ends = static_cast<std::uint8_t>(parts >> ends);
+            for (std::size_t p = 2; p < ends; ++p) {
+                if ((entered >> (p - 2) & 1U) == 0) continue;
+                first_ends[entered] |= static_cast<std::uint8_t>(1U << first_end(p));
+            }
         }
     }
 
     friend constexpr bool operator==(const BisectionBlock&, const BisectionBlock&) = default;
+
+    /// The largest part in which an end lies that is one of some, or else the end.
+    /// \param stops of parts 2 ... ends - 1, one bit each from bit 0
+    static constexpr std::size_t part_above(std::size_t end, unsigned stops) {
+        for (std::size_t depth = height - 1; depth > 0; --depth) {
+            const std::size_t p = (ends + end) >> depth;
+            if ((stops >> (p - 2) & 1U) != 0) return p;
+        }
+        return ends + end;
+    }
+    constexpr std::size_t first_end(std::size_t p) const {
+        return (p << (height - part[p].depth)) - ends;
+    }
 
 private:
     constexpr std::uint8_t node_between(std::uint8_t a, std::uint8_t b) {
@@ -132,13 +154,10 @@ inline constexpr auto block_orders = [] {
             return part < ends && (i >> (part - 2 + from) & 1U) != 0;
         };
         for (std::size_t end = 0; end < ends; ++end) {
-            // Down to the end, as far as it goes; a part is listed at the first end in it.
-            std::size_t depth = pattern.height - 1;
-            while (is_set((ends + end) >> depth, 0)) --depth;
-            const std::size_t part = (ends + end) >> depth;
-            if (part < ends && (!is_set(part, bits) || end % (std::size_t{1} << depth) != 0)) {
-                continue;
-            }
+            // A part is listed at the first end in it.
+            const auto entered = static_cast<unsigned>(i % (std::size_t{1} << bits));
+            const std::size_t part = pattern.part_above(end, ~entered);
+            if (part < ends && (!is_set(part, bits) || end != pattern.first_end(part))) continue;
             result[i].part[result[i].count++] = static_cast<std::uint8_t>(part);
         }
     }

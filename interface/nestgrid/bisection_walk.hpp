@@ -19,8 +19,8 @@ namespace nestgrid {
 ///     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside)
 ///             {Visit visit; Real bound;} of an element that is split; lo ... hi: its values
 ///     bool glance_at_leaf(Real lo, Real hi)      whether to extract it
-///     bool extract_part(const BlockBatch&, std::size_t b, std::size_t part, Real bound)
-///             an element of block b; bound: what glance() returned of it, or 0 for a leaf
+///     unsigned extract(const BlockBatch&, const BatchSelection&)
+///             elements beside blocks
 ///     void tick(looked_at, visited)              now and then
 /// and, to be shown blocks, what BlockWalk asks for.
 /// \tparam whole  what the grid says
@@ -29,14 +29,17 @@ class BisectionWalk {
 public:
     using Real = typename Field::value_type;
     using Node = typename Grid::Node;
-    using Alone = BlockBatch<Grid, Real, 1>;
-    static constexpr std::size_t corners = Alone::pattern.corners;
+    using Batch = BlockBatch<Grid, Real>;
+    static constexpr std::size_t corners = Batch::pattern.corners;
 
     BisectionWalk(const Grid& grid, const Field& field, Visitor& visitor)
-        : grid_{&grid}, field_{&field}, visitor_{&visitor} {}
+        : grid_{&grid}, field_{&field}, visitor_{&visitor} {
+        pending_.begin(grid, 0);
+    }
 
     void run(const ElementOf<Grid>& e, const Real* value, int level, int orientation) {
         start<0>(e, value, level, orientation);
+        extract_pending();
     }
 
     std::uint64_t looked_at() const { return count_.looked_at(); }  ///< elements
@@ -70,11 +73,14 @@ private:
     void bisect(Node n0, Node n1, Node n2, Node n3, Real u0, Real u1, Real u2, Real u3, int path);
     template <std::size_t number>
     void extract(const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound);
+    void extract_pending();
 
     const Grid* grid_;
     const Field* field_;
     Visitor* visitor_;
     WalkCounts count_;
+    Batch pending_;  // elements to be extracted together
+    BatchSelection selection_;
 };
 
 /// Walks down from an element with these values; `end` is told the walk's counts.
@@ -103,6 +109,7 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
         return;
     }
     if constexpr (in_blocks_ && number == last_) {
+        extract_pending();
         BlockWalk<Grid, Field, Visitor> blocks(*grid_, *field_, *visitor_, count_);
         blocks.run(n, u, path);
     } else {
@@ -148,11 +155,19 @@ template <class Grid, class Field, class Visitor, bool whole>
 template <std::size_t number>
 NESTGRID_NOINLINE void BisectionWalk<Grid, Field, Visitor, whole>::extract(
     const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound) {
-    Alone alone;
-    alone.begin(*grid_, number, path / 2);
-    alone.put_corners(0, n, u, path % 2 != 0);
     ++count_.extracted;
-    visitor_->extract_part(alone, 0, 1, bound);
+    selection_.add(Batch::room + pending_.element_count);
+    pending_.put_element(number, n, u, path / 2, path % 2 != 0, bound);
+    if (pending_.element_count == Batch::room) extract_pending();
+}
+
+template <class Grid, class Field, class Visitor, bool whole>
+void BisectionWalk<Grid, Field, Visitor, whole>::extract_pending() {
+    if (selection_.count == 0) return;
+    pending_.fill_up_elements();
+    visitor_->extract(std::as_const(pending_), selection_);
+    pending_.element_count = 0;
+    selection_.clear();
 }
 
 }  // namespace nestgrid

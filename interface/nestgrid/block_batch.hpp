@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Blocks of bisections (bisection_block.hpp) side by side: a row of numbers for each of their
-// nodes, so that one loop does the same for all of them.
+// nodes, so that one loop does the same for all of them; and elements beside them.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <span>
 #include <utility>
 
 #include <nestgrid/bisection_block.hpp>
@@ -28,7 +32,7 @@ constexpr bool is_above_subtrees(SubtreeFaces edge) {
 constexpr bool is_within_subtree(SubtreeFaces edge) { return (edge & subtree_faces) == 0; }
 constexpr bool is_within_root(SubtreeFaces edge) { return (edge & root_faces) == 0; }
 
-/// How many are walked side by side.
+/// How many are walked side by side, and as many elements beside them.
 inline constexpr std::size_t most_blocks = 32;
 
 /// The least and the greatest of an element's values.
@@ -56,45 +60,158 @@ struct PackedGlance {
     Pack<Real> bound;                ///< where it stops
 };
 
-/// Blocks on one level, in the order of the traversal.
-/// \tparam most  room for as many. One alone may be no more than an element that is extracted: then
-///         there is nothing but its corners
-template <class Grid, class Real, std::size_t most>
+/// Where the nodes of a pattern's blocks, and the corners of the elements beside them, are kept in
+/// the rows of a batch. What is in a batch has a number: blocks have 0 ... most_blocks - 1, and the
+/// elements those that follow.
+template <const auto& pattern>
+struct BatchPlaces {
+    static constexpr std::size_t block_rows = pattern.height == 0 ? 0 : pattern.nodes;
+    static constexpr std::size_t rows = block_rows + pattern.corners;
+    static constexpr std::size_t count = rows * most_blocks;
+
+    static constexpr bool is_block(std::size_t id) { return id < most_blocks; }
+    /// Of a node of a block, or of a corner of an element.
+    static constexpr std::size_t of(std::size_t id, std::size_t node) {
+        return (node + (is_block(id) ? 0 : block_rows)) * most_blocks + id % most_blocks;
+    }
+};
+
+/// Between two places of a batch.
+struct BatchEdge {
+    std::uint16_t low;
+    std::uint16_t high;
+};
+
+/// How many of the bits of a byte are set.
+constexpr unsigned count_bits(unsigned byte) {
+    byte = (byte & 0x55U) + (byte >> 1U & 0x55U);
+    byte = (byte & 0x33U) + (byte >> 2U & 0x33U);
+    return (byte & 0xFU) + (byte >> 4U);
+}
+
+/// Of a batch, what is to be extracted, by number, in the order of the traversal: elements, and of
+/// blocks the parts that stop and, where these are leaves, the ends that are reached.
+struct BatchSelection {
+    bool ends_are_leaves = false;
+    std::size_t count = 0;
+    std::array<std::uint8_t, 2 * most_blocks> id;
+    // There are no other blocks among them.
+    std::size_t first_block = 0;
+    std::size_t end_of_blocks = 0;
+
+    NESTGRID_INLINE void add(std::size_t number) {
+        id[count++] = static_cast<std::uint8_t>(number);
+    }
+    NESTGRID_INLINE void add_block(std::size_t b) {
+        add(b);
+        if (end_of_blocks == 0) first_block = b;
+        end_of_blocks = b + 1;
+    }
+    /// Blocks first ... end - 1; nothing else yet.
+    NESTGRID_INLINE void add_blocks(std::size_t first, std::size_t end) {
+        static constexpr auto numbers = [] {
+            std::array<std::uint8_t, 2 * most_blocks> all{};
+            for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint8_t>(i);
+            return all;
+        }();
+        std::memcpy(id.data(), numbers.data() + first, most_blocks);
+        count = end - first;
+        first_block = first;
+        end_of_blocks = end;
+    }
+    void clear() {
+        count = 0;
+        end_of_blocks = 0;
+    }
+};
+
+/// Blocks on one level, in the order of the traversal, and elements on any level.
+template <class Grid, class Real>
 struct BlockBatch {
     using Node = typename Grid::Node;
     static constexpr const auto& pattern = block_of<Grid>;
-    static constexpr std::size_t room = most;
+    static constexpr std::size_t room = most_blocks;
+    using Places = BatchPlaces<pattern>;
     template <class T>
-    struct alignas(most * sizeof(T) % 64 == 0 ? 64 : alignof(T)) Row : std::array<T, most> {};
+    struct alignas(room * sizeof(T) % 64 == 0 ? 64 : alignof(T)) Row : std::array<T, room> {};
+    /// Numbers of all places, row by row.
     template <class T>
-    using Rows = std::array<Row<T>, pattern.nodes>;
+    struct alignas(64) Rows {
+        std::array<T, Places::count> all;
+
+        NESTGRID_INLINE T* operator[](std::size_t row) { return all.data() + row * room; }
+        NESTGRID_INLINE const T* operator[](std::size_t row) const {
+            return all.data() + row * room;
+        }
+    };
 
     const Grid* grid;
-    std::size_t bisection;  ///< number of the one of part 1
-    int level;              ///< of part 1
-    std::size_t count;
+    int level;                      ///< of part 1 of the blocks
+    std::size_t count;              ///< of blocks
+    std::size_t element_count = 0;  ///< beside them
     Rows<Node> nodes;
     Rows<NodeKey> keys;
     Rows<Real> values;  ///< P_S U
     Rows<SubtreeFaces> sides;
-    Row<std::uint8_t> orientations;  ///< of part 1: 1 in a mirror
+    std::array<std::uint8_t, 2 * room> orientations;  ///< 1 in a mirror; of blocks, part 1
+    /// Of blocks, the ends that are reached, one bit each.
+    std::array<std::uint8_t, room> ends;
+    /// Of blocks, where any stops, the parts that are not entered, from bit 0 on part 2; else 0.
+    std::array<std::uint8_t, room> undivided;
+    /// Of blocks, the parts that stop, from bit 0 on part 2, and what was said of them.
+    Row<MaskOf<Real>> stops;
+    std::array<Row<Real>, 2 * pattern.ends> bounds;
+    /// Of blocks, not below the bound of any part that stops; of elements, the bound.
+    std::array<Real, 2 * room> greatest_bounds;
+    // Of elements:
+    std::array<std::uint16_t, room> element_levels;
+    std::array<std::uint8_t, room> bisections;
 
-    void begin(const Grid& of, std::size_t number, int on_level) {
+    void begin(const Grid& of, int on_level) {
         grid = &of;
-        bisection = number;
         level = on_level;
         count = 0;
     }
-    /// The corners of block b, above the subtrees and in no root.
+    /// The corners of block b, or of element b - room, above the subtrees and in no root.
     void put_corners(std::size_t b, const std::array<Node, 4>& n, const std::array<Real, 4>& u,
                      bool mirror) {
         for (std::size_t i = 0; i < pattern.corners; ++i) {
-            nodes[i][b] = n[i];
-            keys[i][b] = grid->key(n[i]);
-            values[i][b] = u[i];
-            sides[i][b] = root_faces | subtree_faces;
+            const std::size_t at = Places::of(b, i);
+            nodes.all[at] = n[i];
+            keys.all[at] = grid->key(n[i]);
+            values.all[at] = u[i];
+            sides.all[at] = root_faces | subtree_faces;
         }
         orientations[b] = mirror ? 1 : 0;
+    }
+    /// An element behind the others.
+    /// \param bound what is known of U in it beside the values at its corners
+    void put_element(std::size_t bisection, const std::array<Node, 4>& n,
+                     const std::array<Real, 4>& u, int on_level, bool mirror, Real bound) {
+        const std::size_t e = element_count++;
+        put_corners(room + e, n, u, mirror);
+        set_element(e, bisection, on_level, bound);
+    }
+    /// A part of a block of any batch of the grid, in the place of the next element.
+    /// \tparam with_keys whether keys and sides are wanted
+    template <bool with_keys>
+    NESTGRID_INLINE void copy_element(const BlockBatch& from, std::size_t b, std::size_t p,
+                                      Real bound) {
+        const std::size_t e = element_count;
+        const auto& part = pattern.part[p];
+        unrolled<pattern.corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const std::size_t at = Places::of(b, part.corner[i]);
+            const std::size_t to = Places::of(room, i) + e;
+            nodes.all[to] = from.nodes.all[at];
+            values.all[to] = from.values.all[at];
+            if constexpr (with_keys) {
+                keys.all[to] = from.keys.all[at];
+                sides.all[to] = from.sides.all[at];
+            }
+        });
+        orientations[room + e] =
+            static_cast<std::uint8_t>(from.orientations[b] ^ (part.mirrored ? 1U : 0U));
+        set_element(e, part.bisection, from.level + part.depth, bound);
     }
 
     /// Repeats the last block, that rows may be read up to packed(count). There is one.
@@ -108,54 +225,70 @@ struct BlockBatch {
             }
         }
     }
+    /// The same with the values of elements. There is one.
+    NESTGRID_INLINE void fill_up_elements() {
+        for (std::size_t i = 0; i < pattern.corners; ++i) {
+            Real* const row = values[Places::block_rows + i];
+            for (std::size_t e = element_count; e < packed(element_count); ++e) row[e] = row[0];
+        }
+    }
 
-    // Of block b.
-    NESTGRID_INLINE NodeKey key(std::size_t b, std::size_t node) const { return keys[node][b]; }
-    NESTGRID_INLINE Real value(std::size_t b, std::size_t node) const { return values[node][b]; }
-    NESTGRID_INLINE SubtreeFaces faces(std::size_t b, std::size_t node) const {
-        return sides[node][b];
+    /// Of what has a number.
+    NESTGRID_INLINE bool mirrored(std::size_t id) const { return orientations[id] != 0; }
+    /// x, y, z and the value at a place.
+    NESTGRID_INLINE WidePoint point(std::size_t place) const requires(!AnswersInRows<Grid>) {
+        return WidePoint(grid->position(nodes.all[place]), static_cast<double>(values.all[place]));
     }
-    NESTGRID_INLINE const Real* row(std::size_t node) const { return values[node].data(); }
-    NESTGRID_INLINE bool mirrored(std::size_t b) const { return orientations[b] != 0; }
-    NESTGRID_INLINE Point position(std::size_t b, std::size_t node) const {
-        return grid->position(nodes[node][b]);
+    /// At both ends of edges, one behind the other.
+    void points(std::span<const BatchEdge> edges, WidePoint* x) const {
+        if constexpr (AnswersInRows<Grid>) {
+            points_in_rows(edges, x);
+        } else {
+            for (const auto& [low, high] : edges) {
+                *x++ = point(low);
+                *x++ = point(high);
+            }
+        }
     }
-    NESTGRID_INLINE void all_positions(std::size_t b,
-                                       std::array<WidePoint, pattern.nodes>& x) const {
-        positions_of<pattern.nodes>(b, x, [](std::size_t i) NESTGRID_INLINE_LAMBDA { return i; });
-    }
-    /// Of the corners of a part.
-    NESTGRID_INLINE void corner_positions(std::size_t b, std::size_t part,
-                                          std::array<WidePoint, pattern.corners>& x) const {
-        positions_of<pattern.corners>(b, x, [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
-            return std::size_t{pattern.part[part].corner[i]};
-        });
-    }
-    /// Faces on the boundary of the domain, one bit each.
-    unsigned boundary(std::size_t b, std::size_t part) const {
-        return grid->boundary_faces(element(b, part));
-    }
-    ElementOf<Grid> element(std::size_t b, std::size_t part) const {
-        const auto& which = pattern.part[part];
+    Point position(std::size_t place) const { return grid->position(nodes.all[place]); }
+    /// A part of a block, or an element.
+    ElementOf<Grid> element(std::size_t id, std::size_t part) const {
+        const bool is_block = Places::is_block(id);
         std::array<Node, pattern.corners> of;
-        for (std::size_t i = 0; i < of.size(); ++i) of[i] = nodes[which.corner[i]][b];
-        return grid->element(part == 1 ? bisection : which.bisection, of);
+        for (std::size_t i = 0; i < of.size(); ++i) {
+            of[i] = nodes.all[Places::of(id, is_block ? pattern.part[part].corner[i] : i)];
+        }
+        return grid->element(is_block ? pattern.part[part].bisection : bisections[id - room], of);
+    }
+    /// Faces of it on the boundary of the domain, one bit each.
+    unsigned boundary(std::size_t id, std::size_t part) const {
+        return grid->boundary_faces(element(id, part));
     }
 
 private:
-    template <std::size_t many, class Which>
-    NESTGRID_INLINE void positions_of(std::size_t b, std::array<WidePoint, many>& x,
-                                      const Which& which) const {
-        if constexpr (AnswersInRows<Grid>) {
-            std::array<Node, many> of;
-            std::array<Point, many> at;
-            for (std::size_t i = 0; i < many; ++i) of[i] = nodes[which(i)][b];
-            grid->positions(of, at);
-            for (std::size_t i = 0; i < many; ++i) x[i] = WidePoint(at[i]);
-        } else {
-            unrolled<many>([&](auto i) NESTGRID_INLINE_LAMBDA {
-                x[i] = WidePoint(grid->position(nodes[which(i)][b]));
-            });
+    NESTGRID_INLINE void set_element(std::size_t e, std::size_t bisection, int on_level,
+                                     Real bound) {
+        bisections[e] = static_cast<std::uint8_t>(bisection);
+        element_levels[e] = static_cast<std::uint16_t>(on_level);
+        greatest_bounds[room + e] = bound;
+    }
+    void points_in_rows(std::span<const BatchEdge> edges, WidePoint* x) const {
+        constexpr std::size_t at_once = 128;
+        std::array<Node, 2 * at_once> of;
+        std::array<Point, 2 * at_once> at;
+        while (!edges.empty()) {
+            const auto some = edges.first(std::min(at_once, edges.size()));
+            for (std::size_t i = 0; i < some.size(); ++i) {
+                of[2 * i] = nodes.all[some[i].low];
+                of[2 * i + 1] = nodes.all[some[i].high];
+            }
+            grid->positions(std::span(of).first(2 * some.size()),
+                            std::span(at).first(2 * some.size()));
+            for (std::size_t i = 0; i < some.size(); ++i) {
+                *x++ = WidePoint(at[2 * i], static_cast<double>(values.all[some[i].low]));
+                *x++ = WidePoint(at[2 * i + 1], static_cast<double>(values.all[some[i].high]));
+            }
+            edges = edges.subspan(some.size());
         }
     }
 };

@@ -39,13 +39,8 @@ private:
 /// Walks down from an element that starts a block. A visitor has
 ///     PackedGlance glance(const PackedElements&) what to do with each of them
 ///     void expect(const NodeKey* nodes)          optional: eight that will be glanced at
-///     bool extract_part(const BlockBatch&, std::size_t b, std::size_t part, Real bound)
-///             an element of block b, and whether there was anything to extract; bound: what
-///             glance() said of it, or 0 for a leaf
-///     unsigned extract_blocks(const BlockBatch&, std::size_t first, std::size_t end,
-///                             const std::uint8_t* entered)
-///             of blocks first ... end - 1 those of the ends entered in which there is anything to
-///             extract, and says how many; bit i of entered[b] stands for end i. All are leaves
+///     unsigned extract(const BlockBatch&, const BatchSelection&)
+///             what is selected, and in how many of the leaves there was anything to extract
 ///     void begin_subtrees()                      optional, to be told of faces: what was inside
 ///                                                subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
@@ -86,9 +81,10 @@ private:
     static constexpr int subtree_height_ = 3;
     static constexpr std::size_t room_ = most_blocks;
     static constexpr std::size_t stopped_room_ = 64;
-    using Batch = BlockBatch<Grid, Real, room_>;
+    using Batch = BlockBatch<Grid, Real>;
     template <class T>
     using Row = typename Batch::template Row<T>;
+    static constexpr unsigned interior_ = (1U << (ends_ - 2)) - 1;  // parts that are no ends
 
     /// An element that is extracted when the blocks before it are done.
     struct Stopped {
@@ -100,20 +96,14 @@ private:
     };
     /// A run of the order of the traversal.
     struct Queue : Batch {
+        Row<MaskOf<Real>> entered;  // parts of blocks, from bit 0 on part 2
         std::array<Stopped, stopped_room_ + 1> stopped;
         std::size_t stopped_count = 0;
         std::size_t taken = 0;  // of them
     };
-    /// What becomes of the elements within blocks, ends excepted.
-    struct Interior {
-        Row<MaskOf<Real>> descend;  // bit i: part i + 2
-        Row<MaskOf<Real>> stop;
-        std::array<Row<Real>, ends_> bound;  // by part
-    };
-    /// Parts of blocks in the order of the traversal.
-    template <std::size_t most>
-    struct PartList {
-        static constexpr std::size_t room = most;
+    /// Parts of blocks in the order of the traversal: ends, which are split, and what stops.
+    struct Steps {
+        static constexpr std::size_t room = room_ * ends_;
         std::size_t count = 0;
         std::array<std::uint8_t, room + ends_> block;
         std::array<std::uint8_t, room + ends_> part;
@@ -124,10 +114,6 @@ private:
             std::memset(block.data() + count, static_cast<int>(b), ends_);
             count += order.count;
         }
-    };
-    /// Ends, which are split, and what stops.
-    struct Steps : PartList<room_ * ends_> {
-        using PartList<room_ * ends_>::room;
         // Of the ends alone:
         std::size_t end_count = 0;
         alignas(64) std::array<Real, room + 1> lo;
@@ -138,12 +124,6 @@ private:
         alignas(64) std::array<MaskOf<Real>, room + 1> descend;
         alignas(64) std::array<MaskOf<Real>, room + 1> stop;
         alignas(64) std::array<Real, room + 1> bound;
-    };
-
-    /// What is extracted one by one: parts of blocks in which something stops, and elements that
-    /// stopped above, which have their number in the place of a block.
-    struct Singles : PartList<room_ * ends_ + stopped_room_> {
-        static constexpr std::uint8_t stopped = 2 * ends_;  ///< in the place of a part
     };
 
     /// The parts of a batch that the blocks of the next one are.
@@ -164,33 +144,36 @@ private:
     void make_nodes(Batch& batch) const;
     void ask_for_nodes(Batch& batch) const;
     void know_of(Batch& batch, std::size_t at, std::size_t first) const;
-    void look_within(const Batch& batch, Interior& interior) const;
+    void look_within(Queue& batch) const;
     void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
-    void extract_leaves(Queue& batch, const Interior& interior, std::size_t first, std::size_t end);
-    void extract_singly(const Queue& batch, const Interior& interior, Singles& singles);
-    void enter(Queue& batch, const Interior& interior, std::size_t first, std::size_t end,
-               Queue& next);
-    void list(const Batch& batch, const Interior& interior, std::size_t first, std::size_t end,
-              Steps& steps) const;
+    void extract_blocks(Queue& batch, std::size_t first, std::size_t end, bool are_leaves);
+    void enter(Queue& batch, std::size_t first, std::size_t end, Queue& next);
+    void list(const Queue& batch, std::size_t first, std::size_t end, Steps& steps) const;
     void look_at_ends(const Batch& batch, Steps& steps) const;
     void find_new_nodes(Steps& steps) const;
+    static void note_stopped_ends(Queue& batch, const Steps& steps);
     static void copy_corners(const Batch& batch, Origins& which, Queue& next);
-    static const auto& order_of(const Interior& interior, std::size_t b) {
-        return block_orders<pattern_>[static_cast<std::size_t>(interior.descend[b] |
-                                                               interior.stop[b] << (ends_ - 2))];
+    static const auto& order_of(const Queue& batch, std::size_t b) {
+        return block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |
+                                                               batch.stops[b] << (ends_ - 2))];
     }
     NESTGRID_INLINE static std::pair<Real, Real> range_within(const Batch& batch, std::size_t b,
                                                               std::size_t part) {
         const auto& corner = pattern_.part[part].corner;
-        return range_of<Real>({batch.value(b, corner[0]), batch.value(b, corner[1]),
-                               batch.value(b, corner[2]), batch.value(b, corner[3])});
+        return range_of<Real>({batch.values[corner[0]][b], batch.values[corner[1]][b],
+                               batch.values[corner[2]][b], batch.values[corner[3]][b]});
     }
     /// \return whether there is no room for another
     static bool put(const Stopped& element, Queue& next);
-    void extract(const Stopped& element) {
-        ++count_->extracted;
-        visitor_->extract_part(*element.of, element.block, element.part, element.bound);
+    void extract(Queue& batch, BatchSelection& selection) {
+        if (batch.element_count > 0) batch.fill_up_elements();
+        count_->extracted +=
+            visitor_->extract(std::as_const(static_cast<Batch&>(batch)), selection);
+        batch.element_count = 0;
+        selection.clear();
     }
+    void select(Queue& batch, const Stopped& element, BatchSelection& selection);
+    void extract_first_stopped(Queue& next);
     /// Calls function(const Stopped&) for those up to a block that were not taken yet.
     template <class Function>
     static void take_stopped(Queue& batch, std::size_t block, Function&& function) {

@@ -16,8 +16,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_whether_split(
     const auto& [from, to] = parent_of_new_[ends_];
     if constexpr (AnswersInRows<Grid>) {
         std::array<Node, room_> between;
-        grid_->perhaps_middles(std::span(batch.nodes[from]).first(batch.count),
-                               std::span(batch.nodes[to]).first(batch.count),
+        grid_->perhaps_middles(std::span(batch.nodes[from], batch.count),
+                               std::span(batch.nodes[to], batch.count),
                                std::span(between).first(batch.count));
         for (std::size_t b = 0; b < batch.count; ++b) ends[b] = between[b] != Grid::no_node;
     } else {
@@ -33,13 +33,13 @@ template <class Rows, class Middle>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve(Rows& rows, std::size_t at,
                                                             std::size_t first,
                                                             const Middle& middle) {
-    using T = typename Rows::value_type::value_type;
-    const auto& from = rows[pattern_.parent[at][0]];
-    const auto& to = rows[pattern_.parent[at][1]];
+    using T = std::remove_cvref_t<decltype(rows[0][0])>;
+    const T* const from = rows[pattern_.parent[at][0]];
+    const T* const to = rows[pattern_.parent[at][1]];
     if constexpr (Packable<T>) {
         if constexpr (std::is_invocable_v<Middle, const Pack<T>&, const Pack<T>&>) {
-            return middle(Pack<T>::load(from.data() + first), Pack<T>::load(to.data() + first))
-                .store(rows[at].data() + first);
+            return middle(Pack<T>::load(from + first), Pack<T>::load(to + first))
+                .store(rows[at] + first);
         }
     }
     for (std::size_t b = first; b < first + pack; ++b) rows[at][b] = middle(from[b], to[b]);
@@ -71,14 +71,14 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
         Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
             return field_->template value_at<true>(batch.nodes[at][first + b],
                                                    batch.keys[at][first + b]);
-        }).store(batch.values[at].data() + first);
+        }).store(batch.values[at] + first);
     });
 }
 
 /// The same in rows.
 template <class Grid, class Field, class Visitor>
 void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
-    const auto row = [&](auto& of) { return std::span(of).first(packed(batch.count)); };
+    const auto row = [&](auto* of) { return std::span(of, packed(batch.count)); };
     for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
         const auto& [from, to] = pattern_.parent[at];
         grid_->middles(row(batch.nodes[from]), row(batch.nodes[to]), row(batch.nodes[at]));
@@ -94,8 +94,8 @@ void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::know_of(Batch& batch, std::size_t at,
                                                               std::size_t first) const {
-    if constexpr (requires { visitor_->expect(batch.keys[at].data()); }) {
-        visitor_->expect(batch.keys[at].data() + first);
+    if constexpr (requires { visitor_->expect(batch.keys[at]); }) {
+        visitor_->expect(batch.keys[at] + first);
     }
     if constexpr (in_subtrees_) {
         const auto& [from, to] = pattern_.parent[at];

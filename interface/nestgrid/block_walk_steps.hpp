@@ -21,7 +21,7 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     subtree_level_ = path / 2 + static_cast<int>(Grid::block_height) * above_subtree;
 
     Queue first;
-    first.begin(*grid_, last_, path / 2);
+    first.begin(*grid_, path / 2);
     first.put_corners(0, n, u, path % 2 != 0);
     for (std::size_t i = 0; i < corners_; ++i) {
         first.sides[i][0] = static_cast<SubtreeFaces>(faces_at(i) << 4U | subtree_faces);
@@ -31,7 +31,11 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     const NodeKey middle = grid_->key(grid_->middle(n[rule.parent[0]], n[rule.parent[1]]));
     const auto [visit, bound] =
         visitor_->glance(lo, hi, grid_->rule(last_), middle, path / 2, false);
-    if (visit == Visit::stop) extract(Stopped{&first, 0, 1, 0, bound});
+    if (visit == Visit::stop) {
+        BatchSelection selection;
+        select(first, {&first, 0, 1, 0, bound}, selection);
+        extract(first, selection);
+    }
     if (visit == Visit::descend) walk(first);
 }
 
@@ -47,28 +51,30 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     } else {
         make_nodes(batch);
     }
-    Interior interior;
-    look_within(batch, interior);
+    look_within(batch);
     std::uint64_t descended = batch.count;
     std::array<bool, room_> split;  // the ends of each
     look_whether_split(batch, split);
     for (std::size_t b = 0; b < batch.count; ++b) {
-        const auto& reached = pattern_.reached[static_cast<std::size_t>(interior.descend[b])];
-        interior.descend[b] &= reached.interior;
-        interior.stop[b] &= reached.interior;
+        const auto& reached = pattern_.reached[static_cast<std::size_t>(batch.entered[b])];
+        batch.entered[b] &= reached.interior;
+        batch.stops[b] &= reached.interior;
+        batch.ends[b] = reached.ends;
+        batch.undivided[b] = static_cast<std::uint8_t>(
+            batch.stops[b] == 0 ? 0U : ~static_cast<unsigned>(batch.entered[b]) & interior_);
         descended += reached.descended;
     }
     count_->bisect(descended, *visitor_);
 
     Queue next;
-    next.begin(*grid_, last_, batch.level + static_cast<int>(pattern_.height));
+    next.begin(*grid_, batch.level + static_cast<int>(pattern_.height));
     for (std::size_t first = 0, end = 0; first < batch.count; first = end) {
         while (end < batch.count && split[end] == split[first]) ++end;
         if (split[first]) {
-            enter(batch, interior, first, end, next);
+            enter(batch, first, end, next);
         } else {
             finish(next);
-            extract_leaves(batch, interior, first, end);
+            extract_blocks(batch, first, end, true);
         }
     }
     take_stopped(batch, batch.count, [&](const Stopped& element) {
@@ -80,103 +86,104 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
 template <class Grid, class Field, class Visitor>
 NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& batch) {
     for (std::size_t i = 0; i < corners_; ++i) {
-        for (SubtreeFaces& side : batch.sides[i]) {
-            side = static_cast<SubtreeFaces>((side & root_faces) | faces_at(i));
+        SubtreeFaces* const sides = batch.sides[i];
+        for (std::size_t b = 0; b < batch.count; ++b) {
+            sides[b] = static_cast<SubtreeFaces>((sides[b] & root_faces) | faces_at(i));
         }
     }
     visitor_->begin_subtrees();
 }
 
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(const Batch& batch,
-                                                                  Interior& interior) const {
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
     using Bits = Pack<MaskOf<Real>>;
     for (std::size_t first = 0; first < batch.count; first += pack) {
         auto descend = Bits::all(0);
         auto stop = Bits::all(0);
+        auto greatest = Pack<Real>::all(0);
         unrolled<ends_ - 2>([&](auto i) NESTGRID_INLINE_LAMBDA {
             constexpr auto part = pattern_.part[i + 2];
             const auto value = [&](std::size_t corner) NESTGRID_INLINE_LAMBDA {
-                return Pack<Real>::load(batch.values[part.corner[corner]].data() + first);
+                return Pack<Real>::load(batch.values[part.corner[corner]] + first);
             };
             const Pack<Real> u0 = value(0), u1 = value(1), u2 = value(2), u3 = value(3);
             const PackedGlance<Real> glance = visitor_->glance(
                 PackedElements<Real>{grid_->rule(part.bisection), batch.level + part.depth,
-                                     batch.keys[part.middle].data() + first,
-                                     min(min(u0, u1), min(u2, u3)), max(max(u0, u1), max(u2, u3))});
+                                     batch.keys[part.middle] + first, min(min(u0, u1), min(u2, u3)),
+                                     max(max(u0, u1), max(u2, u3))});
             const auto bit = Bits::all(MaskOf<Real>{1} << i);
             descend = descend | (glance.descend & bit);
             stop = stop | (glance.stop & bit);
-            glance.bound.store(interior.bound[i + 2].data() + first);
+            greatest =
+                max(greatest,
+                    (glance.bound.template as<MaskOf<Real>>() & glance.stop).template as<Real>());
+            glance.bound.store(batch.bounds[i + 2].data() + first);
         });
-        descend.store(interior.descend.data() + first);
-        stop.store(interior.stop.data() + first);
+        descend.store(batch.entered.data() + first);
+        stop.store(batch.stops.data() + first);
+        greatest.store(batch.greatest_bounds.data() + first);
     }
 }
 
-/// Blocks whose ends are leaves.
+/// Blocks in which nothing is entered beyond the ends.
+/// \param are_leaves the ends
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::extract_leaves(Queue& batch,
-                                                                     const Interior& interior,
-                                                                     std::size_t first,
-                                                                     std::size_t end) {
-    Row<std::uint8_t> entered;
-    for (std::size_t b = first; b < end; ++b) {
-        entered[b] = pattern_.reached[static_cast<std::size_t>(interior.descend[b])].ends;
-    }
-    Singles singles;
-    const auto extract_until = [&](std::size_t b) {
-        if (first == b) return;
-        extract_singly(batch, interior, singles);
-        count_->extracted += visitor_->extract_blocks(batch, first, b, entered.data());
-        first = b;
-    };
-    for (std::size_t b = first; b < end; ++b) {
-        if (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before <= b) {
-            extract_until(b);
-            take_stopped(batch, b, [&](const Stopped& element) {
-                singles.block[singles.count] =
-                    static_cast<std::uint8_t>(&element - batch.stopped.data());
-                singles.part[singles.count++] = Singles::stopped;
-            });
-        }
-        if (interior.stop[b] != 0) {
-            extract_until(b);
-            singles.append(order_of(interior, b), b);
-            first = b + 1;
+NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_blocks(Queue& batch,
+                                                                       std::size_t first,
+                                                                       std::size_t end,
+                                                                       bool are_leaves) {
+    BatchSelection selection;
+    selection.ends_are_leaves = are_leaves;
+    if (batch.taken == batch.stopped_count || batch.stopped[batch.taken].before >= end) {
+        selection.add_blocks(first, end);
+    } else {
+        for (std::size_t b = first; b < end; ++b) {
+            take_stopped(batch, b,
+                         [&](const Stopped& element) { select(batch, element, selection); });
+            selection.add_block(b);
         }
     }
-    extract_until(end);
-    extract_singly(batch, interior, singles);
+    for (std::size_t b = first; b < end; ++b) {
+        const auto stops = static_cast<std::size_t>(batch.stops[b]);
+        count_->extracted += count_bits(pattern_.first_ends[stops & interior_]);
+        count_->extracted += count_bits(static_cast<unsigned>(stops >> (ends_ - 2)));
+    }
+    extract(batch, selection);
 }
 
+/// To be extracted next.
 template <class Grid, class Field, class Visitor>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_singly(const Queue& batch,
-                                                                       const Interior& interior,
-                                                                       Singles& singles) {
-    for (std::size_t i = 0; i < singles.count; ++i) {
-        const std::size_t b = singles.block[i];
-        const std::size_t part = singles.part[i];
-        if (part == Singles::stopped) {
-            extract(batch.stopped[b]);
-            continue;
-        }
-        const bool is_end = part >= ends_;
-        const Real bound = is_end ? Real(0) : interior.bound[part % ends_][b];
-        const bool anything = visitor_->extract_part(batch, b, part, bound);
-        count_->extracted += !is_end || anything ? 1 : 0;
-    }
-    singles.count = 0;
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::select(Queue& batch, const Stopped& element,
+                                                             BatchSelection& selection) {
+    batch.template copy_element<in_subtrees_>(*element.of, element.block, element.part,
+                                              element.bound);
+    selection.add(room_ + batch.element_count++);
+    ++count_->extracted;
+    if (batch.element_count == room_) extract(batch, selection);
+}
+
+/// Those that stopped before the first block.
+template <class Grid, class Field, class Visitor>
+NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_first_stopped(Queue& next) {
+    BatchSelection selection;
+    take_stopped(next, 0, [&](const Stopped& element) { select(next, element, selection); });
+    if (selection.count > 0) extract(next, selection);
 }
 
 /// Blocks whose ends are split.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const Interior& interior,
-                                                            std::size_t first, std::size_t end,
-                                                            Queue& next) {
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::size_t first,
+                                                            std::size_t end, Queue& next) {
     Steps steps;
-    list(batch, interior, first, end, steps);
+    list(batch, first, end, steps);
     look_at_ends(batch, steps);
+    MaskOf<Real> any_entered = 0;
+    for (std::size_t i = 0; i < steps.end_count; ++i) any_entered |= steps.descend[i];
+    if (any_entered == 0) {
+        finish(next);
+        note_stopped_ends(batch, steps);
+        return extract_blocks(batch, first, end, false);
+    }
     Origins which;
     which.copied = next.count;
     const auto finish_next = [&] {
@@ -197,8 +204,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const 
         const MaskOf<Real> ended = is_end ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         const MaskOf<Real> descends = steps.descend[next_end] & ended;
         const MaskOf<Real> stops = steps.stop[next_end] | ~ended;
-        const Real* const bound =
-            is_end ? &steps.bound[next_end] : &interior.bound[part % ends_][b];
+        const Real* const bound = is_end ? &steps.bound[next_end] : &batch.bounds[part][b];
         next_end += is_end ? 1 : 0;
         which.block[next.count] = static_cast<std::uint8_t>(b);
         which.part[next.count] = static_cast<std::uint8_t>(part);
@@ -215,13 +221,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, const 
 
 /// What comes next in these blocks, and what there is to know of the ends.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Batch& batch,
-                                                           const Interior& interior,
-                                                           std::size_t first, std::size_t end,
-                                                           Steps& steps) const {
-    for (std::size_t b = first; b < end; ++b) {
-        steps.append(order_of(interior, b), b);
-    }
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Queue& batch, std::size_t first,
+                                                           std::size_t end, Steps& steps) const {
+    for (std::size_t b = first; b < end; ++b) steps.append(order_of(batch, b), b);
     for (std::size_t i = 0; i < steps.count; ++i) {
         const std::size_t b = steps.block[i];
         const std::size_t part = steps.part[i];
@@ -234,7 +236,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Batch& batch,
             steps.to[steps.end_count] = batch.nodes[parent[1]][b];
         } else {
             steps.node[steps.end_count] =
-                grid_->middle_key(batch.key(b, parent[0]), batch.key(b, parent[1]));
+                grid_->middle_key(batch.keys[parent[0]][b], batch.keys[parent[1]][b]);
         }
         steps.end_count += part >= ends_ ? 1 : 0;
     }
@@ -267,6 +269,22 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(const Batch& 
     steps.bound[steps.end_count] = 0;
 }
 
+/// Of blocks whose ends all stop or are skipped.
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, const Steps& steps) {
+    std::size_t next_end = 0;
+    for (std::size_t i = 0; i < steps.count; ++i) {
+        const std::size_t b = steps.block[i];
+        const std::size_t part = steps.part[i];
+        if (part < ends_) continue;
+        const Real bound = steps.bound[next_end];
+        if (steps.stop[next_end++] == 0) continue;
+        batch.stops[b] |= MaskOf<Real>{1} << (part - 2);
+        batch.bounds[part][b] = bound;
+        batch.greatest_bounds[b] = std::max(batch.greatest_bounds[b], bound);
+    }
+}
+
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::copy_corners(const Batch& batch,
                                                                    Origins& which, Queue& next) {
@@ -297,7 +315,9 @@ bool BlockWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
 /// Walks what was gathered.
 template <class Grid, class Field, class Visitor>
 void BlockWalk<Grid, Field, Visitor>::finish(Queue& next) {
-    take_stopped(next, 0, [&](const Stopped& element) { extract(element); });
+    if (next.taken < next.stopped_count && next.stopped[next.taken].before == 0) {
+        extract_first_stopped(next);
+    }
     if (next.count > 0) walk(next);
     next.count = 0;
     next.stopped_count = 0;

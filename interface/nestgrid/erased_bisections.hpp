@@ -20,38 +20,50 @@ class ErasedBlocks {
 public:
     static constexpr const auto& pattern = maubach_block<dim>;
 
-    virtual Point position(std::size_t b, std::size_t node) const = 0;
-    virtual void all_positions(std::size_t b, std::array<WidePoint, pattern.nodes>& x) const = 0;
-    virtual void corner_positions(std::size_t b, std::size_t part,
-                                  std::array<WidePoint, pattern.corners>& x) const = 0;
-    virtual nestgrid_element element(std::size_t b, std::size_t part) const = 0;
-    virtual unsigned boundary(std::size_t b, std::size_t part) const = 0;
+    virtual Point position(std::size_t place) const = 0;
+    virtual void points(std::span<const BatchEdge> edges, WidePoint* x) const = 0;
+    virtual nestgrid_element element(std::size_t id, std::size_t part) const = 0;
+    virtual unsigned boundary(std::size_t id, std::size_t part) const = 0;
 
-    NodeKey key(std::size_t b, std::size_t node) const { return keys_[room_ * node + b]; }
-    Real value(std::size_t b, std::size_t node) const { return values_[room_ * node + b]; }
-    const Real* row(std::size_t node) const { return values_ + room_ * node; }
-    SubtreeFaces faces(std::size_t b, std::size_t node) const { return sides_[room_ * node + b]; }
-    bool mirrored(std::size_t b) const { return orientations_[b] != 0; }
+    bool mirrored(std::size_t id) const { return orientations[id] != 0; }
 
     const int level;
+    const std::size_t element_count;
+
+    /// Rows of a batch.
+    template <class T>
+    struct Rows {
+        const T* all;
+
+        const T* operator[](std::size_t row) const { return all + row * most_blocks; }
+    };
+    const Rows<NodeKey> keys;
+    const Rows<Real> values;
+    const Rows<SubtreeFaces> sides;
+    const std::uint8_t* const orientations;
+    const Real* const greatest_bounds;
+    const std::uint8_t* const ends;
+    const std::uint8_t* const undivided;
+    const MaskOf<Real>* const stops;
+    const std::uint16_t* const element_levels;
+    const Rows<Real> bounds;
 
 protected:
     template <class Batch>
     explicit ErasedBlocks(const Batch& batch)
         : level{batch.level},
-          room_{Batch::room},
-          keys_{batch.keys[0].data()},
-          values_{batch.values[0].data()},
-          sides_{batch.sides[0].data()},
-          orientations_{batch.orientations.data()} {}
+          element_count{batch.element_count},
+          keys{batch.keys[0]},
+          values{batch.values[0]},
+          sides{batch.sides[0]},
+          orientations{batch.orientations.data()},
+          greatest_bounds{batch.greatest_bounds.data()},
+          ends{batch.ends.data()},
+          undivided{batch.undivided.data()},
+          stops{batch.stops.data()},
+          element_levels{batch.element_levels.data()},
+          bounds{batch.bounds[0].data()} {}
     ~ErasedBlocks() = default;
-
-private:
-    std::size_t room_;
-    const NodeKey* keys_;
-    const Real* values_;
-    const SubtreeFaces* sides_;
-    const std::uint8_t* orientations_;
 };
 
 template <int dim, class Real>
@@ -70,10 +82,8 @@ public:
     virtual PackedGlance<Real> glance(const PackedElements<Real>& e) = 0;
     virtual void expect(const NodeKey* nodes) const = 0;
     virtual void begin_subtrees() = 0;
-    virtual bool extract_part(const ErasedBlocks<dim, Real>& blocks, std::size_t b,
-                              std::size_t part, Real bound) = 0;
-    virtual unsigned extract_blocks(const ErasedBlocks<dim, Real>& blocks, std::size_t first,
-                                    std::size_t end, const std::uint8_t* entered) = 0;
+    virtual unsigned extract(const ErasedBlocks<dim, Real>& blocks,
+                             const BatchSelection& selection) = 0;
 
 protected:
     ErasedBisectionVisitor() = default;
@@ -105,13 +115,8 @@ public:
     PackedGlance<Real> glance(const PackedElements<Real>& e) { return to_->glance(e); }
     void expect(const NodeKey* nodes) const { to_->expect(nodes); }
     template <class Batch>
-    bool extract_part(const Batch& batch, std::size_t b, std::size_t part, Real bound) {
-        return to_->extract_part(Blocks<Batch>(batch), b, part, bound);
-    }
-    template <class Batch>
-    unsigned extract_blocks(const Batch& batch, std::size_t first, std::size_t end,
-                            const std::uint8_t* entered) {
-        return to_->extract_blocks(Blocks<Batch>(batch), first, end, entered);
+    unsigned extract(const Batch& batch, const BatchSelection& selection) {
+        return to_->extract(Blocks<Batch>(batch), selection);
     }
 
 private:
@@ -119,22 +124,15 @@ private:
     struct Blocks final : ErasedBlocks<dim, Real> {
         explicit Blocks(const Batch& batch) : ErasedBlocks<dim, Real>(batch), of{&batch} {}
 
-        Point position(std::size_t b, std::size_t node) const override {
-            return of->position(b, node);
+        Point position(std::size_t place) const override { return of->position(place); }
+        void points(std::span<const BatchEdge> edges, WidePoint* x) const override {
+            of->points(edges, x);
         }
-        void all_positions(std::size_t b,
-                           std::array<WidePoint, Batch::pattern.nodes>& x) const override {
-            of->all_positions(b, x);
+        nestgrid_element element(std::size_t id, std::size_t part) const override {
+            return erased(of->element(id, part));
         }
-        void corner_positions(std::size_t b, std::size_t part,
-                              std::array<WidePoint, Batch::pattern.corners>& x) const override {
-            of->corner_positions(b, part, x);
-        }
-        nestgrid_element element(std::size_t b, std::size_t part) const override {
-            return erased(of->element(b, part));
-        }
-        unsigned boundary(std::size_t b, std::size_t part) const override {
-            return of->boundary(b, part);
+        unsigned boundary(std::size_t id, std::size_t part) const override {
+            return of->boundary(id, part);
         }
 
         const Batch* of;

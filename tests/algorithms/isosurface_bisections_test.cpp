@@ -248,6 +248,73 @@ TEST(KnownBisections, StreamTheSameTriangles) {
     }
 }
 
+/// A soup takes many triangles at once.
+TEST(KnownBisections, FillASoupWithTheSameTriangles) {
+    const Samples n{17, 17, 17};
+    const SampledField data = sampled_fields(n)[0];
+    const LatticeBisection<3> grid({.samples = n});
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : {0.0, 0.02 * data.range}) {
+        const double isovalue = data.isovalue;
+        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+        std::vector<std::array<float, 9>> soup;
+        std::vector<SimplexSoup<3, float>> sinks;
+        sinks.emplace_back(soup);
+        extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1), std::move(sinks),
+                            criterion, indicator);
+        const auto result = isosurface(grid, field, isovalue, indicator, {.threshold = threshold});
+        const auto& surface = result.surface;
+        ASSERT_EQ(soup.size(), surface.simplices.size());
+        for (std::size_t i = 0; i < soup.size(); ++i) {
+            for (std::size_t k = 0; k < 9; ++k) {
+                const Point& x = surface.vertices[surface.simplices[i][k / 3]];
+                ASSERT_EQ(soup[i][k], static_cast<float>(x[k % 3]));
+            }
+        }
+    }
+}
+
+/// Bounds that are too small near the leaves, which hides some of what is there.
+struct TooSmall {
+    const HierarchicalIndicator& of;
+    float least;
+    double offset_bound(NodeKey node) const { return of.stop(node); }
+    float bound(std::span<const NodeKey> nodes) const {
+        const float bound = of.bound(nodes);
+        return bound < least ? 0 : bound;
+    }
+    const HangingNodes* hanging() const { return of.hanging(); }
+    std::uint64_t epoch() const { return of.epoch(); }
+    bool stops_conform() const { return true; }
+};
+
+TEST(KnownBisections, DrawNoMoreThanIsEntered) {
+    const Samples n{17, 17, 17};
+    std::size_t hidden = 0;
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        const LatticeBisection<3> known({.samples = n});
+        const Unknown<3> unknown({.samples = n});
+        const LatticeField known_field(known, std::span<const float>(data.values));
+        const LatticeField unknown_field(unknown, std::span<const float>(data.values));
+        const HierarchicalIndicator indicator(known, known_field);
+        const TooSmall bounds{indicator, static_cast<float>(data.range)};
+        for (const double threshold : {0.0, 0.003, 0.02}) {
+            const Threshold<HierarchicalIndicator> criterion{&indicator, threshold * data.range};
+            const auto draw = [&](const auto& grid, const auto& field, const auto& by) {
+                return isosurface(grid, field, data.isovalue, criterion, by);
+            };
+            const auto a = draw(known, known_field, bounds);
+            EXPECT_GT(a.surface.simplices.size(), 0U);
+            expect_same(a, draw(unknown, unknown_field, bounds));
+            hidden += draw(known, known_field, indicator).surface.simplices.size();
+            hidden -= a.surface.simplices.size();
+        }
+    }
+    EXPECT_GT(hidden, 0U);
+}
+
 /// Isovalues between two numbers of the values' type, and at one.
 TEST(KnownBisections, TellInsideFromOutsideInTheirOwnType) {
     const Samples n{9, 9, 9};

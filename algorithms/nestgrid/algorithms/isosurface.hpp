@@ -110,7 +110,9 @@ struct ContourOwner {
 /// Where an edge is cut, seen from its lower end.
 inline double cut_fraction(double isovalue, double low, double high) {
     constexpr double least = 0x1p-20;
-    return std::min(std::max((isovalue - low) / (high - low), least), 1 - least);
+    const double fraction = (isovalue - low) / (high - low);
+    const double raised = fraction < least ? least : fraction;
+    return raised > 1 - least ? 1 - least : raised;
 }
 
 /// Draws the level sets of several isovalues in one traversal; each has a sink of its own.
@@ -193,10 +195,7 @@ public:
         for (Layer& layer : layers_) layer.number_within.clear();
     }
     template <class Blocks>
-    unsigned extract_blocks(const Blocks& blocks, std::size_t first, std::size_t end,
-                            const std::uint8_t* entered);
-    template <class Blocks>
-    bool extract_part(const Blocks& blocks, std::size_t b, std::size_t part, Real bound);
+    unsigned extract(const Blocks& blocks, const BatchSelection& selection);
     void tick(std::uint64_t calls, std::uint64_t visited) const;
     void count(std::uint64_t calls, std::uint64_t visited);
 
@@ -237,7 +236,7 @@ private:
         const Transitions* drawn_below = nullptr;  // that of all tasks
         std::vector<Where> where{};
         Number vertex_count = 0;
-        std::array<MaskOf<Real>, most_blocks> signs{};  // of blocks
+        std::array<MaskOf<Real>, 2 * most_blocks> signs{};  // of what is in a batch
     };
     using Vertex = std::conditional_t<indexed, Number, Point>;
     using VertexName = std::conditional_t<indexed, VertexNumbers::Name, Nothing>;
@@ -278,17 +277,41 @@ private:
     // isosurface_bisections.hpp
     bool knows_bisections_of_grid() const;
     template <class Blocks>
-    void set_signs(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer);
+    void set_signs(const Blocks& blocks, const BatchSelection& selection, Layer& layer);
     using BlockVertex = std::conditional_t<indexed, Number, WidePoint>;
-    NESTGRID_INLINE static double fraction(const Layer& layer, Real low, Real high) {
-        return cut_fraction(layer.isovalue, static_cast<double>(low), static_cast<double>(high));
-    }
+    struct CutEntry {
+        const BlockContours::Front* front;
+        const BlockContours::Contour* contour;
+        std::uint16_t first_cut;
+        std::uint16_t id;  // in the batch
+    };
+    struct CutList {  // what a level passes through
+        std::size_t count = 0;
+        std::array<CutEntry, 3 * most_blocks + 1> entry;  // of blocks each half
+
+        std::span<const CutEntry> entries() const { return {entry.data(), count}; }
+    };
     template <class Blocks>
-    void draw_blocks(const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
-                     const BlockContours& contours);
+    void draw_list(const Blocks& blocks, const BatchSelection& selection, Layer& layer,
+                   const BlockContours& contours, CutList& list);
     template <class Blocks>
-    Number number_in(const Blocks& blocks, std::size_t b, const Layer& layer, std::size_t low,
-                     std::size_t high, const VertexNumbers::Name& name);
+    static unsigned parts_meant(const Blocks& blocks, const BatchSelection& selection,
+                                std::size_t id);
+    template <class Blocks, class Function>
+    void for_each_part(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
+                       const CutEntry& entry, Function&& function) const;
+    template <class Blocks>
+    void raise_error_bound(const Blocks& blocks, Layer& layer, std::size_t id,
+                           unsigned parts) const;
+    template <class Blocks, class Run>
+    void find_vertices(const Blocks& blocks, Layer& layer, const Run& run, Number* v);
+    template <class Corners>
+    void put_simplices(Layer& layer, std::span<const BlockVertex> v,
+                       std::span<const Corners> all);
+    template <class Blocks, class Cuts>
+    void put_boundaries(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
+                        const BlockContours& contours, const CutList& list, const Cuts& cuts,
+                        const Number* v);
 
     // isosurface_plain.hpp
     const ContourTable& contours_of(Shape shape);

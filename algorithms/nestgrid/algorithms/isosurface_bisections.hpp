@@ -36,16 +36,12 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 return to->glance(e);
             }
             void expect(const NodeKey* nodes) const override { to->expect(nodes); }
-            bool extract_part(const ErasedBlocks<dimension, Real>& blocks, std::size_t b,
-                              std::size_t part, Real bound) override {
-                return to->extract_part(blocks, b, part, bound);
-            }
             void begin_subtrees() override {
                 if constexpr (indexed) to->begin_subtrees();
             }
-            unsigned extract_blocks(const ErasedBlocks<dimension, Real>& blocks, std::size_t first,
-                                    std::size_t end, const std::uint8_t* entered) override {
-                return to->extract_blocks(blocks, first, end, entered);
+            unsigned extract(const ErasedBlocks<dimension, Real>& blocks,
+                             const BatchSelection& selection) override {
+                return to->extract(blocks, selection);
             }
             void tick(std::uint64_t calls, std::uint64_t visited) override {
                 to->tick(calls, visited);
@@ -112,203 +108,299 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
     return result;
 }
 
-/// Which nodes of blocks first ... end - 1 have U >= C.
+/// Of each block and element which nodes have U >= C.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::set_signs(
-    const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer) {
+    const Blocks& blocks, const BatchSelection& selection, Layer& layer) {
+    using Places = BatchPlaces<Blocks::pattern>;
     using Bits = Pack<MaskOf<Real>>;
     const auto least_inside = Pack<Real>::all(layer.least_inside);
-    for (std::size_t b = first / pack * pack; b < end; b += pack) {
-        auto signs = Bits::all(0);
-        unrolled<Blocks::pattern.nodes>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            const auto value = Pack<Real>::load(blocks.row(i) + b);
-            signs = signs | (at_most(least_inside, value) & Bits::all(MaskOf<Real>{1} << i));
-        });
-        signs.store(layer.signs.data() + b);
-    }
+    const auto set = [&](auto rows, std::size_t first_row, std::size_t first, std::size_t end,
+                         std::size_t to) NESTGRID_INLINE_LAMBDA {
+        for (std::size_t b = first / pack * pack; b < end; b += pack) {
+            auto signs = Bits::all(0);
+            unrolled<rows>([&](auto i) NESTGRID_INLINE_LAMBDA {
+                const auto value = Pack<Real>::load(blocks.values[first_row + i] + b);
+                signs = signs | (at_most(least_inside, value) & Bits::all(MaskOf<Real>{1} << i));
+            });
+            signs.store(layer.signs.data() + to + b);
+        }
+    };
+    set(std::integral_constant<std::size_t, Places::block_rows>{}, 0, selection.first_block,
+        selection.end_of_blocks, 0);
+    set(std::integral_constant<std::size_t, Blocks::pattern.corners>{}, Places::block_rows, 0,
+        blocks.element_count, most_blocks);
 }
 
-/// Those of the ends entered which a level passes through.
-/// \return how many
+/// \return in how many leaves of blocks there is anything to draw
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_blocks(
-    const Blocks& blocks, std::size_t first, std::size_t end, const std::uint8_t* entered) {
-    const BlockContours& contours = BlockContours::of<Blocks::pattern>();
-    const auto count_ends = [](unsigned bits) {  // at most 8 of them
-        bits = (bits & 0x55U) + (bits >> 1U & 0x55U);
-        bits = (bits & 0x33U) + (bits >> 2U & 0x33U);
-        return (bits & 0xFU) + (bits >> 4U);
-    };
-    for (Layer& layer : layers_) set_signs(blocks, first, end, layer);
-    const auto draw_until = [&](std::size_t b) {
-        for (Layer& layer : layers_) draw_blocks(blocks, first, b, layer, contours);
-    };
-    unsigned extracted = 0;
-    for (std::size_t b = first; b < end; ++b) {
-        unsigned ends = 0;
-        for (const Layer& layer : layers_) {
-            ends |= contours.at(static_cast<unsigned>(layer.signs[b])).ends;
-        }
-        bool plainly = (ends & ~entered[b]) == 0;
-        if constexpr (indexed) plainly = plainly && (ends == 0 || blocks.boundary(b, 1) == 0);
-        if (!plainly) {
-            draw_until(b);
-            first = b + 1;
-            ends &= entered[b];
-            for (unsigned left = ends; left != 0; left &= left - 1) {
-                const auto part = static_cast<unsigned>(std::countr_zero(left));
-                extract_part(blocks, b, Blocks::pattern.ends + part, Real(0));
+unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract(
+    const Blocks& blocks, const BatchSelection& selection) {
+    constexpr const auto& pattern = Blocks::pattern;
+    const BlockContours& contours = BlockContours::of<pattern>();
+    std::array<std::uint8_t, 2 * most_blocks> parts{};  // by number
+    for (Layer& layer : layers_) {
+        layer_ = &layer;
+        set_signs(blocks, selection, layer);
+        CutList list;
+        for (std::size_t i = 0; i < selection.count; ++i) {
+            const std::size_t id = selection.id[i];
+            const auto see = [&](const BlockContours::Front& front) NESTGRID_INLINE_LAMBDA {
+                const auto& contour = front.at(static_cast<std::size_t>(layer.signs[id]));
+                parts[id] |= contour.parts;
+                list.entry[list.count] = {&front, &contour, 0, static_cast<std::uint16_t>(id)};
+                list.count += contour.parts == 0 ? 0 : 1;
+            };
+            if (!BatchPlaces<pattern>::is_block(id)) {
+                see(contours.alone());
+            } else if (const auto* block = contours.block(blocks.undivided[id])) {
+                see(*block);
+            } else {
+                see(contours.half(2, blocks.undivided[id]));
+                see(contours.half(3, blocks.undivided[id]));
             }
         }
-        extracted += count_ends(ends);
+        if (list.count > 0) draw_list(blocks, selection, layer, contours, list);
     }
-    draw_until(end);
-    return extracted;
+    if (!selection.ends_are_leaves) return 0;
+    unsigned leaves = 0;
+    for (std::size_t b = selection.first_block; b < selection.end_of_blocks; ++b) {
+        leaves += count_bits(unsigned{parts[b]} & blocks.ends[b]);
+    }
+    return leaves;
 }
 
-/// One element of a block, of which no more than its corners need be known.
-/// \return whether a level passes through it
+/// The parts of a block that are meant to be drawn, each by its first end, one bit each.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_NOINLINE bool IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::extract_part(
-    const Blocks& blocks, std::size_t b, std::size_t p, Real bound) {
-    constexpr std::size_t corners = Blocks::pattern.corners;
-    const auto& part = Blocks::pattern.part[p];
-    const BlockContours& contours = BlockContours::of<Blocks::pattern>();
-    const int level = blocks.level + part.depth;
-    std::array<Real, corners> u;
-    unrolled<corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
-        u[i] = blocks.value(b, part.corner[i]);
-    });
-    bool any = false;
-    for (Layer& layer : layers_) {
-        unsigned bits = 0;
-        unrolled<corners>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            bits |= unsigned{u[i] >= layer.least_inside} << i;
-        });
-        if (bits == 0 || bits + 1 == 1U << corners) continue;
-        any = true;
-        layer_ = &layer;
-        deepest_ = std::max(deepest_, level);
-        layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
-        ++layer.extracted;
-        if (keeps_elements(layer.sink)) {
-            layer.sink.add_element(blocks.element(b, p), simplex_shape, level);
-        }
-        [[maybe_unused]] std::array<WidePoint, corners> x;
-        if constexpr (!indexed) blocks.corner_positions(b, p, x);
-        const BlockContours::Piece& piece = contours.piece(bits);
-        const auto draw = [&](auto count) {
-            std::array<BlockVertex, count> v;
-            unrolled<count>([&](auto i) {
-                const auto& [low, high] = piece.cut[i];
-                if constexpr (indexed) {
-                    const std::size_t from = part.corner[low];
-                    const std::size_t to = part.corner[high];
-                    const auto name =
-                        layer.number_of.name({blocks.key(b, from), blocks.key(b, to)});
-                    v[i] = number_in(blocks, b, layer, from, to, name);
-                } else {
-                    v[i] = x[low] + fraction(layer, u[low], u[high]) * (x[high] - x[low]);
-                }
-            });
-            count_simplices(count < 4 ? 1 : 2);
-            put_loop(v, count, part.mirrored != blocks.mirrored(b));
-            if constexpr (indexed) put_boundary(v, count, piece.face, blocks.boundary(b, p));
-        };
-        constexpr auto least = static_cast<std::size_t>(dimension);
-        if (piece.count == least) {
-            draw(std::integral_constant<std::size_t, least>{});
-        } else {
-            draw(std::integral_constant<std::size_t, 4>{});
-        }
-    }
-    return any;
+NESTGRID_INLINE unsigned IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::parts_meant(
+    const Blocks& blocks, const BatchSelection& selection, std::size_t id) {
+    constexpr const auto& pattern = Blocks::pattern;
+    if (!BatchPlaces<pattern>::is_block(id)) return 1;
+    const auto stops = static_cast<std::size_t>(blocks.stops[id]);
+    return (selection.ends_are_leaves ? unsigned{blocks.ends[id]} : 0U) |
+           pattern.first_ends[stops % pattern.part_sets] |
+           static_cast<unsigned>(stops / pattern.part_sets);
 }
 
-/// All ends of blocks first ... end - 1 that a level passes through.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_blocks(
-    const Blocks& blocks, std::size_t first, std::size_t end, Layer& layer,
-    const BlockContours& contours) {
-    using Run = BlockContourRun<Blocks::pattern, most_blocks>;
+NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_list(
+    const Blocks& blocks, const BatchSelection& selection, Layer& layer,
+    const BlockContours& contours, CutList& list) {
+    constexpr const auto& pattern = Blocks::pattern;
+    using Places = BatchPlaces<pattern>;
+    using Run = BlockContourRun<pattern>;
     Run run;
-    [[maybe_unused]] std::array<std::array<WidePoint, Blocks::pattern.nodes>,
-                                indexed ? 1 : most_blocks>
-        x;
-    for (std::size_t b = first; b < end; ++b) {
-        const auto& contour = contours.at(static_cast<unsigned>(layer.signs[b]));
-        if (contour.loop_count == 0) continue;
-        run.append(contours, contour, b);
-        if constexpr (!indexed) blocks.all_positions(b, x[b]);
+    for (std::size_t k = 0; k < list.count; ++k) {
+        CutEntry& entry = list.entry[k];
+        const std::size_t id = entry.id;
+        const unsigned meant = parts_meant(blocks, selection, id);
+        const int level = Places::is_block(id) ? blocks.level + entry.contour->depth
+                                               : int{blocks.element_levels[id % most_blocks]};
+        deepest_ = std::max(deepest_, level);
+        if (static_cast<double>(blocks.greatest_bounds[id]) > layer.error_bound) {
+            raise_error_bound(blocks, layer, id, entry.contour->parts & meant);
+        }
+        entry.first_cut = static_cast<std::uint16_t>(run.cut_count);
+        if ((entry.contour->parts & ~meant) == 0) {
+            run.append(*entry.front, *entry.contour, id, blocks.mirrored(id));
+            continue;
+        }
+        for_each_part(blocks, selection, layer, entry, [&](std::size_t part, unsigned bits) {
+            std::array<std::uint16_t, 4> places{};
+            for (std::size_t i = 0; i < pattern.corners; ++i) {
+                places[i] =
+                    static_cast<std::uint16_t>(Places::of(id, pattern.part[part].corner[i]));
+            }
+            run.append_alone(contours, bits, places,
+                             blocks.mirrored(id) != pattern.part[part].mirrored);
+        });
     }
-    if (run.loop_count == 0) return;
-    layer_ = &layer;
-    const int level = blocks.level + static_cast<int>(Blocks::pattern.height);
-    deepest_ = std::max(deepest_, level);
-    layer.extracted += run.loop_count;
+    if (run.simplex_count == 0) return;
+    layer.extracted += run.simplex_count - run.four_count;
     count_simplices(run.simplex_count);
 
     std::array<BlockVertex, Run::most_cuts> v;
     if constexpr (indexed) {
-        const std::array<const VertexNumbers*, 2> table{&layer.number_of, &layer.number_within};
-        std::array<VertexNumbers::Name, Run::most_cuts> names;
-        for (std::size_t i = 0; i < run.cut_count; ++i) {
-            const std::size_t b = run.block_of_cut(i);
-            const auto& [low, high] = run.cut(i);
-            names[i] = layer.number_of.name({blocks.key(b, low), blocks.key(b, high)});
-            const bool within = is_within_subtree(blocks.faces(b, low) & blocks.faces(b, high));
-            table[within ? 1 : 0]->prefetch(names[i]);
-        }
-        for (std::size_t i = 0; i < run.cut_count; ++i) {
-            const auto& [low, high] = run.cut(i);
-            v[i] = number_in(blocks, run.block_of_cut(i), layer, low, high, names[i]);
-        }
+        find_vertices(blocks, layer, run, v.data());
     } else {
-        for (std::size_t i = 0; i < run.cut_count; ++i) {
-            const std::size_t b = run.block_of_cut(i);
-            const auto& [low, high] = run.cut(i);
-            const double part = fraction(layer, blocks.value(b, low), blocks.value(b, high));
-            v[i] = x[b][low] + part * (x[b][high] - x[b][low]);
+        const double isovalue = layer.isovalue;
+        const auto between = [&](const WidePoint& a, const WidePoint& b) NESTGRID_INLINE_LAMBDA {
+            return a + cut_fraction(isovalue, a.value(), b.value()) * (b - a);
+        };
+        WidePoint* to = v.data();
+        if constexpr (requires { blocks.point(0); }) {
+            for (const auto& [low, high] : run.cuts()) {
+                *to++ = between(blocks.point(low), blocks.point(high));
+            }
+        } else {
+            std::array<WidePoint, 2 * Run::most_cuts> x;
+            blocks.points(run.cuts(), x.data());
+            const WidePoint* from = x.data();
+            for (std::size_t i = 0; i < run.cut_count; ++i, from += 2) {
+                *to++ = between(from[0], from[1]);
+            }
         }
     }
-
-    for (std::size_t i = 0; i < run.loop_count; ++i) {
-        const std::size_t b = run.block_of_loop(i);
-        const BlockContours::Loop& loop = run.loop(i);
-        if (keeps_elements(layer.sink)) {
-            layer.sink.add_element(blocks.element(b, Blocks::pattern.ends + loop.end),
-                                   simplex_shape, level);
-        }
-        struct {
-            const BlockVertex* vertex;
-            const std::uint8_t* cut;
-            NESTGRID_INLINE const BlockVertex& operator[](std::size_t k) const {
-                return vertex[cut[k]];
+    for (const auto& four : run.fours()) {
+        const auto x = [&](std::size_t i) -> decltype(auto) {
+            if constexpr (indexed) {
+                return layer.sink.position(v[four.cut[i]]);
+            } else {
+                return (v[four.cut[i]]);
             }
-        } const corners{v.data() + run.first_cut(i), loop.cut.data()};
-        put_loop(corners, loop.count, (loop.mirrored != 0) != blocks.mirrored(b));
+        };
+        run.divide(four, !shorter(x(0), x(2), x(1), x(3)));
+    }
+    const auto vertices = std::span<const BlockVertex>(v).first(run.cut_count);
+    if (!keeps_elements(layer.sink)) {
+        put_simplices(layer, vertices, run.simplices());
+    } else {
+        auto simplices = run.simplices();
+        for (const CutEntry& entry : list.entries()) {
+            for_each_part(blocks, selection, layer, entry, [&](std::size_t part, unsigned bits) {
+                const std::size_t id = entry.id;
+                const int level = Places::is_block(id)
+                                      ? blocks.level + pattern.part[part].depth
+                                      : int{blocks.element_levels[id % most_blocks]};
+                layer.sink.add_element(blocks.element(id, part), simplex_shape, level);
+                const std::size_t count = contours.piece(bits).count == 4 ? 2 : 1;
+                put_simplices(layer, vertices, simplices.first(count));
+                simplices = simplices.subspan(count);
+            });
+        }
+    }
+    if constexpr (indexed) {
+        put_boundaries(blocks, selection, layer, contours, list, run.cuts(), v.data());
     }
 }
 
-/// The vertex between two nodes of a block.
+/// function(part, bits) for those that are drawn; bits: at which corners U >= C. An element is its
+/// part 1.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks, class Function>
+void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::for_each_part(
+    const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
+    const CutEntry& entry, Function&& function) const {
+    constexpr const auto& pattern = Blocks::pattern;
+    const auto signs = static_cast<unsigned>(layer.signs[entry.id]);
+    if (!BatchPlaces<pattern>::is_block(entry.id)) return function(std::size_t{1}, signs);
+    const unsigned meant = parts_meant(blocks, selection, entry.id);
+    const unsigned undivided = blocks.undivided[entry.id];
+    for (std::size_t end = 0; end < pattern.ends; ++end) {
+        if ((entry.contour->parts & meant & 1U << end) == 0) continue;
+        const std::size_t part = pattern.part_above(end, undivided);
+        unsigned bits = 0;
+        for (std::size_t i = 0; i < pattern.corners; ++i) {
+            bits |= (signs >> pattern.part[part].corner[i] & 1U) << i;
+        }
+        function(part, bits);
+    }
+}
+
+/// \param parts drawn, each by its first end, one bit each
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::number_in(
-    const Blocks& blocks, std::size_t b, const Layer& layer, std::size_t low, std::size_t high,
-    const VertexNumbers::Name& name) -> Number {
-    const SubtreeFaces faces = blocks.faces(b, low) & blocks.faces(b, high);
-    return add_within(name, faces, [&] {
-        Cut cut{blocks.position(b, low),
-                {blocks.key(b, low), blocks.key(b, high)},
-                fraction(layer, blocks.value(b, low), blocks.value(b, high)),
-                {}};
-        cut.x = cut.x + cut.fraction * (blocks.position(b, high) - cut.x);
-        return cut;
-    });
+NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::raise_error_bound(
+    const Blocks& blocks, Layer& layer, std::size_t id, unsigned parts) const {
+    constexpr const auto& pattern = Blocks::pattern;
+    const auto raise = [&](Real bound) {
+        layer.error_bound = std::max(layer.error_bound, static_cast<double>(bound));
+    };
+    if (!BatchPlaces<pattern>::is_block(id)) return raise(blocks.greatest_bounds[id]);
+    for (std::size_t part = 2; part < 2 * pattern.ends; ++part) {
+        if ((blocks.stops[id] >> (part - 2) & 1U) == 0) continue;
+        if ((parts >> pattern.first_end(part) & 1U) != 0) raise(blocks.bounds[part][id]);
+    }
+}
+
+/// The vertices on all cuts.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks, class Run>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_vertices(
+    const Blocks& blocks, Layer& layer, const Run& run, Number* v) {
+    const NodeKey* const key = blocks.keys[0];
+    const SubtreeFaces* const sides = blocks.sides[0];
+    const Real* const value = blocks.values[0];
+    const std::array<const VertexNumbers*, 2> table{&layer.number_of, &layer.number_within};
+    std::array<VertexNumbers::Name, Run::most_cuts> names;
+    VertexNumbers::Name* name = names.data();
+    for (const auto& [low, high] : run.cuts()) {
+        *name = layer.number_of.name({key[low], key[high]});
+        table[is_within_subtree(sides[low] & sides[high]) ? 1 : 0]->prefetch(*name++);
+    }
+    name = names.data();
+    for (const auto& [low, high] : run.cuts()) {
+        const SubtreeFaces faces = sides[low] & sides[high];
+        *v++ = add_within(*name++, faces, [&, low = low, high = high] {
+            Cut cut{blocks.position(low),
+                    {key[low], key[high]},
+                    cut_fraction(layer.isovalue, static_cast<double>(value[low]),
+                                 static_cast<double>(value[high])),
+                    {}};
+            cut.x = cut.x + cut.fraction * (blocks.position(high) - cut.x);
+            return cut;
+        });
+    }
+}
+
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Corners>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_simplices(
+    Layer& layer, std::span<const BlockVertex> v, std::span<const Corners> all) {
+    using Simplex = std::array<Vertex, static_cast<std::size_t>(dimension)>;
+    const auto make = [&](const Corners& corners) NESTGRID_INLINE_LAMBDA {
+        Simplex simplex;
+        for (std::size_t k = 0; k < simplex.size(); ++k) simplex[k] = Vertex(v[corners[k]]);
+        return simplex;
+    };
+    if constexpr (!indexed && requires { layer.sink.add_simplices(v, all); }) {
+        layer.sink.add_simplices(v, all);
+    } else if constexpr (indexed && requires(std::span<const Simplex> some) {
+                             layer.sink.add_simplices(some);
+                         }) {
+        std::array<Simplex, 64> some;
+        while (!all.empty()) {
+            const std::size_t count = std::min(some.size(), all.size());
+            for (std::size_t i = 0; i < count; ++i) some[i] = make(all[i]);
+            layer.sink.add_simplices(std::span<const Simplex>(some).first(count));
+            all = all.subspan(count);
+        }
+    } else {
+        for (const Corners& corners : all) layer.sink.add_simplex(make(corners), {});
+    }
+}
+
+/// Sides of loops on the boundary of the domain.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks, class Cuts>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_boundaries(
+    const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
+    const BlockContours& contours, const CutList& list, const Cuts& cuts, const Number* v) {
+    constexpr const auto& pattern = Blocks::pattern;
+    for (const CutEntry& entry : list.entries()) {
+        const std::size_t id = entry.id;
+        if (blocks.boundary(id, 1) == 0) continue;
+        for_each_part(blocks, selection, layer, entry, [&](std::size_t part, unsigned bits) {
+            const auto& piece = contours.piece(bits);
+            const auto place = [&](std::size_t corner) {
+                return BatchPlaces<pattern>::of(id, pattern.part[part].corner[corner]);
+            };
+            std::array<Number, 4> corners;
+            for (std::size_t i = 0; i < piece.count; ++i) {
+                std::size_t cut = entry.first_cut;
+                while (cuts[cut].low != place(piece.cut[i].low) ||
+                       cuts[cut].high != place(piece.cut[i].high)) {
+                    ++cut;
+                }
+                corners[i] = v[cut];
+            }
+            put_boundary(corners, piece.count, piece.face, blocks.boundary(id, part));
+        });
+    }
 }
 
 }  // namespace nestgrid::detail

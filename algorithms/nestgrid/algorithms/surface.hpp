@@ -20,6 +20,10 @@
 // A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
 //     void add_element(const Element& element, Shape shape, int level)
 //     void add_simplex(const std::array<Point, dimension>& x, std::span<const Point> reference)
+//     void add_simplices(std::span<const WidePoint> x,
+//                        std::span<const std::array<std::uint16_t, 3>> corners)
+//         optional: several at once, whose corners are some of the points x; of segments the first
+//         two
 // Such a sink may let several threads fill parts of it:
 //     Sink part() const          an empty one of its kind
 //     void append(Sink& part)    puts what is in a part behind what is here, and empties it
@@ -34,6 +38,7 @@
 
 #include <nestgrid/inlining.hpp>
 #include <nestgrid/shape.hpp>
+#include <nestgrid/wide_point.hpp>
 
 namespace nestgrid {
 
@@ -155,6 +160,16 @@ public:
         Simplex& simplex = target_->emplace_back();
         for (std::size_t i = 0; i < simplex.size(); ++i) {
             simplex[i] = static_cast<Real>(x[i / 3][i % 3]);
+        }
+    }
+    void add_simplices(std::span<const WidePoint> x,
+                       std::span<const std::array<std::uint16_t, 3>> all) {
+        for (const auto& corners : all) {
+            Simplex simplex;
+            for (std::size_t i = 0; i < simplex.size(); ++i) {
+                simplex[i] = static_cast<Real>(Point(x[corners[i / 3]])[i % 3]);
+            }
+            target_->push_back(simplex);
         }
     }
 
