@@ -81,6 +81,8 @@ struct BatchEdge {
     std::uint16_t low;
     std::uint16_t high;
 };
+/// As many may be asked for their points.
+inline constexpr std::size_t edges_at_once = 128;
 
 /// How many of the bits of a byte are set.
 constexpr unsigned count_bits(unsigned byte) {
@@ -240,6 +242,7 @@ struct BlockBatch {
         return WidePoint(grid->position(nodes.all[place]), static_cast<double>(values.all[place]));
     }
     /// At both ends of edges, one behind the other.
+    /// \param edges not more than edges_at_once
     void points(std::span<const BatchEdge> edges, WidePoint* x) const {
         if constexpr (AnswersInRows<Grid>) {
             points_in_rows(edges, x);
@@ -273,22 +276,17 @@ private:
         greatest_bounds[room + e] = bound;
     }
     void points_in_rows(std::span<const BatchEdge> edges, WidePoint* x) const {
-        constexpr std::size_t at_once = 128;
-        std::array<Node, 2 * at_once> of;
-        std::array<Point, 2 * at_once> at;
-        while (!edges.empty()) {
-            const auto some = edges.first(std::min(at_once, edges.size()));
-            for (std::size_t i = 0; i < some.size(); ++i) {
-                of[2 * i] = nodes.all[some[i].low];
-                of[2 * i + 1] = nodes.all[some[i].high];
-            }
-            grid->positions(std::span(of).first(2 * some.size()),
-                            std::span(at).first(2 * some.size()));
-            for (std::size_t i = 0; i < some.size(); ++i) {
-                *x++ = WidePoint(at[2 * i], static_cast<double>(values.all[some[i].low]));
-                *x++ = WidePoint(at[2 * i + 1], static_cast<double>(values.all[some[i].high]));
-            }
-            edges = edges.subspan(some.size());
+        std::array<Node, 2 * edges_at_once> of{};
+        std::array<Point, 2 * edges_at_once> at;
+        const std::size_t many = edges.size();
+        for (std::size_t i = 0; i < many; ++i) {
+            of[2 * i] = nodes.all[edges[i].low];
+            of[2 * i + 1] = nodes.all[edges[i].high];
+        }
+        grid->positions(std::span(of).first(2 * many), std::span(at).first(2 * many));
+        for (std::size_t i = 0; i < many; ++i) {
+            *x++ = WidePoint(at[2 * i], static_cast<double>(values.all[edges[i].low]));
+            *x++ = WidePoint(at[2 * i + 1], static_cast<double>(values.all[edges[i].high]));
         }
     }
 };

@@ -7,7 +7,7 @@
 // Invariant: elements are extracted in the order of the plain traversal. A batch is a run of that
 // order, walked to its end before the next one begins; elements that stop travel down with the
 // blocks before them, until all of those are done.
-// Memory: one batch a level of blocks, on the stack: about 20 KB with single precision.
+// Memory: one batch a level of blocks, on the stack: about 22 KB with single precision.
 #pragma once
 
 #include <cstring>

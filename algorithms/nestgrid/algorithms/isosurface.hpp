@@ -303,15 +303,19 @@ private:
     template <class Blocks>
     void raise_error_bound(const Blocks& blocks, Layer& layer, std::size_t id,
                            unsigned parts) const;
-    template <class Blocks, class Run>
-    void find_vertices(const Blocks& blocks, Layer& layer, const Run& run, Number* v);
+    template <class Blocks>
+    void find_points(const Blocks& blocks, const Layer& layer, std::span<const BatchEdge> cuts,
+                     WidePoint* to);
+    template <class Blocks>
+    void find_vertices(const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts,
+                       Number* v);
     template <class Corners>
     void put_simplices(Layer& layer, std::span<const BlockVertex> v,
                        std::span<const Corners> all);
-    template <class Blocks, class Cuts>
+    template <class Blocks>
     void put_boundaries(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
-                        const BlockContours& contours, const CutList& list, const Cuts& cuts,
-                        const Number* v);
+                        const BlockContours& contours, const CutList& list,
+                        std::span<const BatchEdge> cuts, const Number* v);
 
     // isosurface_plain.hpp
     const ContourTable& contours_of(Shape shape);

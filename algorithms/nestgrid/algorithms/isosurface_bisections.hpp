@@ -225,25 +225,9 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
 
     std::array<BlockVertex, Run::most_cuts> v;
     if constexpr (indexed) {
-        find_vertices(blocks, layer, run, v.data());
+        find_vertices(blocks, layer, run.cuts(), v.data());
     } else {
-        const double isovalue = layer.isovalue;
-        const auto between = [&](const WidePoint& a, const WidePoint& b) NESTGRID_INLINE_LAMBDA {
-            return a + cut_fraction(isovalue, a.value(), b.value()) * (b - a);
-        };
-        WidePoint* to = v.data();
-        if constexpr (requires { blocks.point(0); }) {
-            for (const auto& [low, high] : run.cuts()) {
-                *to++ = between(blocks.point(low), blocks.point(high));
-            }
-        } else {
-            std::array<WidePoint, 2 * Run::most_cuts> x;
-            blocks.points(run.cuts(), x.data());
-            const WidePoint* from = x.data();
-            for (std::size_t i = 0; i < run.cut_count; ++i, from += 2) {
-                *to++ = between(from[0], from[1]);
-            }
-        }
+        find_points(blocks, layer, run.cuts(), v.data());
     }
     for (const auto& four : run.fours()) {
         const auto x = [&](std::size_t i) -> decltype(auto) {
@@ -259,7 +243,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
     if (!keeps_elements(layer.sink)) {
         put_simplices(layer, vertices, run.simplices());
     } else {
-        auto simplices = run.simplices();
+        auto left = run.simplices();
         for (const CutEntry& entry : list.entries()) {
             for_each_part(blocks, selection, layer, entry, [&](std::size_t part, unsigned bits) {
                 const std::size_t id = entry.id;
@@ -268,8 +252,8 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
                                       : int{blocks.element_levels[id % most_blocks]};
                 layer.sink.add_element(blocks.element(id, part), simplex_shape, level);
                 const std::size_t count = contours.piece(bits).count == 4 ? 2 : 1;
-                put_simplices(layer, vertices, simplices.first(count));
-                simplices = simplices.subspan(count);
+                put_simplices(layer, vertices, left.first(count));
+                left = left.subspan(count);
             });
         }
     }
@@ -317,23 +301,47 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::raise
     }
 }
 
-/// The vertices on all cuts.
+/// Where the cuts lie.
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Blocks, class Run>
+template <class Blocks>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_points(
+    const Blocks& blocks, const Layer& layer, std::span<const BatchEdge> cuts, WidePoint* to) {
+    const double isovalue = layer.isovalue;
+    const auto between = [&](const WidePoint& a, const WidePoint& b) NESTGRID_INLINE_LAMBDA {
+        return a + cut_fraction(isovalue, a.value(), b.value()) * (b - a);
+    };
+    if constexpr (requires { blocks.point(0); }) {
+        for (const auto& [low, high] : cuts) {
+            *to++ = between(blocks.point(low), blocks.point(high));
+        }
+    } else {
+        std::array<WidePoint, 2 * edges_at_once> x;
+        while (!cuts.empty()) {
+            const std::size_t count = std::min(cuts.size(), edges_at_once);
+            blocks.points(cuts.first(count), x.data());
+            for (std::size_t i = 0; i < count; ++i) *to++ = between(x[2 * i], x[2 * i + 1]);
+            cuts = cuts.subspan(count);
+        }
+    }
+}
+
+/// The vertices on the cuts.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_vertices(
-    const Blocks& blocks, Layer& layer, const Run& run, Number* v) {
+    const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts, Number* v) {
     const NodeKey* const key = blocks.keys[0];
     const SubtreeFaces* const sides = blocks.sides[0];
     const Real* const value = blocks.values[0];
     const std::array<const VertexNumbers*, 2> table{&layer.number_of, &layer.number_within};
-    std::array<VertexNumbers::Name, Run::most_cuts> names;
+    std::array<VertexNumbers::Name, BlockContourRun<Blocks::pattern>::most_cuts> names;
     VertexNumbers::Name* name = names.data();
-    for (const auto& [low, high] : run.cuts()) {
+    for (const auto& [low, high] : cuts) {
         *name = layer.number_of.name({key[low], key[high]});
         table[is_within_subtree(sides[low] & sides[high]) ? 1 : 0]->prefetch(*name++);
     }
     name = names.data();
-    for (const auto& [low, high] : run.cuts()) {
+    for (const auto& [low, high] : cuts) {
         const SubtreeFaces faces = sides[low] & sides[high];
         *v++ = add_within(*name++, faces, [&, low = low, high = high] {
             Cut cut{blocks.position(low),
@@ -376,10 +384,11 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_sim
 
 /// Sides of loops on the boundary of the domain.
 template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Blocks, class Cuts>
+template <class Blocks>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_boundaries(
     const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
-    const BlockContours& contours, const CutList& list, const Cuts& cuts, const Number* v) {
+    const BlockContours& contours, const CutList& list, std::span<const BatchEdge> cuts,
+    const Number* v) {
     constexpr const auto& pattern = Blocks::pattern;
     for (const CutEntry& entry : list.entries()) {
         const std::size_t id = entry.id;
