@@ -48,8 +48,12 @@ public:
 
 private:
     static constexpr std::size_t last_ = Grid::bisections.size() - 1;
+    static constexpr bool tells_where_whole_ =
+        requires(const Grid& grid, const std::array<Node, corners>& nodes) {
+        grid.whole(nodes);
+    };
     static constexpr bool in_blocks_ = [] {
-        if constexpr (whole && KnowsBlocks<Grid> && Packable<Real>) {
+        if constexpr ((whole || tells_where_whole_) && KnowsBlocks<Grid> && Packable<Real>) {
             return requires(Visitor & v, const PackedElements<Real>& e) { v.glance(e); };
         }
         return false;
@@ -74,6 +78,15 @@ private:
     template <std::size_t number>
     void extract(const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound);
     void extract_pending();
+    bool may_walk_blocks(const std::array<Node, 4>& n) const {
+        if constexpr (whole) {
+            return true;
+        } else {
+            std::array<Node, corners> of;
+            std::copy_n(n.begin(), corners, of.begin());
+            return grid_->whole(of);
+        }
+    }
 
     const Grid* grid_;
     const Field* field_;
@@ -109,10 +122,13 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
         return;
     }
     if constexpr (in_blocks_ && number == last_) {
-        extract_pending();
-        BlockWalk<Grid, Field, Visitor> blocks(*grid_, *field_, *visitor_, count_);
-        blocks.run(n, u, path);
-    } else {
+        if (may_walk_blocks(n)) {
+            extract_pending();
+            BlockWalk<Grid, Field, Visitor, whole> blocks(*grid_, *field_, *visitor_, count_);
+            return blocks.run(n, u, path);
+        }
+    }
+    if constexpr (!in_blocks_ || !whole || number != last_) {
         const Node z = grid_->middle(n[rule.parent[0]], n[rule.parent[1]]);
         bool outside = false;
         if constexpr (!whole && may_offer<Grid>(Feature::outside)) {

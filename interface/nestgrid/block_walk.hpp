@@ -36,7 +36,7 @@ private:
     std::uint64_t next_tick_ = 0x4000U;
 };
 
-/// Walks down from an element that starts a block. A visitor has
+/// Walks down from an element that starts a block and in which all is whole. A visitor has
 ///     PackedGlance glance(const PackedElements&) what to do with each of them
 ///     void expect(const NodeKey* nodes)          optional: eight that will be glanced at
 ///     unsigned extract(const BlockBatch&, const BatchSelection&)
@@ -44,7 +44,8 @@ private:
 ///     void begin_subtrees()                      optional, to be told of faces: what was inside
 ///                                                subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
-template <class Grid, class Field, class Visitor>
+/// \tparam whole  that the whole grid is, not only what lies in the element
+template <class Grid, class Field, class Visitor, bool whole>
 class BlockWalk {
 public:
     using Real = typename Field::value_type;

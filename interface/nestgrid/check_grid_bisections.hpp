@@ -50,6 +50,17 @@ void GridChecker<Grid, Field>::check_known_bisection(const Known& known, const N
     demand(known.halved(a, b) == (rule != nullptr), "whether the element is split");
     if constexpr (AnswersInRows<Known>) check_rows(known, values, n, a, b, demand);
     if (rule == nullptr) return;
+    const auto is_whole = [&](const auto& nodes) {
+        if constexpr (requires { known.whole(nodes); }) {
+            if (known.whole(nodes)) return true;
+        }
+        return known.whole();
+    };
+    if constexpr (may_offer<Grid>(Feature::outside)) {
+        const bool none =
+            !offers(grid_, Feature::outside) || call_outside(grid_, context_, s.element) == 0;
+        demand(none || !is_whole(n), "what is whole");
+    }
     if constexpr (std::is_same_v<Known, Grid>) demand(&known.rule(number) == rule, "the rule");
     const auto z = known.middle(a, b);
     NodeKey key{};
@@ -80,6 +91,12 @@ void GridChecker<Grid, Field>::check_known_bisection(const Known& known, const N
         for (std::size_t k = 0; k < corners; ++k) {
             demand(of_child[k] == (half.corner[k] == 4 ? z : n[half.corner[k]]), "a child's node");
         }
+        bool whole = is_whole(of_child);
+        if constexpr (may_offer<Grid>(Feature::masked)) {
+            whole = whole &&
+                    !(offers(grid_, Feature::masked) && call_masked(grid_, context_, children[c]));
+        }
+        demand(whole || !is_whole(n), "what is whole");
     }
 }
 

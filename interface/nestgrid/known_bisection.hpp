@@ -24,10 +24,14 @@
 // also offer
 //     static constexpr std::size_t block_height        2 or 3
 //     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two; likewise
+//     bool whole(const std::array<Node, dimension + 1>& nodes)
+//                                                      of a grid that is not whole(): that nothing
+//                                                      in the element with these nodes is masked or
+//                                                      outside, nor a node of it
 // which says that an element split by the last of the bisections is split that many times over,
 // into elements of the last bisection again, of which either all are split or none; then those are
-// looked at together (block_walk.hpp). Where each question is a call, as through a table, it offers
-// answers in rows instead of middle_key(), and its field values:
+// looked at together (block_walk.hpp), where they are whole. Where each question is a call, as
+// through a table, it offers answers in rows instead of middle_key(), and its field values:
 //     void middles(span<const Node> a, span<const Node> b, span<Node> out)
 //     void keys(span<const Node>, span<NodeKey> out)
 //     void positions(span<const Node>, span<Point> out)

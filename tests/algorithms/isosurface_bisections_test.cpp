@@ -99,7 +99,19 @@ TEST(KnownBisections, DrawWhatThePlainTraversalDraws) {
     }
 }
 
-enum class Mistake { none, orientation, corner, leaf, node, position, key, block, nodes, keys };
+enum class Mistake {
+    none,
+    orientation,
+    corner,
+    leaf,
+    node,
+    position,
+    key,
+    block,
+    nodes,
+    keys,
+    whole
+};
 
 /// One whose bisections at compile time are not those of split() and children().
 template <Mistake mistake>
@@ -132,6 +144,10 @@ struct Mistaken : LatticeBisection<3> {
         const Point x = LatticeBisection<3>::position(n);
         return mistake == Mistake::position ? Point{x[0], x[2], x[1]} : x;
     }
+    using LatticeBisection<3>::whole;
+    bool whole(const std::array<Node, 4>& n) const {
+        return mistake == Mistake::whole || LatticeBisection<3>::whole(n);
+    }
     const Rule* split(const Element& e) const {
         return mistake == Mistake::block && e.tag == 2 ? nullptr : LatticeBisection<3>::split(e);
     }
@@ -139,7 +155,7 @@ struct Mistaken : LatticeBisection<3> {
 
 template <Mistake mistake>
 std::string complaint() {
-    const Samples n{9, 9, 9};
+    const Samples n{mistake == Mistake::whole ? 7 : 9, 9, 9};
     const std::vector<float> values = sampled_fields(n)[0].values;
     const Mistaken<mistake> grid({.samples = n});
     const LatticeField field(grid, std::span<const float>(values));
@@ -160,6 +176,7 @@ TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {
     EXPECT_NE(complaint<Mistake::block>().find("of a block"), std::string::npos);
     EXPECT_NE(complaint<Mistake::nodes>().find("pack of nodes"), std::string::npos);
     EXPECT_NE(complaint<Mistake::keys>().find("pack of keys"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::whole>().find("what is whole"), std::string::npos);
 }
 
 /// Blocks of the finest level are leaves in half of the domain.

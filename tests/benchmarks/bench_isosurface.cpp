@@ -142,6 +142,11 @@ void compare(std::size_t rounds) {
     });
     nestgrid::IsosurfaceSeries series(bucky.grid, bucky.field);
     on_image.add("indexed_again", [&] { series.draw(double{bucky_isovalue}, indexed); });
+    Bucky<n - 1> padded;
+    on_image.add("padded_soup", [&] { padded.draw_soup(padded.grid, padded.field, 0); });
+    on_image.add("padded_indexed", [&] {
+        isosurface(padded.grid, padded.field, double{bucky_isovalue}, padded.indicator, indexed);
+    });
     on_image.add("hexahedra_indexed", [&] {
         isosurface(octree, octree_field, double{bucky_isovalue}, octree_indicator, indexed);
     });
@@ -163,6 +168,8 @@ void compare(std::size_t rounds) {
         return on_image.time(a) / on_image.time(b);
     };
     print("soup_over_handwritten", ratio("soup", "handwritten"));
+    print("padded_soup_over_soup", ratio("padded_soup", "soup"));
+    print("padded_indexed_over_indexed", ratio("padded_indexed", "indexed"));
     print("soup_over_flying_edges", ratio("soup", "flying_edges"));
     print("indexed_over_flying_edges", ratio("indexed", "flying_edges"));
     print("indexed_again_over_flying_edges", ratio("indexed_again", "flying_edges"));

@@ -96,6 +96,11 @@ public:
         return (a + b) >> 1;
     }
     using Lattice<dim>::whole;
+    NESTGRID_INLINE bool whole(const std::array<Place, corners_>& nodes) const {
+        bool none = true;
+        for (const Place p : nodes) none = none && !this->beyond(p);
+        return none;
+    }
 
     bool conforming() const { return true; }
 
