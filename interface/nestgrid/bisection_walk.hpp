@@ -48,12 +48,8 @@ public:
 
 private:
     static constexpr std::size_t last_ = Grid::bisections.size() - 1;
-    static constexpr bool tells_where_whole_ =
-        requires(const Grid& grid, const std::array<Node, corners>& nodes) {
-        grid.whole(nodes);
-    };
     static constexpr bool in_blocks_ = [] {
-        if constexpr ((whole || tells_where_whole_) && KnowsBlocks<Grid> && Packable<Real>) {
+        if constexpr ((whole || TellsWhereWhole<Grid>)&&KnowsBlocks<Grid> && Packable<Real>) {
             return requires(Visitor & v, const PackedElements<Real>& e) { v.glance(e); };
         }
         return false;
@@ -124,7 +120,7 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
     if constexpr (in_blocks_ && number == last_) {
         if (may_walk_blocks(n)) {
             extract_pending();
-            BlockWalk<Grid, Field, Visitor, whole> blocks(*grid_, *field_, *visitor_, count_);
+            BlockWalk<Grid, Field, Visitor> blocks(*grid_, *field_, *visitor_, count_);
             return blocks.run(n, u, path);
         }
     }

@@ -44,8 +44,7 @@ private:
 ///     void begin_subtrees()                      optional, to be told of faces: what was inside
 ///                                                subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
-/// \tparam whole  that the whole grid is, not only what lies in the element
-template <class Grid, class Field, class Visitor, bool whole>
+template <class Grid, class Field, class Visitor>
 class BlockWalk {
 public:
     using Real = typename Field::value_type;

@@ -10,8 +10,8 @@
 namespace nestgrid {
 
 /// One end of a block says it for all of them.
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::look_whether_split(
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_whether_split(
     const Batch& batch, std::array<bool, room_>& ends) const {
     const auto& [from, to] = parent_of_new_[ends_];
     if constexpr (AnswersInRows<Grid>) {
@@ -28,11 +28,11 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::look_whether_split(
 }
 
 /// Eight of a row of rows: what lies in the middle of two others.
-template <class Grid, class Field, class Visitor, bool whole>
+template <class Grid, class Field, class Visitor>
 template <class Rows, class Middle>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::halve(Rows& rows, std::size_t at,
-                                                                   std::size_t first,
-                                                                   const Middle& middle) {
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve(Rows& rows, std::size_t at,
+                                                            std::size_t first,
+                                                            const Middle& middle) {
     using T = std::remove_cvref_t<decltype(rows[0][0])>;
     const T* const from = rows[pattern_.parent[at][0]];
     const T* const to = rows[pattern_.parent[at][1]];
@@ -45,8 +45,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::halve(Rows& rows, s
     for (std::size_t b = first; b < first + pack; ++b) rows[at][b] = middle(from[b], to[b]);
 }
 
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::make_nodes(Batch& batch) const {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) const {
     const auto each_new_node = [&](auto&& function) NESTGRID_INLINE_LAMBDA {
         for (std::size_t first = 0; first < batch.count; first += pack) {
             unrolled<pattern_.nodes - corners_>([&](auto i) NESTGRID_INLINE_LAMBDA {
@@ -69,15 +69,15 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::make_nodes(Batch& b
     });
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
         Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
-            return field_->template value_at<whole>(batch.nodes[at][first + b],
-                                                    batch.keys[at][first + b]);
+            return field_->template value_at<!TellsWhereWhole<Grid>>(batch.nodes[at][first + b],
+                                                                     batch.keys[at][first + b]);
         }).store(batch.values[at] + first);
     });
 }
 
 /// The same in rows.
-template <class Grid, class Field, class Visitor, bool whole>
-void BlockWalk<Grid, Field, Visitor, whole>::ask_for_nodes(Batch& batch) const {
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
     const auto row = [&](auto* of) { return std::span(of, packed(batch.count)); };
     for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
         const auto& [from, to] = pattern_.parent[at];
@@ -91,9 +91,9 @@ void BlockWalk<Grid, Field, Visitor, whole>::ask_for_nodes(Batch& batch) const {
 }
 
 /// What follows from eight new keys.
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::know_of(Batch& batch, std::size_t at,
-                                                                     std::size_t first) const {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::know_of(Batch& batch, std::size_t at,
+                                                              std::size_t first) const {
     if constexpr (requires { visitor_->expect(batch.keys[at]); }) {
         visitor_->expect(batch.keys[at] + first);
     }
@@ -106,8 +106,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::know_of(Batch& batc
 }
 
 /// Of ends, in rows.
-template <class Grid, class Field, class Visitor, bool whole>
-void BlockWalk<Grid, Field, Visitor, whole>::find_new_nodes(Steps& steps) const {
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::find_new_nodes(Steps& steps) const {
     const std::span<Node> from(steps.from.data(), steps.end_count);
     grid_->middles(from, std::span(steps.to).first(from.size()), from);
     grid_->keys(from, std::span(steps.node).first(from.size()));

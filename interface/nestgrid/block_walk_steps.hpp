@@ -8,9 +8,9 @@
 
 namespace nestgrid {
 
-template <class Grid, class Field, class Visitor, bool whole>
-void BlockWalk<Grid, Field, Visitor, whole>::run(const std::array<Node, 4>& n,
-                                                 const std::array<Real, 4>& u, int path) {
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
+                                          const std::array<Real, 4>& u, int path) {
     constexpr KnownBisection rule = Grid::bisections[last_];
     // The deepest a block can be that is as deep everywhere.
     int blocks = 0;
@@ -40,8 +40,8 @@ void BlockWalk<Grid, Field, Visitor, whole>::run(const std::array<Node, 4>& n,
 }
 
 /// The blocks of a batch, of which there are the corners, and all below them.
-template <class Grid, class Field, class Visitor, bool whole>
-void BlockWalk<Grid, Field, Visitor, whole>::walk(Queue& batch) {
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     if constexpr (in_subtrees_) {
         if (batch.level == subtree_level_) begin_subtrees(batch);
     }
@@ -83,8 +83,8 @@ void BlockWalk<Grid, Field, Visitor, whole>::walk(Queue& batch) {
     finish(next);
 }
 
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor, whole>::begin_subtrees(Batch& batch) {
+template <class Grid, class Field, class Visitor>
+NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& batch) {
     for (std::size_t i = 0; i < corners_; ++i) {
         SubtreeFaces* const sides = batch.sides[i];
         for (std::size_t b = 0; b < batch.count; ++b) {
@@ -94,8 +94,8 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor, whole>::begin_subtrees(Ba
     visitor_->begin_subtrees();
 }
 
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::look_within(Queue& batch) const {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
     using Bits = Pack<MaskOf<Real>>;
     for (std::size_t first = 0; first < batch.count; first += pack) {
         auto descend = Bits::all(0);
@@ -127,11 +127,11 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::look_within(Queue& 
 
 /// Blocks in which nothing is entered beyond the ends.
 /// \param are_leaves the ends
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor, whole>::extract_blocks(Queue& batch,
-                                                                              std::size_t first,
-                                                                              std::size_t end,
-                                                                              bool are_leaves) {
+template <class Grid, class Field, class Visitor>
+NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_blocks(Queue& batch,
+                                                                       std::size_t first,
+                                                                       std::size_t end,
+                                                                       bool are_leaves) {
     BatchSelection selection;
     selection.ends_are_leaves = are_leaves;
     if (batch.taken == batch.stopped_count || batch.stopped[batch.taken].before >= end) {
@@ -152,10 +152,9 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor, whole>::extract_blocks(Qu
 }
 
 /// To be extracted next.
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::select(Queue& batch,
-                                                                    const Stopped& element,
-                                                                    BatchSelection& selection) {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::select(Queue& batch, const Stopped& element,
+                                                             BatchSelection& selection) {
     batch.template copy_element<in_subtrees_>(*element.of, element.block, element.part,
                                               element.bound);
     selection.add(room_ + batch.element_count++);
@@ -164,17 +163,17 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::select(Queue& batch
 }
 
 /// Those that stopped before the first block.
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor, whole>::extract_first_stopped(Queue& next) {
+template <class Grid, class Field, class Visitor>
+NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_first_stopped(Queue& next) {
     BatchSelection selection;
     take_stopped(next, 0, [&](const Stopped& element) { select(next, element, selection); });
     if (selection.count > 0) extract(next, selection);
 }
 
 /// Blocks whose ends are split.
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::enter(Queue& batch, std::size_t first,
-                                                                   std::size_t end, Queue& next) {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::size_t first,
+                                                            std::size_t end, Queue& next) {
     Steps steps;
     list(batch, first, end, steps);
     look_at_ends(batch, steps);
@@ -221,11 +220,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::enter(Queue& batch,
 }
 
 /// What comes next in these blocks, and what there is to know of the ends.
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::list(const Queue& batch,
-                                                                  std::size_t first,
-                                                                  std::size_t end,
-                                                                  Steps& steps) const {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Queue& batch, std::size_t first,
+                                                           std::size_t end, Steps& steps) const {
     for (std::size_t b = first; b < end; ++b) steps.append(order_of(batch, b), b);
     for (std::size_t i = 0; i < steps.count; ++i) {
         const std::size_t b = steps.block[i];
@@ -245,9 +242,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::list(const Queue& b
     }
 }
 
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::look_at_ends(const Batch& batch,
-                                                                          Steps& steps) const {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(const Batch& batch,
+                                                                   Steps& steps) const {
     const std::size_t count = packed(steps.end_count);
     if (steps.end_count > 0) {
         if constexpr (AnswersInRows<Grid>) find_new_nodes(steps);
@@ -273,8 +270,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::look_at_ends(const 
 }
 
 /// Of blocks whose ends all stop or are skipped.
-template <class Grid, class Field, class Visitor, bool whole>
-void BlockWalk<Grid, Field, Visitor, whole>::note_stopped_ends(Queue& batch, const Steps& steps) {
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, const Steps& steps) {
     std::size_t next_end = 0;
     for (std::size_t i = 0; i < steps.count; ++i) {
         const std::size_t b = steps.block[i];
@@ -288,10 +285,9 @@ void BlockWalk<Grid, Field, Visitor, whole>::note_stopped_ends(Queue& batch, con
     }
 }
 
-template <class Grid, class Field, class Visitor, bool whole>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::copy_corners(const Batch& batch,
-                                                                          Origins& which,
-                                                                          Queue& next) {
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::copy_corners(const Batch& batch,
+                                                                   Origins& which, Queue& next) {
     for (std::size_t n = which.copied; n < next.count; ++n) {
         const std::size_t b = which.block[n];
         const auto& part = pattern_.part[which.part[n]];
@@ -308,8 +304,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor, whole>::copy_corners(const 
     which.copied = 0;
 }
 
-template <class Grid, class Field, class Visitor, bool whole>
-bool BlockWalk<Grid, Field, Visitor, whole>::put(const Stopped& element, Queue& next) {
+template <class Grid, class Field, class Visitor>
+bool BlockWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
     Stopped& last = next.stopped[next.stopped_count++];
     last = element;
     last.before = static_cast<std::uint8_t>(next.count);
@@ -317,8 +313,8 @@ bool BlockWalk<Grid, Field, Visitor, whole>::put(const Stopped& element, Queue& 
 }
 
 /// Walks what was gathered.
-template <class Grid, class Field, class Visitor, bool whole>
-void BlockWalk<Grid, Field, Visitor, whole>::finish(Queue& next) {
+template <class Grid, class Field, class Visitor>
+void BlockWalk<Grid, Field, Visitor>::finish(Queue& next) {
     if (next.taken < next.stopped_count && next.stopped[next.taken].before == 0) {
         extract_first_stopped(next);
     }

@@ -107,6 +107,14 @@ concept AnswersInRows = requires(const Grid& grid, std::span<const typename Grid
     { Grid::no_node } -> std::convertible_to<typename Grid::Node>;
 };
 
+/// Of a grid that is not whole.
+template <class Grid>
+concept TellsWhereWhole = requires(
+    const Grid& grid,
+    const std::array<typename Grid::Node, static_cast<std::size_t>(Grid::dimension) + 1>& nodes) {
+    { grid.whole(nodes) } -> std::same_as<bool>;
+};
+
 template <class Grid>
 concept KnowsBlocks = requires(const Grid& grid) {
     requires Grid::block_height == 2 || Grid::block_height == 3;

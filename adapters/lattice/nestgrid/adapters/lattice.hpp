@@ -189,7 +189,7 @@ public:
     }
     template <bool whole>
     NESTGRID_INLINE value_type value_at(typename Grid::Place p, NodeKey node) const {
-        return whole ? sample(node) : at(p);
+        return whole || grid_->whole() ? sample(node) : at(p);
     }
     value_type value(NodeKey node) const {
         return grid_->whole() ? sample(node) : at(grid_->place(node));
