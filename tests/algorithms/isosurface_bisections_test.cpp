@@ -237,24 +237,38 @@ TEST(KnownBisections, FillWhatIsWalkedAtOnce) {
     }
 }
 
+/// A field on a small grid, drawn without indices.
+struct SmallField {
+    Samples n{17, 17, 17};
+    SampledField data = sampled_fields(n)[0];
+    LatticeBisection<3> grid{{.samples = n}};
+    LatticeField<LatticeBisection<3>, float> field{grid, std::span<const float>(data.values)};
+    HierarchicalIndicator indicator{grid, field};
+    std::array<double, 2> thresholds{0.0, 0.02 * data.range};
+
+    template <class Sink>
+    void extract(double threshold, Sink sink) const {
+        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+        std::vector<Sink> sinks;
+        sinks.push_back(std::move(sink));
+        extract_isosurfaces(grid, field, std::span<const double>(&data.isovalue, 1),
+                            std::move(sinks), criterion, indicator);
+    }
+    auto surface(double threshold, bool verify = false) const {
+        return isosurface(grid, field, data.isovalue, indicator,
+                          {.threshold = threshold, .verify = verify})
+            .surface;
+    }
+};
+
 /// A stream has no indices: its triangles are those of the surface, corner by corner.
 TEST(KnownBisections, StreamTheSameTriangles) {
-    const Samples n{17, 17, 17};
-    const SampledField data = sampled_fields(n)[0];
-    const LatticeBisection<3> grid({.samples = n});
-    const LatticeField field(grid, std::span<const float>(data.values));
-    const HierarchicalIndicator indicator(grid, field);
-    for (const double threshold : {0.0, 0.02 * data.range}) {
+    const SmallField c;
+    for (const double threshold : c.thresholds) {
         std::vector<std::array<Point, 3>> stream;
         const auto put = [&](const std::array<Point, 3>& x) { stream.push_back(x); };
-        using Sink = SimplexStream<3, decltype(put)>;
-        const double isovalue = data.isovalue;
-        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
-        extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1),
-                            std::vector<Sink>{Sink(put)}, criterion, indicator);
-        const auto result =
-            isosurface(grid, field, isovalue, indicator, {.threshold = threshold, .verify = true});
-        const auto& surface = result.surface;
+        c.extract(threshold, SimplexStream<3, decltype(put)>(put));
+        const auto surface = c.surface(threshold, true);
         ASSERT_EQ(stream.size(), surface.simplices.size());
         EXPECT_GT(stream.size(), 100U);
         for (std::size_t i = 0; i < stream.size(); ++i) {
@@ -267,21 +281,11 @@ TEST(KnownBisections, StreamTheSameTriangles) {
 
 /// A soup takes many triangles at once.
 TEST(KnownBisections, FillASoupWithTheSameTriangles) {
-    const Samples n{17, 17, 17};
-    const SampledField data = sampled_fields(n)[0];
-    const LatticeBisection<3> grid({.samples = n});
-    const LatticeField field(grid, std::span<const float>(data.values));
-    const HierarchicalIndicator indicator(grid, field);
-    for (const double threshold : {0.0, 0.02 * data.range}) {
-        const double isovalue = data.isovalue;
-        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+    const SmallField c;
+    for (const double threshold : c.thresholds) {
         std::vector<std::array<float, 9>> soup;
-        std::vector<SimplexSoup<3, float>> sinks;
-        sinks.emplace_back(soup);
-        extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1), std::move(sinks),
-                            criterion, indicator);
-        const auto result = isosurface(grid, field, isovalue, indicator, {.threshold = threshold});
-        const auto& surface = result.surface;
+        c.extract(threshold, SimplexSoup<3, float>(soup));
+        const auto surface = c.surface(threshold);
         ASSERT_EQ(soup.size(), surface.simplices.size());
         for (std::size_t i = 0; i < soup.size(); ++i) {
             for (std::size_t k = 0; k < 9; ++k) {

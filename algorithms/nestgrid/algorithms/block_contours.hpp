@@ -102,6 +102,13 @@ public:
     }
     /// Of a simplex. Bit i of `signs` says that its corner i has U >= C.
     const Piece& piece(unsigned signs) const { return pieces_[signs]; }
+    /// The signs at the corners of a part of a block.
+    template <class Part>
+    static unsigned signs_of(const Part& part, std::size_t corners, unsigned signs) {
+        unsigned bits = 0;
+        for (std::size_t i = 0; i < corners; ++i) bits |= (signs >> part.corner[i] & 1U) << i;
+        return bits;
+    }
 
 private:
     template <const auto& pattern>
@@ -138,13 +145,6 @@ struct BlockContours::Maker {
     Contour contour{};
     std::array<std::array<std::uint8_t, 16>, 16> number{};  // of a cut, plus 1
 
-    static unsigned bits_at(const typename Block::Part& part, unsigned signs) {
-        unsigned bits = 0;
-        for (std::size_t i = 0; i < pattern.corners; ++i) {
-            bits |= (signs >> part.corner[i] & 1U) << i;
-        }
-        return bits;
-    }
     /// One bit each.
     template <class Parts>
     static std::size_t nodes_of(const Parts& parts) {
@@ -166,7 +166,7 @@ struct BlockContours::Maker {
     /// \param first_row of the nodes in a batch
     void add(unsigned signs, const typename Block::Part& part, std::size_t end,
              std::size_t first_row) {
-        const unsigned bits = bits_at(part, signs);
+        const unsigned bits = signs_of(part, pattern.corners, signs);
         if (bits == 0 || bits == all) return;
         const Piece& piece = table.piece(bits);
         std::array<std::uint8_t, 4> cut{};

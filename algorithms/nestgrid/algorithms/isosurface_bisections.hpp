@@ -193,14 +193,16 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
     constexpr const auto& pattern = Blocks::pattern;
     using Places = BatchPlaces<pattern>;
     using Run = BlockContourRun<pattern>;
+    const auto level_of = [&](std::size_t id, int depth) {
+        return Places::is_block(id) ? blocks.level + depth
+                                    : int{blocks.element_levels[id % most_blocks]};
+    };
     Run run;
     for (std::size_t k = 0; k < list.count; ++k) {
         CutEntry& entry = list.entry[k];
         const std::size_t id = entry.id;
         const unsigned meant = parts_meant(blocks, selection, id);
-        const int level = Places::is_block(id) ? blocks.level + entry.contour->depth
-                                               : int{blocks.element_levels[id % most_blocks]};
-        deepest_ = std::max(deepest_, level);
+        deepest_ = std::max(deepest_, level_of(id, entry.contour->depth));
         if (static_cast<double>(blocks.greatest_bounds[id]) > layer.error_bound) {
             raise_error_bound(blocks, layer, id, entry.contour->parts & meant);
         }
@@ -246,11 +248,8 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
         auto left = run.simplices();
         for (const CutEntry& entry : list.entries()) {
             for_each_part(blocks, selection, layer, entry, [&](std::size_t part, unsigned bits) {
-                const std::size_t id = entry.id;
-                const int level = Places::is_block(id)
-                                      ? blocks.level + pattern.part[part].depth
-                                      : int{blocks.element_levels[id % most_blocks]};
-                layer.sink.add_element(blocks.element(id, part), simplex_shape, level);
+                layer.sink.add_element(blocks.element(entry.id, part), simplex_shape,
+                                       level_of(entry.id, pattern.part[part].depth));
                 const std::size_t count = contours.piece(bits).count == 4 ? 2 : 1;
                 put_simplices(layer, vertices, left.first(count));
                 left = left.subspan(count);
@@ -277,11 +276,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::for_each_part(
     for (std::size_t end = 0; end < pattern.ends; ++end) {
         if ((entry.contour->parts & meant & 1U << end) == 0) continue;
         const std::size_t part = pattern.part_above(end, undivided);
-        unsigned bits = 0;
-        for (std::size_t i = 0; i < pattern.corners; ++i) {
-            bits |= (signs >> pattern.part[part].corner[i] & 1U) << i;
-        }
-        function(part, bits);
+        function(part, BlockContours::signs_of(pattern.part[part], pattern.corners, signs));
     }
 }
 
