@@ -14,26 +14,10 @@
 
 #include <nestgrid/bisection_block.hpp>
 #include <nestgrid/pack.hpp>
+#include <nestgrid/subtree_nodes.hpp>
 #include <nestgrid/wide_point.hpp>
 
 namespace nestgrid {
-
-/// Which faces of the subtree a node is in the node lies on, one bit each from bit 0; and, from bit
-/// 4, of the element with which the walk of blocks began. An edge whose ends share none is an edge
-/// of no element outside it. Above the subtrees all of the lower bits are set, as on no edge in
-/// one.
-using SubtreeFaces = std::uint8_t;
-inline constexpr SubtreeFaces subtree_faces = 0x0F;
-inline constexpr SubtreeFaces root_faces = 0xF0;
-
-constexpr bool is_above_subtrees(SubtreeFaces edge) {
-    return (edge & subtree_faces) == subtree_faces;
-}
-constexpr bool is_within_subtree(SubtreeFaces edge) { return (edge & subtree_faces) == 0; }
-constexpr bool is_within_root(SubtreeFaces edge) { return (edge & root_faces) == 0; }
-
-/// How many are walked side by side, and as many elements beside them.
-inline constexpr std::size_t most_blocks = 32;
 
 /// The least and the greatest of an element's values.
 template <class Real>
@@ -154,7 +138,7 @@ struct BlockBatch {
     Rows<Node> nodes;
     Rows<NodeKey> keys;
     Rows<Real> values;  ///< P_S U
-    Rows<SubtreeFaces> sides;
+    Rows<SubtreeNode> in_subtree;  ///< only where they are asked for
     std::array<std::uint8_t, 2 * room> orientations;  ///< 1 in a mirror; of blocks, part 1
     /// Of blocks, the ends that are reached, one bit each.
     std::array<std::uint8_t, room> ends;
@@ -174,7 +158,7 @@ struct BlockBatch {
         level = on_level;
         count = 0;
     }
-    /// The corners of block b, or of element b - room, above the subtrees and in no root.
+    /// The corners of block b, or of element b - room, in no subtree and in no root.
     void put_corners(std::size_t b, const std::array<Node, 4>& n, const std::array<Real, 4>& u,
                      bool mirror) {
         for (std::size_t i = 0; i < pattern.corners; ++i) {
@@ -182,7 +166,7 @@ struct BlockBatch {
             nodes.all[at] = n[i];
             keys.all[at] = grid->key(n[i]);
             values.all[at] = u[i];
-            sides.all[at] = root_faces | subtree_faces;
+            in_subtree.all[at] = SubtreeNodes<pattern>::unknown;
         }
         orientations[b] = mirror ? 1 : 0;
     }
@@ -195,7 +179,7 @@ struct BlockBatch {
         set_element(e, bisection, on_level, bound);
     }
     /// A part of a block of any batch of the grid, in the place of the next element.
-    /// \tparam with_keys whether keys and sides are wanted
+    /// \tparam with_keys whether those and what is known of subtrees are wanted
     template <bool with_keys>
     NESTGRID_INLINE void copy_element(const BlockBatch& from, std::size_t b, std::size_t p,
                                       Real bound) {
@@ -208,7 +192,7 @@ struct BlockBatch {
             values.all[to] = from.values.all[at];
             if constexpr (with_keys) {
                 keys.all[to] = from.keys.all[at];
-                sides.all[to] = from.sides.all[at];
+                in_subtree.all[to] = from.in_subtree.all[at];
             }
         });
         orientations[room + e] =

@@ -41,8 +41,9 @@ private:
 ///     void expect(const NodeKey* nodes)          optional: eight that will be glanced at
 ///     unsigned extract(const BlockBatch&, const BatchSelection&)
 ///             what is selected, and in how many of the leaves there was anything to extract
-///     void begin_subtrees()                      optional, to be told of faces: what was inside
-///                                                subtrees before comes never again
+///     bool names_edges() const                   optional, and, where it says yes, a batch tells
+///     void begin_subtrees()                      of nodes in subtrees (subtree_nodes.hpp): what
+///                                                was inside subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
 template <class Grid, class Field, class Visitor>
 class BlockWalk {
@@ -77,8 +78,7 @@ private:
         return result;
     }();
     static constexpr bool in_subtrees_ = requires(Visitor & v) { v.begin_subtrees(); };
-    /// Three blocks of tetrahedra: 512 leaves, of whose edges half lie inside.
-    static constexpr int subtree_height_ = 3;
+    using InSubtree = SubtreeNodes<pattern_>;
     static constexpr std::size_t room_ = most_blocks;
     static constexpr std::size_t stopped_room_ = 64;
     using Batch = BlockBatch<Grid, Real>;
@@ -134,16 +134,15 @@ private:
     };
 
     NESTGRID_NOINLINE void walk(Queue& batch);
-    /// Faces of an element at one of its corners; face i lies across from corner i.
-    static constexpr unsigned faces_at(std::size_t corner) {
-        return (1U << corners_) - 1 - (1U << corner);
-    }
     void begin_subtrees(Batch& batch);
+    void number_nodes(Batch& batch) const;
     template <class Rows, class Middle>
     static void halve(Rows& rows, std::size_t at, std::size_t first, const Middle& middle);
     void make_nodes(Batch& batch) const;
     void ask_for_nodes(Batch& batch) const;
-    void know_of(Batch& batch, std::size_t at, std::size_t first) const;
+    NESTGRID_INLINE void expect(const NodeKey* keys) const {
+        if constexpr (requires { visitor_->expect(keys); }) visitor_->expect(keys);
+    }
     void look_within(Queue& batch) const;
     void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
     void extract_blocks(Queue& batch, std::size_t first, std::size_t end, bool are_leaves);

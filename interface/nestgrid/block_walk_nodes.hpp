@@ -65,7 +65,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
                   NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
                       return grid_->middle_key(a, b);
                   });
-        know_of(batch, at, first);
+        expect(batch.keys[at] + first);
     });
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
         Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
@@ -83,24 +83,28 @@ void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
         const auto& [from, to] = pattern_.parent[at];
         grid_->middles(row(batch.nodes[from]), row(batch.nodes[to]), row(batch.nodes[at]));
         grid_->keys(row(batch.nodes[at]), row(batch.keys[at]));
-        for (std::size_t first = 0; first < batch.count; first += pack) know_of(batch, at, first);
+        for (std::size_t first = 0; first < batch.count; first += pack) {
+            expect(batch.keys[at] + first);
+        }
     }
     for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
         field_->values_at(row(batch.nodes[at]), row(batch.keys[at]), row(batch.values[at]));
     }
 }
 
-/// What follows from eight new keys.
+/// What is known of them in subtrees.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::know_of(Batch& batch, std::size_t at,
-                                                              std::size_t first) const {
-    if constexpr (requires { visitor_->expect(batch.keys[at]); }) {
-        visitor_->expect(batch.keys[at] + first);
-    }
-    if constexpr (in_subtrees_) {
-        const auto& [from, to] = pattern_.parent[at];
-        for (std::size_t b = first; b < first + pack; ++b) {
-            batch.sides[at][b] = batch.sides[from][b] & batch.sides[to][b];
+NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::number_nodes(Batch& batch) const {
+    constexpr int height = InSubtree::height * static_cast<int>(pattern_.height);
+    const bool below = batch.level >= subtree_level_ + height;
+    for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
+        const SubtreeNode* const from = batch.in_subtree[pattern_.parent[at][0]];
+        const SubtreeNode* const to = batch.in_subtree[pattern_.parent[at][1]];
+        for (std::size_t first = 0; first < batch.count; first += pack) {
+            const auto a = Pack<SubtreeNode>::load(from + first);
+            const auto b = Pack<SubtreeNode>::load(to + first);
+            (below ? InSubtree::middle_below(a, b) : InSubtree::middle(a, b))
+                .store(batch.in_subtree[at] + first);
         }
     }
 }

@@ -17,14 +17,14 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     for (Node a = n[rule.parent[0]], b = n[rule.parent[1]]; grid_->halved(a, b); ++blocks) {
         b = grid_->middle(a, b);
     }
-    const int above_subtree = std::max(0, blocks - subtree_height_);
+    const int above_subtree = std::max(0, blocks - InSubtree::height);
     subtree_level_ = path / 2 + static_cast<int>(Grid::block_height) * above_subtree;
 
     Queue first;
     first.begin(*grid_, path / 2);
     first.put_corners(0, n, u, path % 2 != 0);
     for (std::size_t i = 0; i < corners_; ++i) {
-        first.sides[i][0] = static_cast<SubtreeFaces>(faces_at(i) << 4U | subtree_faces);
+        first.in_subtree[i][0] = InSubtree::root_corner(i);
     }
     first.count = 1;
     const auto [lo, hi] = range_of(u);
@@ -42,10 +42,13 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
 /// The blocks of a batch, of which there are the corners, and all below them.
 template <class Grid, class Field, class Visitor>
 void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
-    if constexpr (in_subtrees_) {
-        if (batch.level == subtree_level_) begin_subtrees(batch);
-    }
     batch.fill_up();
+    if constexpr (in_subtrees_) {
+        if (visitor_->names_edges()) {
+            if (batch.level == subtree_level_) begin_subtrees(batch);
+            number_nodes(batch);
+        }
+    }
     if constexpr (AnswersInRows<Grid>) {
         ask_for_nodes(batch);
     } else {
@@ -86,10 +89,8 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
 template <class Grid, class Field, class Visitor>
 NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& batch) {
     for (std::size_t i = 0; i < corners_; ++i) {
-        SubtreeFaces* const sides = batch.sides[i];
-        for (std::size_t b = 0; b < batch.count; ++b) {
-            sides[b] = static_cast<SubtreeFaces>((sides[b] & root_faces) | faces_at(i));
-        }
+        SubtreeNode* const nodes = batch.in_subtree[i];
+        for (std::size_t b = 0; b < batch.count; ++b) nodes[b] = InSubtree::corner(nodes[b], b, i);
     }
     visitor_->begin_subtrees();
 }
@@ -296,7 +297,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::copy_corners(const Batch& 
             next.nodes[i][n] = batch.nodes[from][b];
             next.keys[i][n] = batch.keys[from][b];
             next.values[i][n] = batch.values[from][b];
-            if constexpr (in_subtrees_) next.sides[i][n] = batch.sides[from][b];
+            if constexpr (in_subtrees_) next.in_subtree[i][n] = batch.in_subtree[from][b];
         });
         next.orientations[n] =
             static_cast<std::uint8_t>(batch.orientations[b] ^ (part.mirrored ? 1U : 0U));

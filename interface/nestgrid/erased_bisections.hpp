@@ -39,7 +39,7 @@ public:
     };
     const Rows<NodeKey> keys;
     const Rows<Real> values;
-    const Rows<SubtreeFaces> sides;
+    const Rows<SubtreeNode> in_subtree;
     const std::uint8_t* const orientations;
     const Real* const greatest_bounds;
     const std::uint8_t* const ends;
@@ -55,7 +55,7 @@ protected:
           element_count{batch.element_count},
           keys{batch.keys[0]},
           values{batch.values[0]},
-          sides{batch.sides[0]},
+          in_subtree{batch.in_subtree[0]},
           orientations{batch.orientations.data()},
           greatest_bounds{batch.greatest_bounds.data()},
           ends{batch.ends.data()},
@@ -81,6 +81,7 @@ public:
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual PackedGlance<Real> glance(const PackedElements<Real>& e) = 0;
     virtual void expect(const NodeKey* nodes) const = 0;
+    virtual bool names_edges() const = 0;
     virtual void begin_subtrees() = 0;
     virtual unsigned extract(const ErasedBlocks<dim, Real>& blocks,
                              const BatchSelection& selection) = 0;
@@ -111,6 +112,7 @@ public:
     }
     bool glance_at_leaf(Real lo, Real hi) { return to_->glance_at_leaf(lo, hi); }
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
+    bool names_edges() const { return to_->names_edges(); }
     void begin_subtrees() { to_->begin_subtrees(); }
     PackedGlance<Real> glance(const PackedElements<Real>& e) { return to_->glance(e); }
     void expect(const NodeKey* nodes) const { to_->expect(nodes); }

@@ -33,6 +33,7 @@
 #include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/algorithms/surface_log.hpp>
 #include <nestgrid/algorithms/transition_contours.hpp>
+#include <nestgrid/algorithms/subtree_vertices.hpp>
 #include <nestgrid/algorithms/vertex_numbers.hpp>
 #include <nestgrid/table.hpp>
 #include <nestgrid/shape_functions.hpp>
@@ -189,10 +190,11 @@ public:
         const std::span<const NodeKey> eight(nodes, pack);
         if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
     }
+    static constexpr bool names_edges() { return indexed; }
     void begin_subtrees()
         requires(indexed)
     {
-        for (Layer& layer : layers_) layer.number_within.clear();
+        for (Layer& layer : layers_) layer.within.clear();
     }
     template <class Blocks>
     unsigned extract(const Blocks& blocks, const BatchSelection& selection);
@@ -231,7 +233,7 @@ private:
         Real least_inside = 0;  // of the numbers that values can be
         Real greatest_outside = 0;
         VertexNumbers number_of;
-        VertexNumbers number_within;  // a subtree of bisections
+        SubtreeVertices within{};  // subtrees of bisections
         Transitions transitions{};
         const Transitions* drawn_below = nullptr;  // that of all tasks
         std::vector<Where> where{};
@@ -309,6 +311,11 @@ private:
     template <class Blocks>
     void find_vertices(const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts,
                        Number* v);
+    template <class Blocks>
+    void add_vertices(const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts);
+    template <class Blocks>
+    void verify_vertices(const Blocks& blocks, const Layer& layer,
+                         std::span<const BatchEdge> cuts, const Number* v);
     template <class Corners>
     void put_simplices(Layer& layer, std::span<const BlockVertex> v,
                        std::span<const Corners> all);
@@ -356,9 +363,8 @@ private:
     Vertex add(const KeyPair& name, Make&& make);
     template <class Make>
     Vertex add_named(const VertexName& name, Make&& make);
-    template <class Make>
-    Number add_within(const VertexNumbers::Name& name, SubtreeFaces faces, Make&& make);
-    Number add_new(const Cut& cut);
+    Number add_new(const Cut& cut, bool alone);
+    void verify(const Layer& layer, Number number, const Point& x) const;
     Vertex add_unnamed(const Point& x, std::span<const double> attributes);
     Number number_of(const Vertex& vertex, const Point& reference);
     Number vertex(std::uint8_t edge);

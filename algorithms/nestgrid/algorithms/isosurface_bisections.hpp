@@ -36,6 +36,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 return to->glance(e);
             }
             void expect(const NodeKey* nodes) const override { to->expect(nodes); }
+            bool names_edges() const override { return indexed; }
             void begin_subtrees() override {
                 if constexpr (indexed) to->begin_subtrees();
             }
@@ -320,34 +321,93 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_po
     }
 }
 
-/// The vertices on the cuts.
+/// The vertices on the cuts, numbered in their order. Each step is a loop of its own, without a
+/// branch that depends on which of them are known.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Blocks>
-NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_vertices(
+NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_vertices(
     const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts, Number* v) {
+    using InSubtree = SubtreeNodes<Blocks::pattern>;
+    constexpr std::size_t room = BlockContourRun<Blocks::pattern>::most_cuts + 1;
     const NodeKey* const key = blocks.keys[0];
-    const SubtreeFaces* const sides = blocks.sides[0];
-    const Real* const value = blocks.values[0];
-    const std::array<const VertexNumbers*, 2> table{&layer.number_of, &layer.number_within};
-    std::array<VertexNumbers::Name, BlockContourRun<Blocks::pattern>::most_cuts> names;
-    VertexNumbers::Name* name = names.data();
-    for (const auto& [low, high] : cuts) {
-        *name = layer.number_of.name({key[low], key[high]});
-        table[is_within_subtree(sides[low] & sides[high]) ? 1 : 0]->prefetch(*name++);
+    const SubtreeNode* const in_subtree = blocks.in_subtree[0];
+
+    // Which of them the subtrees do not know, and of those the ones that may be known elsewhere.
+    std::array<std::uint16_t, room> fresh;
+    const std::size_t fresh_count = layer.within.find(
+        cuts.size(), InSubtree::edge_numbers,
+        [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
+            return InSubtree::edge_number(in_subtree[cuts[i].low], in_subtree[cuts[i].high]);
+        },
+        v, fresh.data());
+    std::array<std::uint16_t, room> shared;  // of `fresh`
+    std::size_t shared_count = 0;
+    for (std::size_t i = 0; i < fresh_count; ++i) {
+        const auto& [low, high] = cuts[fresh[i]];
+        shared[shared_count] = static_cast<std::uint16_t>(i);
+        shared_count += InSubtree::is_inside(in_subtree[low], in_subtree[high]) ? 0 : 1;
     }
-    name = names.data();
-    for (const auto& [low, high] : cuts) {
-        const SubtreeFaces faces = sides[low] & sides[high];
-        *v++ = add_within(*name++, faces, [&, low = low, high = high] {
-            Cut cut{blocks.position(low),
-                    {key[low], key[high]},
-                    cut_fraction(layer.isovalue, static_cast<double>(value[low]),
-                                 static_cast<double>(value[high])),
-                    {}};
-            cut.x = cut.x + cut.fraction * (blocks.position(high) - cut.x);
-            return cut;
-        });
+
+    // Those are looked up; all before them count that are new.
+    std::array<VertexNumbers::Name, room> names;
+    layer.number_of.reserve(shared_count);
+    for (std::size_t k = 0; k < shared_count; ++k) {
+        const auto& [low, high] = cuts[fresh[shared[k]]];
+        names[k] = layer.number_of.name({key[low], key[high]});
+        layer.number_of.prefetch(names[k]);
     }
+    const std::span<Number> number = layer.within.new_numbers();
+    std::array<bool, room> is_known;
+    std::fill_n(is_known.begin(), fresh_count, false);
+    if (none - layer.vertex_count < fresh_count) throw_too_many_vertices();
+    Number next = layer.vertex_count;  // less the shared ones that are known
+    for (std::size_t k = 0; k < shared_count; ++k) {
+        const std::size_t at = shared[k];
+        const auto found = layer.number_of.find_or_add(names[k], next + static_cast<Number>(at));
+        number[at] = found.number;
+        is_known[at] = !found.is_new;
+        next -= found.is_new ? 0U : 1U;
+    }
+
+    // What is new gets its number, and is added.
+    std::array<BatchEdge, room> added;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < fresh_count; ++i) {
+        number[i] = is_known[i] ? number[i] : layer.vertex_count + static_cast<Number>(count);
+        added[count] = cuts[fresh[i]];
+        count += is_known[i] ? 0 : 1;
+    }
+    add_vertices(blocks, layer, std::span(added).first(count));
+    layer.within.end({v, cuts.size()});
+    if (options_->verify) verify_vertices(blocks, layer, cuts, v);
+}
+
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_vertices(
+    const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts) {
+    std::array<WidePoint, BlockContourRun<Blocks::pattern>::most_cuts> x;
+    find_points(blocks, layer, cuts, x.data());
+    layer.vertex_count += static_cast<Number>(cuts.size());
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        if constexpr (logs) {
+            const auto& [low, high] = cuts[i];
+            const SubtreeNode* const in_subtree = blocks.in_subtree[0];
+            layer.sink.add_cut({Point(x[i]), {blocks.keys[0][low], blocks.keys[0][high]}, 0, {}},
+                               is_within_root(in_subtree[low], in_subtree[high]));
+        } else {
+            layer.sink.add_vertex(Point(x[i]), {});
+        }
+    }
+}
+
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Blocks>
+NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::verify_vertices(
+    const Blocks& blocks, const Layer& layer, std::span<const BatchEdge> cuts, const Number* v) {
+    std::array<WidePoint, BlockContourRun<Blocks::pattern>::most_cuts> x;
+    find_points(blocks, layer, cuts, x.data());
+    for (std::size_t i = 0; i < cuts.size(); ++i) verify(layer, v[i], Point(x[i]));
 }
 
 template <class Grid, class Field, class S, class Indicator, class Sink>

@@ -21,8 +21,7 @@ IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
     const std::size_t keys = dense_key_count(walk.grid());
     const bool small_keys = keys > 0 && keys <= (std::uint64_t{1} << 32U);
     for (Sink& sink : sinks) {
-        layers_.push_back(
-            {{0, std::move(sink)}, 0, 0, VertexNumbers(small_keys), VertexNumbers(small_keys)});
+        layers_.push_back({{0, std::move(sink)}, 0, 0, VertexNumbers(small_keys)});
     }
     set_isovalues();
 }
@@ -66,7 +65,7 @@ NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sin
         layer.extracted = 0;
         layer.error_bound = 0;
         layer.number_of.clear();
-        layer.number_within.clear();
+        layer.within.clear();
         layer.transitions.clear();
         layer.where.clear();
         layer.vertex_count = 0;
@@ -99,7 +98,7 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::run(const Executor& exe
 NESTGRID_VISITOR::table_bytes() const -> std::size_t {
     std::size_t bytes = gradients_.memory_bytes() + later_below_.memory_bytes();
     for (const Layer& layer : layers_) {
-        bytes += layer.number_of.memory_bytes() + layer.number_within.memory_bytes() +
+        bytes += layer.number_of.memory_bytes() + layer.within.memory_bytes() +
                  layer.transitions.memory_bytes() + layer.where.capacity() * sizeof(Where);
     }
     return bytes;

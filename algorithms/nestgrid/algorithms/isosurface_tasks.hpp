@@ -135,7 +135,7 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
             vertices.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
         }
         void cut_alone(const typename Log::Cut& c) {
-            if constexpr (indexed) vertices.push_back(to->add_new(c));
+            if constexpr (indexed) vertices.push_back(to->add_new(c, true));
         }
         void vertex(const typename Log::Cut& c) {
             vertices.push_back(to->add_unnamed(c.x, c.attributes));

@@ -85,44 +85,30 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_nam
     if constexpr (!indexed) {
         return make().x;
     } else {
-        return add_within(name, root_faces | subtree_faces, make);
-    }
-}
-
-/// The same in a walk of bisections.
-/// \param faces of the subtree on which its edge lies: where there is none, no element outside the
-///        subtree asks for it
-template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Make>
-NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_within(
-    const VertexNumbers::Name& name, SubtreeFaces faces, Make&& make) -> Number {
-    Layer& layer = *layer_;
-    bool is_new = false;
-    const auto make_number = [&] {
-        is_new = true;
-        const Cut cut = make();
-        if constexpr (logs) {
-            if (layer.vertex_count == none) throw_too_many_vertices();
-            layer.sink.add_cut(cut, is_within_root(faces));
-            return layer.vertex_count++;
-        } else {
-            return add_new(cut);
-        }
-    };
-    const auto find_anywhere = [&] { return layer.number_of.find(name, make_number); };
-    const Number number =
-        is_above_subtrees(faces) ? find_anywhere() : layer.number_within.find(name, [&] {
-            return is_within_subtree(faces) ? make_number() : find_anywhere();
+        Layer& layer = *layer_;
+        bool is_new = false;
+        const Number number = layer.number_of.find(name, [&] {
+            is_new = true;
+            return add_new(make(), false);
         });
-    if (options_->verify && !is_new && layer.sink.position(number) != make().x) {
-        throw GridError("two elements put the vertex " + std::to_string(number) +
-                        " at different places");
+        if (options_->verify && !is_new) verify(layer, number, make().x);
+        return number;
     }
-    return number;
 }
 
-NESTGRID_VISITOR::add_new(const Cut& cut) -> Number {
+NESTGRID_VISITOR::verify(const Layer& layer, Number number, const Point& x) const -> void {
+    if (layer.sink.position(number) == x) return;
+    throw GridError("two elements put the vertex " + std::to_string(number) +
+                    " at different places");
+}
+
+/// \param alone no other task knows it
+NESTGRID_VISITOR::add_new(const Cut& cut, [[maybe_unused]] bool alone) -> Number {
     if (layer_->vertex_count == none) throw_too_many_vertices();
+    if constexpr (logs) {
+        layer_->sink.add_cut(cut, alone);
+        return layer_->vertex_count++;
+    }
     layer_->sink.add_vertex(cut.x, cut.attributes);
     if (options_->normals) {
         layer_->where.push_back({gradients_.slot(cut.node[0]), gradients_.slot(cut.node[1]),

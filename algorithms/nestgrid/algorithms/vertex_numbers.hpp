@@ -54,6 +54,25 @@ public:
         return number;
     }
 
+    /// For as many more vertices.
+    void reserve(std::size_t more) {
+        while (8 * (size_ + more) >= 5 * slots_.size()) grow();
+    }
+    /// Of a table with room for it: the number of the vertex between two nodes, which is `next`
+    /// where it is new. Nothing depends on whether it is.
+    struct Found {
+        Number number;
+        bool is_new;
+    };
+    NESTGRID_INLINE Found find_or_add(const Name& name, Number next) {
+        Slot* slot = place(name);
+        const bool is_new = slot->round != round_;
+        const Number number = is_new ? next : slot->number;
+        *slot = {name.word, number, round_};
+        size_ += is_new ? 1 : 0;
+        return {number, is_new};
+    }
+
     /// Forgets everything but its memory.
     void clear() {
         size_ = 0;
