@@ -42,7 +42,8 @@ private:
 ///     unsigned extract(const BlockBatch&, const BatchSelection&)
 ///             what is selected, and in how many of the leaves there was anything to extract
 ///     bool names_edges() const                   optional, and, where it says yes, a batch tells
-///     void begin_subtrees()                      of nodes in subtrees (subtree_nodes.hpp): what
+///     void begin_subtrees(std::uint32_t edge_numbers)
+///                                                of nodes in subtrees (subtree_nodes.hpp): what
 ///                                                was inside subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
 template <class Grid, class Field, class Visitor>
@@ -77,7 +78,7 @@ private:
         }
         return result;
     }();
-    static constexpr bool in_subtrees_ = requires(Visitor & v) { v.begin_subtrees(); };
+    static constexpr bool in_subtrees_ = requires(Visitor & v) { v.begin_subtrees(1); };
     using InSubtree = SubtreeNodes<pattern_>;
     static constexpr std::size_t room_ = most_blocks;
     static constexpr std::size_t stopped_room_ = 64;

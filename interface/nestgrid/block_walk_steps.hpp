@@ -92,7 +92,7 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& ba
         SubtreeNode* const nodes = batch.in_subtree[i];
         for (std::size_t b = 0; b < batch.count; ++b) nodes[b] = InSubtree::corner(nodes[b], b, i);
     }
-    visitor_->begin_subtrees();
+    visitor_->begin_subtrees(InSubtree::edge_numbers(batch.count));
 }
 
 template <class Grid, class Field, class Visitor>

@@ -7,7 +7,8 @@
 //
 // The corners of a subtree have barycentric coordinates, and so has every node: integers, if its
 // edges are measured in the shortest that there can be. Edges of a conforming mesh have different
-// midpoints, and twice the midpoint is the sum of the ends.
+// midpoints, and twice the midpoint is the sum of the ends. It is 0 for no edge: the node 0 is a
+// corner.
 #pragma once
 
 #include <algorithm>
@@ -75,19 +76,24 @@ private:
     }();
 
 public:
-    /// Numbers of edges are below that; an edge with an end that is in no subtree has this one.
-    static constexpr std::uint32_t edge_numbers = most_blocks * numbers_;
+    /// Above those of the edges of as many subtrees.
+    static constexpr std::uint32_t edge_numbers(std::size_t subtrees) {
+        return static_cast<std::uint32_t>(subtrees) * numbers_;
+    }
+    /// Of an edge with an end that is in no subtree.
+    static constexpr std::uint32_t no_number = 0;
     /// Of nodes above or below the subtrees.
-    static constexpr SubtreeNode beyond = edge_numbers << number_at_;
+    static constexpr SubtreeNode beyond = edge_numbers(most_blocks) << number_at_;
     /// What is in no subtree and in no root.
     static constexpr SubtreeNode unknown = beyond | faces_;
 
     static constexpr std::uint32_t edge_number(SubtreeNode a, SubtreeNode b) {
-        return std::min((a >> number_at_) + (b >> number_at_), edge_numbers);
+        const std::uint32_t sum = (a >> number_at_) + (b >> number_at_);
+        return sum < edge_numbers(most_blocks) ? sum : no_number;
     }
     /// Whether it has one, and no element outside the subtree has the edge.
     static constexpr bool is_inside(SubtreeNode a, SubtreeNode b) {
-        return ((a & b & 0x0FU) == 0) & (edge_number(a, b) != edge_numbers);
+        return ((a & b & 0x0FU) == 0) & (edge_number(a, b) != no_number);
     }
     /// A corner of the root, before there are subtrees.
     static constexpr SubtreeNode root_corner(std::size_t corner) {

@@ -191,10 +191,10 @@ public:
         if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
     }
     static constexpr bool names_edges() { return indexed; }
-    void begin_subtrees()
+    void begin_subtrees(std::uint32_t edge_numbers)
         requires(indexed)
     {
-        for (Layer& layer : layers_) layer.within.clear();
+        for (Layer& layer : layers_) layer.within.begin_again(edge_numbers);
     }
     template <class Blocks>
     unsigned extract(const Blocks& blocks, const BatchSelection& selection);

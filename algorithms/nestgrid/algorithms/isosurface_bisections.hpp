@@ -37,8 +37,8 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
             }
             void expect(const NodeKey* nodes) const override { to->expect(nodes); }
             bool names_edges() const override { return indexed; }
-            void begin_subtrees() override {
-                if constexpr (indexed) to->begin_subtrees();
+            void begin_subtrees(std::uint32_t edge_numbers) override {
+                if constexpr (indexed) to->begin_subtrees(edge_numbers);
             }
             unsigned extract(const ErasedBlocks<dimension, Real>& blocks,
                              const BatchSelection& selection) override {
@@ -335,7 +335,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_
     // Which of them the subtrees do not know, and of those the ones that may be known elsewhere.
     std::array<std::uint16_t, room> fresh;
     const std::size_t fresh_count = layer.within.find(
-        cuts.size(), InSubtree::edge_numbers,
+        cuts.size(),
         [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
             return InSubtree::edge_number(in_subtree[cuts[i].low], in_subtree[cuts[i].high]);
         },
@@ -357,15 +357,13 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_
         layer.number_of.prefetch(names[k]);
     }
     const std::span<Number> number = layer.within.new_numbers();
-    std::array<bool, room> is_known;
-    std::fill_n(is_known.begin(), fresh_count, false);
+    std::fill(number.begin(), number.end(), none);
     if (none - layer.vertex_count < fresh_count) throw_too_many_vertices();
     Number next = layer.vertex_count;  // less the shared ones that are known
     for (std::size_t k = 0; k < shared_count; ++k) {
         const std::size_t at = shared[k];
         const auto found = layer.number_of.find_or_add(names[k], next + static_cast<Number>(at));
         number[at] = found.number;
-        is_known[at] = !found.is_new;
         next -= found.is_new ? 0U : 1U;
     }
 
@@ -373,9 +371,10 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_
     std::array<BatchEdge, room> added;
     std::size_t count = 0;
     for (std::size_t i = 0; i < fresh_count; ++i) {
-        number[i] = is_known[i] ? number[i] : layer.vertex_count + static_cast<Number>(count);
+        const bool is_new = number[i] >= layer.vertex_count;
+        number[i] = std::min(number[i], layer.vertex_count + static_cast<Number>(count));
         added[count] = cuts[fresh[i]];
-        count += is_known[i] ? 0 : 1;
+        count += is_new ? 1 : 0;
     }
     add_vertices(blocks, layer, std::span(added).first(count));
     layer.within.end({v, cuts.size()});
@@ -420,18 +419,8 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_sim
         for (std::size_t k = 0; k < simplex.size(); ++k) simplex[k] = Vertex(v[corners[k]]);
         return simplex;
     };
-    if constexpr (!indexed && requires { layer.sink.add_simplices(v, all); }) {
+    if constexpr (requires { layer.sink.add_simplices(v, all); }) {
         layer.sink.add_simplices(v, all);
-    } else if constexpr (indexed && requires(std::span<const Simplex> some) {
-                             layer.sink.add_simplices(some);
-                         }) {
-        std::array<Simplex, 64> some;
-        while (!all.empty()) {
-            const std::size_t count = std::min(some.size(), all.size());
-            for (std::size_t i = 0; i < count; ++i) some[i] = make(all[i]);
-            layer.sink.add_simplices(std::span<const Simplex>(some).first(count));
-            all = all.subspan(count);
-        }
     } else {
         for (const Corners& corners : all) layer.sink.add_simplex(make(corners), {});
     }

@@ -65,7 +65,7 @@ NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sin
         layer.extracted = 0;
         layer.error_bound = 0;
         layer.number_of.clear();
-        layer.within.clear();
+        layer.within.begin_again(0);
         layer.transitions.clear();
         layer.where.clear();
         layer.vertex_count = 0;

@@ -152,21 +152,11 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
         }
         void simplices(std::span<const typename Log::Simplex> all) {
             Sink& sink = to->layer_->sink;
-            if constexpr (indexed && requires { sink.add_simplices(all); }) {
+            const std::span<const Vertex> of(vertices);
+            if constexpr (indexed && requires { sink.add_simplices(of, all); }) {
                 if (!to->options_->normals) {
                     to->count_simplices(all.size());
-                    std::array<typename Log::Simplex, 512> some;
-                    while (!all.empty()) {
-                        const std::size_t count = std::min(some.size(), all.size());
-                        for (std::size_t i = 0; i < count; ++i) {
-                            for (std::size_t k = 0; k < all[i].size(); ++k) {
-                                some[i][k] = vertices[all[i][k]];
-                            }
-                        }
-                        sink.add_simplices(std::span(some).first(count));
-                        all = all.subspan(count);
-                    }
-                    return;
+                    return sink.add_simplices(of, all);
                 }
             }
             for (const auto& corners : all) simplex(corners, {});

@@ -4,9 +4,10 @@
 // Vertices by the number of their edge in the subtrees that a walk of blocks is in
 // (subtree_nodes.hpp): a table without keys, which asks nothing that a processor had to predict.
 //
-// Invariant: an entry says where in the lists its edge is, or that it is in none.
+// Invariant: an entry says where in the lists its edge is; none_, which is greater, that it is not.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -20,10 +21,12 @@ class SubtreeVertices {
 public:
     using Number = std::uint32_t;
 
-    /// New subtrees.
-    void clear() {
+    /// Forgets all edges.
+    /// \param edge_numbers what the numbers of those to come are below
+    void begin_again(std::size_t edge_numbers) {
         for (std::size_t i = 0; i < count_; ++i) entry_[edge_[i]] = none_;
         count_ = 0;
+        if (entry_.size() < edge_numbers) entry_.resize(edge_numbers, none_);
     }
     std::size_t memory_bytes() const {
         return (entry_.capacity() + edge_.capacity() + number_.capacity()) * sizeof(Number);
@@ -31,37 +34,33 @@ public:
 
     /// Looks edges up, and puts those that are new into the list.
     /// \param count of them
-    /// \param edge_numbers what their numbers are not above; that one is never found
-    /// \param number_of  of edge i
+    /// \param number_of  of edge i; 0 is never found
     /// \param found where they are in the list
     /// \param fresh those that are new; there is room for one more than `count`
     /// \return how many
     template <class NumberOf>
-    NESTGRID_INLINE std::size_t find(std::size_t count, std::uint32_t edge_numbers,
-                                     NumberOf&& number_of, Number* found, std::uint16_t* fresh) {
-        reserve(edge_numbers, count + 1);
+    NESTGRID_INLINE std::size_t find(std::size_t count, NumberOf&& number_of, Number* found,
+                                     std::uint16_t* fresh) {
+        reserve(count + 1);
         Number* const entry = entry_.data();
         Number* const edge = edge_.data() + count_;
         const auto first = static_cast<Number>(count_);
         Number fresh_count = 0;
-        bool any = false;
+        std::uint32_t any = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::uint32_t e = number_of(i);
             const Number known = entry[e];
-            const Number next = first + fresh_count;
-            const bool in_subtree = e != edge_numbers;
-            const bool is_new = (known == none_) | !in_subtree;
-            const Number at = is_new ? next : known;
-            entry[e] = at;
+            const Number at = std::min(known, first + fresh_count);
+            entry[e] = at | (e == 0 ? none_ : 0U);
             found[i] = at;
             edge[fresh_count] = e;
             fresh[fresh_count] = static_cast<std::uint16_t>(i);
-            fresh_count += is_new ? 1 : 0;
-            any |= in_subtree;
+            fresh_count += known == none_ ? 1 : 0;
+            any |= e;
         }
         first_ = count_;
         count_ += fresh_count;
-        end_ = any ? count_ : first_;
+        end_ = any != 0 ? count_ : first_;
         return fresh_count;
     }
     /// The numbers of those that were new, to be set.
@@ -76,8 +75,7 @@ public:
     }
 
 private:
-    void reserve(std::size_t edge_numbers, std::size_t more) {
-        if (entry_.size() <= edge_numbers) entry_.resize(edge_numbers + 1, none_);
+    void reserve(std::size_t more) {
         if (number_.size() >= count_ + more) return;
         number_.resize(2 * (count_ + more));
         edge_.resize(number_.size());
@@ -85,7 +83,7 @@ private:
 
     static constexpr Number none_ = std::numeric_limits<Number>::max();
 
-    std::vector<Number> entry_;   // by the number of an edge
+    std::vector<Number> entry_ = {none_};  // by the number of an edge
     std::vector<Number> edge_;    // by where it is in the list
     std::vector<Number> number_;  // likewise, of its vertex
     std::size_t count_ = 0;       // in the lists

@@ -13,17 +13,16 @@
 //         optional; where it says no, add_element() may not be called
 //     void add_simplex(const Simplex& vertices, std::span<const Point> reference)
 //         reference: where they lie in the element; empty unless asked for
-//     void add_simplices(std::span<const Simplex> all)
-//         optional: several from one element, or from any where it keeps none
+//     void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all)
+//         optional: several from one element, or from any where it keeps none; Corners is any array
+//         of numbers that say which of the vertices are the corners, of a segment the first two
 //     void add_boundary(const Ridge& vertices)        on the boundary of the domain
 //     void set_normal(std::uint32_t vertex, const Point& unit)   at the end, where asked for
 // A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
 //     void add_element(const Element& element, Shape shape, int level)
 //     void add_simplex(const std::array<Point, dimension>& x, std::span<const Point> reference)
-//     void add_simplices(std::span<const WidePoint> x,
-//                        std::span<const std::array<std::uint16_t, 3>> corners)
-//         optional: several at once, whose corners are some of the points x; of segments the first
-//         two
+//     void add_simplices(std::span<const WidePoint> x, std::span<const Corners> all)
+//         optional, likewise
 // Such a sink may let several threads fill parts of it:
 //     Sink part() const          an empty one of its kind
 //     void append(Sink& part)    puts what is in a part behind what is here, and empties it
@@ -84,6 +83,21 @@ struct Surface {
     }
 };
 
+/// Simplices whose corners are some of these vertices, behind others.
+template <class Corners, std::size_t size>
+void put_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all,
+                   std::vector<std::array<std::uint32_t, size>>& to) {
+    std::array<std::array<std::uint32_t, size>, 64> some;  // memory is written once, in wide words
+    while (!all.empty()) {
+        const std::size_t count = std::min(some.size(), all.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < size; ++k) some[i][k] = vertices[all[i][k]];
+        }
+        to.insert(to.end(), some.begin(), some.begin() + count);
+        all = all.subspan(count);
+    }
+}
+
 /// Fills a Surface.
 template <int dimension, class Element>
 class SurfaceSink {
@@ -115,8 +129,9 @@ public:
         }
         for (const Point& x : reference) surface_->reference.push_back(x);
     }
-    void add_simplices(std::span<const typename Target::Simplex> all) {
-        surface_->simplices.insert(surface_->simplices.end(), all.begin(), all.end());
+    template <class Corners>
+    void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all) {
+        put_simplices(vertices, all, surface_->simplices);
         if (elements_) {
             surface_->element_of.resize(surface_->simplices.size(),
                                         static_cast<std::uint32_t>(surface_->elements.size() - 1));
@@ -162,8 +177,8 @@ public:
             simplex[i] = static_cast<Real>(x[i / 3][i % 3]);
         }
     }
-    void add_simplices(std::span<const WidePoint> x,
-                       std::span<const std::array<std::uint16_t, 3>> all) {
+    template <class Corners>
+    void add_simplices(std::span<const WidePoint> x, std::span<const Corners> all) {
         for (const auto& corners : all) {
             Simplex simplex;
             for (std::size_t i = 0; i < simplex.size(); ++i) {

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/inlining.hpp>
 #include <nestgrid/key_table.hpp>
 #include <nestgrid/shape.hpp>
@@ -65,6 +66,12 @@ public:
     NESTGRID_INLINE void add_simplex(const Simplex& corners, std::span<const Point> reference) {
         simplices_.push_back(corners);
         for (const Point& x : reference) reference_.push_back(x);
+    }
+    template <class Corners>
+    void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all)
+        requires(is_indexed)
+    {
+        put_simplices(vertices, all, simplices_);
     }
     void add_boundary(const Ridge& corners) { boundary_.push_back(corners); }
 

@@ -8,6 +8,7 @@
 // share as rarely as two nodes share a derived key (keys.hpp).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -59,7 +60,8 @@ public:
         while (8 * (size_ + more) >= 5 * slots_.size()) grow();
     }
     /// Of a table with room for it: the number of the vertex between two nodes, which is `next`
-    /// where it is new. Nothing depends on whether it is.
+    /// where it is new. There is no branch that depends on whether it is.
+    /// \param next greater than the numbers there are
     struct Found {
         Number number;
         bool is_new;
@@ -67,10 +69,10 @@ public:
     NESTGRID_INLINE Found find_or_add(const Name& name, Number next) {
         Slot* slot = place(name);
         const bool is_new = slot->round != round_;
-        const Number number = is_new ? next : slot->number;
-        *slot = {name.word, number, round_};
+        const Number known = slot->number | (is_new ? ~Number{0} : 0U);
+        *slot = {name.word, std::min(known, next), round_};
         size_ += is_new ? 1 : 0;
-        return {number, is_new};
+        return {slot->number, is_new};
     }
 
     /// Forgets everything but its memory.
