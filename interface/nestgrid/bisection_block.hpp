@@ -164,6 +164,20 @@ inline constexpr auto block_orders = [] {
     return result;
 }();
 
+/// The ends that are entered, by the parts 2 ... ends - 1 that are, likewise.
+template <const auto& pattern>
+inline constexpr auto block_ends = [] {
+    std::array<BlockOrder<pattern.ends>, pattern.part_sets> result{};
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const auto& order = block_orders<pattern>[i];
+        for (std::size_t k = 0; k < order.count; ++k) {
+            if (order.part[k] < pattern.ends) continue;
+            result[i].part[result[i].count++] = order.part[k];
+        }
+    }
+    return result;
+}();
+
 /// Those of Maubach's bisections.
 template <int dim>
 inline constexpr auto maubach_block =

@@ -68,11 +68,13 @@ struct BatchEdge {
 /// As many may be asked for their points.
 inline constexpr std::size_t edges_at_once = 128;
 
-/// How many of the bits of a byte are set.
-constexpr unsigned count_bits(unsigned byte) {
-    byte = (byte & 0x55U) + (byte >> 1U & 0x55U);
-    byte = (byte & 0x33U) + (byte >> 2U & 0x33U);
-    return (byte & 0xFU) + (byte >> 4U);
+/// How many of the lowest sixteen bits are set; there are no others.
+template <class Unsigned>
+constexpr Unsigned count_bits(Unsigned bits) {
+    bits = (bits & 0x5555U) + (bits >> 1U & 0x5555U);
+    bits = (bits & 0x3333U) + (bits >> 2U & 0x3333U);
+    bits = (bits & 0x0F0FU) + (bits >> 4U & 0x0F0FU);
+    return (bits & 0x1FU) + (bits >> 8U);
 }
 
 /// Of a batch, what is to be extracted, by number, in the order of the traversal: elements, and of

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstring>
+#include <tuple>
 
 #include <nestgrid/block_batch.hpp>
 
@@ -102,8 +103,8 @@ private:
         std::size_t stopped_count = 0;
         std::size_t taken = 0;  // of them
     };
-    /// Parts of blocks in the order of the traversal: ends, which are split, and what stops.
-    struct Steps {
+    /// Parts of blocks.
+    struct Parts {
         static constexpr std::size_t room = room_ * ends_;
         std::size_t count = 0;
         std::array<std::uint8_t, room + ends_> block;
@@ -115,8 +116,11 @@ private:
             std::memset(block.data() + count, static_cast<int>(b), ends_);
             count += order.count;
         }
-        // Of the ends alone:
-        std::size_t end_count = 0;
+    };
+    /// In the order of the traversal: ends, which are split, and what stops.
+    struct Steps : Parts {
+        using Parts::room;
+        Parts end;  // the ends alone, and of those:
         alignas(64) std::array<Real, room + 1> lo;
         alignas(64) std::array<Real, room + 1> hi;
         alignas(64) std::array<NodeKey, room + 1> node;

@@ -112,7 +112,7 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::number_nodes(Batch& batc
 /// Of ends, in rows.
 template <class Grid, class Field, class Visitor>
 void BlockWalk<Grid, Field, Visitor>::find_new_nodes(Steps& steps) const {
-    const std::span<Node> from(steps.from.data(), steps.end_count);
+    const std::span<Node> from(steps.from.data(), steps.end.count);
     grid_->middles(from, std::span(steps.to).first(from.size()), from);
     grid_->keys(from, std::span(steps.node).first(from.size()));
 }

@@ -144,11 +144,9 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_blocks(Queue& ba
             selection.add_block(b);
         }
     }
-    for (std::size_t b = first; b < end; ++b) {
-        const auto stops = static_cast<std::size_t>(batch.stops[b]);
-        count_->extracted += count_bits(pattern_.first_ends[stops & interior_]);
-        count_->extracted += count_bits(static_cast<unsigned>(stops >> (ends_ - 2)));
-    }
+    MaskOf<Real> stopped = 0;
+    for (std::size_t b = first; b < end; ++b) stopped += count_bits(batch.stops[b]);
+    count_->extracted += stopped;
     extract(batch, selection);
 }
 
@@ -179,7 +177,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
     list(batch, first, end, steps);
     look_at_ends(batch, steps);
     MaskOf<Real> any_entered = 0;
-    for (std::size_t i = 0; i < steps.end_count; ++i) any_entered |= steps.descend[i];
+    for (std::size_t i = 0; i < steps.end.count; ++i) any_entered |= steps.descend[i];
     if (any_entered == 0) {
         finish(next);
         note_stopped_ends(batch, steps);
@@ -224,33 +222,32 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Queue& batch, std::size_t first,
                                                            std::size_t end, Steps& steps) const {
-    for (std::size_t b = first; b < end; ++b) steps.append(order_of(batch, b), b);
-    for (std::size_t i = 0; i < steps.count; ++i) {
-        const std::size_t b = steps.block[i];
-        const std::size_t part = steps.part[i];
-        const auto [lo, hi] = range_within(batch, b, part);
+    for (std::size_t b = first; b < end; ++b) {
+        steps.append(order_of(batch, b), b);
+        steps.end.append(block_ends<pattern_>[static_cast<std::size_t>(batch.entered[b])], b);
+    }
+    for (std::size_t i = 0; i < steps.end.count; ++i) {
+        const std::size_t b = steps.end.block[i];
+        const std::size_t part = steps.end.part[i];
         const auto& parent = parent_of_new_[part];
-        steps.lo[steps.end_count] = lo;
-        steps.hi[steps.end_count] = hi;
+        std::tie(steps.lo[i], steps.hi[i]) = range_within(batch, b, part);
         if constexpr (AnswersInRows<Grid>) {
-            steps.from[steps.end_count] = batch.nodes[parent[0]][b];
-            steps.to[steps.end_count] = batch.nodes[parent[1]][b];
+            steps.from[i] = batch.nodes[parent[0]][b];
+            steps.to[i] = batch.nodes[parent[1]][b];
         } else {
-            steps.node[steps.end_count] =
-                grid_->middle_key(batch.keys[parent[0]][b], batch.keys[parent[1]][b]);
+            steps.node[i] = grid_->middle_key(batch.keys[parent[0]][b], batch.keys[parent[1]][b]);
         }
-        steps.end_count += part >= ends_ ? 1 : 0;
     }
 }
 
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(const Batch& batch,
                                                                    Steps& steps) const {
-    const std::size_t count = packed(steps.end_count);
-    if (steps.end_count > 0) {
+    const std::size_t count = packed(steps.end.count);
+    if (steps.end.count > 0) {
         if constexpr (AnswersInRows<Grid>) find_new_nodes(steps);
-        const std::size_t last = steps.end_count - 1;
-        for (std::size_t i = steps.end_count; i < count; ++i) {
+        const std::size_t last = steps.end.count - 1;
+        for (std::size_t i = steps.end.count; i < count; ++i) {
             steps.lo[i] = steps.lo[last];
             steps.hi[i] = steps.hi[last];
             steps.node[i] = steps.node[last];
@@ -265,24 +262,21 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(const Batch& 
             glance.bound.store(steps.bound.data() + i);
         }
     }
-    steps.descend[steps.end_count] = 0;
-    steps.stop[steps.end_count] = 0;
-    steps.bound[steps.end_count] = 0;
+    steps.descend[steps.end.count] = 0;
+    steps.stop[steps.end.count] = 0;
+    steps.bound[steps.end.count] = 0;
 }
 
 /// Of blocks whose ends all stop or are skipped.
 template <class Grid, class Field, class Visitor>
 void BlockWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, const Steps& steps) {
-    std::size_t next_end = 0;
-    for (std::size_t i = 0; i < steps.count; ++i) {
-        const std::size_t b = steps.block[i];
-        const std::size_t part = steps.part[i];
-        if (part < ends_) continue;
-        const Real bound = steps.bound[next_end];
-        if (steps.stop[next_end++] == 0) continue;
+    for (std::size_t i = 0; i < steps.end.count; ++i) {
+        if (steps.stop[i] == 0) continue;
+        const std::size_t b = steps.end.block[i];
+        const std::size_t part = steps.end.part[i];
         batch.stops[b] |= MaskOf<Real>{1} << (part - 2);
-        batch.bounds[part][b] = bound;
-        batch.greatest_bounds[b] = std::max(batch.greatest_bounds[b], bound);
+        batch.bounds[part][b] = steps.bound[i];
+        batch.greatest_bounds[b] = std::max(batch.greatest_bounds[b], steps.bound[i]);
     }
 }
 
@@ -293,11 +287,11 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::copy_corners(const Batch& 
         const std::size_t b = which.block[n];
         const auto& part = pattern_.part[which.part[n]];
         unrolled<corners_>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            const std::size_t from = part.corner[i];
-            next.nodes[i][n] = batch.nodes[from][b];
-            next.keys[i][n] = batch.keys[from][b];
-            next.values[i][n] = batch.values[from][b];
-            if constexpr (in_subtrees_) next.in_subtree[i][n] = batch.in_subtree[from][b];
+            const std::size_t from = Batch::Places::of(0, part.corner[i]) + b;
+            next.nodes[i][n] = batch.nodes.all[from];
+            next.keys[i][n] = batch.keys.all[from];
+            next.values[i][n] = batch.values.all[from];
+            if constexpr (in_subtrees_) next.in_subtree[i][n] = batch.in_subtree.all[from];
         });
         next.orientations[n] =
             static_cast<std::uint8_t>(batch.orientations[b] ^ (part.mirrored ? 1U : 0U));
