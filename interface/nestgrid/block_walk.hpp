@@ -43,7 +43,7 @@ private:
 ///     unsigned extract(const BlockBatch&, const BatchSelection&)
 ///             what is selected, and in how many of the leaves there was anything to extract
 ///     bool names_edges() const                   optional, and, where it says yes, a batch tells
-///     void begin_subtrees(std::uint32_t edge_numbers)
+///     void begin_subtrees(std::uint32_t numbers)
 ///                                                of nodes in subtrees (subtree_nodes.hpp): what
 ///                                                was inside subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then

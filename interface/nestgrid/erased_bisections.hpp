@@ -82,7 +82,7 @@ public:
     virtual PackedGlance<Real> glance(const PackedElements<Real>& e) = 0;
     virtual void expect(const NodeKey* nodes) const = 0;
     virtual bool names_edges() const = 0;
-    virtual void begin_subtrees(std::uint32_t edge_numbers) = 0;
+    virtual void begin_subtrees(std::uint32_t numbers) = 0;
     virtual unsigned extract(const ErasedBlocks<dim, Real>& blocks,
                              const BatchSelection& selection) = 0;
 
@@ -113,7 +113,7 @@ public:
     bool glance_at_leaf(Real lo, Real hi) { return to_->glance_at_leaf(lo, hi); }
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
     bool names_edges() const { return to_->names_edges(); }
-    void begin_subtrees(std::uint32_t edge_numbers) { to_->begin_subtrees(edge_numbers); }
+    void begin_subtrees(std::uint32_t numbers) { to_->begin_subtrees(numbers); }
     PackedGlance<Real> glance(const PackedElements<Real>& e) { return to_->glance(e); }
     void expect(const NodeKey* nodes) const { to_->expect(nodes); }
     template <class Batch>

@@ -191,10 +191,10 @@ public:
         if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
     }
     static constexpr bool names_edges() { return indexed; }
-    void begin_subtrees(std::uint32_t edge_numbers)
+    void begin_subtrees(std::uint32_t numbers)
         requires(indexed)
     {
-        for (Layer& layer : layers_) layer.within.begin_again(edge_numbers);
+        for (Layer& layer : layers_) layer.within.begin_again(numbers);
     }
     template <class Blocks>
     unsigned extract(const Blocks& blocks, const BatchSelection& selection);
@@ -319,6 +319,8 @@ private:
     template <class Corners>
     void put_simplices(Layer& layer, std::span<const BlockVertex> v,
                        std::span<const Corners> all);
+    template <class Corners>
+    void put_simplex(Layer& layer, std::span<const BlockVertex> v, const Corners& corners);
     template <class Blocks>
     void put_boundaries(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
                         const BlockContours& contours, const CutList& list,
@@ -363,9 +365,11 @@ private:
     Vertex add(const KeyPair& name, Make&& make);
     template <class Make>
     Vertex add_named(const VertexName& name, Make&& make);
-    Number add_new(const Cut& cut, bool alone);
+    Number add_new(const Cut& cut);
     void verify(const Layer& layer, Number number, const Point& x) const;
     Vertex add_unnamed(const Point& x, std::span<const double> attributes);
+    void add_unnamed(std::span<const Point> x, std::span<const double> attributes)
+        requires(indexed);
     Number number_of(const Vertex& vertex, const Point& reference);
     Number vertex(std::uint8_t edge);
     Number node_vertex(std::size_t corner);

@@ -37,8 +37,8 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
             }
             void expect(const NodeKey* nodes) const override { to->expect(nodes); }
             bool names_edges() const override { return indexed; }
-            void begin_subtrees(std::uint32_t edge_numbers) override {
-                if constexpr (indexed) to->begin_subtrees(edge_numbers);
+            void begin_subtrees(std::uint32_t numbers) override {
+                if constexpr (indexed) to->begin_subtrees(numbers);
             }
             unsigned extract(const ErasedBlocks<dimension, Real>& blocks,
                              const BatchSelection& selection) override {
@@ -252,7 +252,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
                 layer.sink.add_element(blocks.element(entry.id, part), simplex_shape,
                                        level_of(entry.id, pattern.part[part].depth));
                 const std::size_t count = contours.piece(bits).count == 4 ? 2 : 1;
-                put_simplices(layer, vertices, left.first(count));
+                for (const auto& corners : left.first(count)) put_simplex(layer, vertices, corners);
                 left = left.subspan(count);
             });
         }
@@ -392,11 +392,13 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_ver
         if constexpr (logs) {
             const auto& [low, high] = cuts[i];
             const SubtreeNode* const in_subtree = blocks.in_subtree[0];
-            layer.sink.add_cut({Point(x[i]), {blocks.keys[0][low], blocks.keys[0][high]}, 0, {}},
-                               is_within_root(in_subtree[low], in_subtree[high]));
-        } else {
-            layer.sink.add_vertex(Point(x[i]), {});
+            if (!is_within_root(in_subtree[low], in_subtree[high])) {
+                const NodeKey* const key = blocks.keys[0];
+                layer.sink.add_cut({Point(x[i]), {key[low], key[high]}, 0, {}});
+                continue;
+            }
         }
+        layer.sink.add_vertex(Point(x[i]), {});
     }
 }
 
@@ -413,17 +415,20 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Corners>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_simplices(
     Layer& layer, std::span<const BlockVertex> v, std::span<const Corners> all) {
-    using Simplex = std::array<Vertex, static_cast<std::size_t>(dimension)>;
-    const auto make = [&](const Corners& corners) NESTGRID_INLINE_LAMBDA {
-        Simplex simplex;
-        for (std::size_t k = 0; k < simplex.size(); ++k) simplex[k] = Vertex(v[corners[k]]);
-        return simplex;
-    };
     if constexpr (requires { layer.sink.add_simplices(v, all); }) {
         layer.sink.add_simplices(v, all);
     } else {
-        for (const Corners& corners : all) layer.sink.add_simplex(make(corners), {});
+        for (const Corners& corners : all) put_simplex(layer, v, corners);
     }
+}
+
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Corners>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_simplex(
+    Layer& layer, std::span<const BlockVertex> v, const Corners& corners) {
+    std::array<Vertex, static_cast<std::size_t>(dimension)> simplex;
+    for (std::size_t k = 0; k < simplex.size(); ++k) simplex[k] = Vertex(v[corners[k]]);
+    layer.sink.add_simplex(simplex, {});
 }
 
 /// Sides of loops on the boundary of the domain.

@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <mutex>
+#include <numeric>
 
 #include <nestgrid/algorithms/isosurface.hpp>
 
@@ -123,36 +124,39 @@ NESTGRID_VISITOR::add_task(Task& task) -> void {
 NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
     struct Receiver {
         IsosurfaceVisitor* to;
-        std::vector<Vertex>& vertices;
+        std::vector<Vertex>& known;
 
-        NESTGRID_INLINE void expect([[maybe_unused]] const typename Log::Cut& c) const {
+        NESTGRID_INLINE void expect([[maybe_unused]] const std::array<NodeKey, 2>& node) const {
             if constexpr (indexed) {
                 const VertexNumbers& numbers = to->layer_->number_of;
-                numbers.prefetch(numbers.name({c.node[0], c.node[1]}));
+                numbers.prefetch(numbers.name({node[0], node[1]}));
             }
         }
         void cut(const typename Log::Cut& c) {
-            vertices.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
+            known.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
         }
-        void cut_alone(const typename Log::Cut& c) {
-            if constexpr (indexed) vertices.push_back(to->add_new(c, true));
-        }
-        void vertex(const typename Log::Cut& c) {
-            vertices.push_back(to->add_unnamed(c.x, c.attributes));
+        void vertices(std::span<const Point> x, std::span<const double> attributes) {
+            if constexpr (indexed) {
+                const Number first = to->layer_->vertex_count;
+                const std::size_t before = known.size();
+                known.resize(before + x.size());
+                std::iota(known.data() + before, known.data() + known.size(), first);
+                to->add_unnamed(x, attributes);
+            }
         }
         void element(const typename Log::Owner& e) {
             to->layer_->sink.add_element(e.element, e.shape, e.level);
         }
         void simplex(typename Log::Simplex corners, std::span<const Point> reference) {
             if constexpr (indexed) {
-                for (auto& corner : corners) corner = vertices[corner];
+                for (auto& corner : corners) corner = known[corner];
             }
             to->count_simplices(1);
             to->put_simplex(corners, reference);
         }
         void simplices(std::span<const typename Log::Simplex> all) {
             Sink& sink = to->layer_->sink;
-            const std::span<const Vertex> of(vertices);
+            const std::span<const Vertex> of(known);
             if constexpr (indexed && requires { sink.add_simplices(of, all); }) {
                 if (!to->options_->normals) {
                     to->count_simplices(all.size());
@@ -163,7 +167,7 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
         }
         void boundary(typename Log::Ridge corners) {
             if constexpr (indexed) {
-                for (auto& corner : corners) corner = vertices[corner];
+                for (auto& corner : corners) corner = known[corner];
                 to->layer_->sink.add_boundary(corners);
             }
         }

@@ -89,7 +89,7 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_nam
         bool is_new = false;
         const Number number = layer.number_of.find(name, [&] {
             is_new = true;
-            return add_new(make(), false);
+            return add_new(make());
         });
         if (options_->verify && !is_new) verify(layer, number, make().x);
         return number;
@@ -102,11 +102,10 @@ NESTGRID_VISITOR::verify(const Layer& layer, Number number, const Point& x) cons
                     " at different places");
 }
 
-/// \param alone no other task knows it
-NESTGRID_VISITOR::add_new(const Cut& cut, [[maybe_unused]] bool alone) -> Number {
+NESTGRID_VISITOR::add_new(const Cut& cut) -> Number {
     if (layer_->vertex_count == none) throw_too_many_vertices();
     if constexpr (logs) {
-        layer_->sink.add_cut(cut, alone);
+        layer_->sink.add_cut(cut);
         return layer_->vertex_count++;
     }
     layer_->sink.add_vertex(cut.x, cut.attributes);
@@ -125,6 +124,25 @@ NESTGRID_VISITOR::add_unnamed(const Point& x, std::span<const double> attributes
         layer_->sink.add_vertex(x, attributes);
         if (options_->normals && !logs) layer_->where.push_back({none, none, 0.0, {}});
         return layer_->vertex_count++;
+    }
+}
+
+/// Some that a task knows alone.
+NESTGRID_VISITOR::add_unnamed(std::span<const Point> x, std::span<const double> attributes) -> void
+    requires(indexed)
+{
+    Layer& layer = *layer_;
+    if (none - layer.vertex_count < x.size()) throw_too_many_vertices();
+    layer.vertex_count += static_cast<Number>(x.size());
+    if (options_->normals && !logs) {
+        layer.where.resize(layer.where.size() + x.size(), {none, none, 0.0, {}});
+    }
+    if constexpr (attribute_count == 0 && requires { layer.sink.add_vertices(x); }) {
+        layer.sink.add_vertices(x);
+    } else {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            layer.sink.add_vertex(x[i], attributes.subspan(i * attribute_count, attribute_count));
+        }
     }
 }
 

@@ -22,11 +22,11 @@ public:
     using Number = std::uint32_t;
 
     /// Forgets all edges.
-    /// \param edge_numbers what the numbers of those to come are below
-    void begin_again(std::size_t edge_numbers) {
+    /// \param numbers what those of the edges to come are below
+    void begin_again(std::size_t numbers) {
         for (std::size_t i = 0; i < count_; ++i) entry_[edge_[i]] = none_;
         count_ = 0;
-        if (entry_.size() < edge_numbers) entry_.resize(edge_numbers, none_);
+        if (entry_.size() < numbers) entry_.resize(numbers, none_);
     }
     std::size_t memory_bytes() const {
         return (entry_.capacity() + edge_.capacity() + number_.capacity()) * sizeof(Number);
@@ -76,6 +76,7 @@ public:
 
 private:
     void reserve(std::size_t more) {
+        if (entry_.empty()) entry_.push_back(none_);
         if (number_.size() >= count_ + more) return;
         number_.resize(2 * (count_ + more));
         edge_.resize(number_.size());
@@ -83,7 +84,7 @@ private:
 
     static constexpr Number none_ = std::numeric_limits<Number>::max();
 
-    std::vector<Number> entry_ = {none_};  // by the number of an edge
+    std::vector<Number> entry_;  // by the number of an edge
     std::vector<Number> edge_;    // by where it is in the list
     std::vector<Number> number_;  // likewise, of its vertex
     std::size_t count_ = 0;       // in the lists

@@ -6,6 +6,8 @@
 // A sink takes a surface while it is extracted. Vertices are numbered in the order they are added:
 //     void add_vertex(const Point& x, std::span<const double> attributes)
 //         attributes: components 1 ... of the field there
+//     void add_vertices(std::span<const Point> x)
+//         optional: several, where there are no attributes
 //     Point position(std::uint32_t vertex) const
 //     void add_element(const Element& element, Shape shape, int level)
 //         before the first simplex from it
@@ -111,6 +113,9 @@ public:
     void add_vertex(const Point& x, std::span<const double> attributes) {
         surface_->vertices.push_back(x);
         for (const double a : attributes) surface_->attributes.push_back(a);
+    }
+    void add_vertices(std::span<const Point> x) {
+        surface_->vertices.insert(surface_->vertices.end(), x.begin(), x.end());
     }
     Point position(std::uint32_t vertex) const { return surface_->vertices[vertex]; }
     bool keeps_elements() const { return elements_; }

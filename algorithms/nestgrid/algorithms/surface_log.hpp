@@ -27,7 +27,7 @@ struct SurfaceCut {
 };
 
 /// A sink (surface.hpp) that keeps what it is told. Vertices come with the nodes they lie between,
-/// by which a vertex is known to several tasks; those inside one element come without.
+/// by which a vertex is known to several tasks; those that only one can know come without.
 template <int dimension, class Element, std::size_t attribute_count, bool is_indexed>
 class SurfaceLog {
 public:
@@ -47,18 +47,16 @@ public:
     /// \param elements whether the sink it is for keeps them
     explicit SurfaceLog(bool elements) : keeps_elements_{elements} {}
 
-    /// \param alone no other task knows it
-    NESTGRID_INLINE void add_cut(const Cut& cut, bool alone) {
-        kinds_.push_back(alone ? Kind::alone : Kind::shared);
-        cuts_.push_back(cut);
+    /// A vertex that other tasks may know.
+    NESTGRID_INLINE void add_cut(const Cut& cut) {
+        shared_.push_back({x_.size(), cut.node, cut.fraction});
+        add_vertex(cut.x, cut.attributes);
     }
-    void add_vertex(const Point& x, std::span<const double> attributes) {
-        kinds_.push_back(Kind::unnamed);
-        cuts_.push_back({x, {}, 0, {}});
-        for (std::size_t i = 0; i < attribute_count; ++i)
-            cuts_.back().attributes[i] = attributes[i];
+    NESTGRID_INLINE void add_vertex(const Point& x, std::span<const double> attributes) {
+        x_.push_back(x);
+        for (std::size_t i = 0; i < attribute_count; ++i) attributes_.push_back(attributes[i]);
     }
-    Point position(std::uint32_t vertex) const { return cuts_[vertex].x; }
+    Point position(std::uint32_t vertex) const { return x_[vertex]; }
     bool keeps_elements() const { return keeps_elements_; }
     void add_element(const Element& element, Shape shape, int level) {
         if (keeps_elements_) elements_.push_back({element, shape, level, simplices_.size()});
@@ -78,8 +76,9 @@ public:
     /// As new, but for its memory.
     void clear(bool elements) {
         keeps_elements_ = elements;
-        kinds_.clear();
-        cuts_.clear();
+        x_.clear();
+        attributes_.clear();
+        shared_.clear();
         elements_.clear();
         simplices_.clear();
         reference_.clear();
@@ -87,26 +86,31 @@ public:
     }
 
     /// Repeats the calls, those for vertices before all others; corners are numbers of vertices in
-    /// the order they were added here. Cuts that other tasks may know are announced by expect().
+    /// the order they were added here. Those that other tasks may know are announced by expect().
     template <class Receiver>
     void repeat(Receiver&& to) const {
         constexpr std::size_t ahead = 16;
-        for (std::size_t i = 0; i < cuts_.size(); ++i) {
-            if (i + ahead < cuts_.size() && kinds_[i + ahead] == Kind::shared) {
-                to.expect(cuts_[i + ahead]);
+        const std::span<const Point> x(x_);
+        const std::span<const double> attributes(attributes_);
+        const auto others = [&](std::size_t first, std::size_t end) {
+            if (first == end) return;
+            to.vertices(x.subspan(first, end - first),
+                        attributes.subspan(first * attribute_count,
+                                           (end - first) * attribute_count));
+        };
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < shared_.size(); ++i) {
+            if (i + ahead < shared_.size()) to.expect(shared_[i + ahead].node);
+            const Shared& vertex = shared_[i];
+            others(next, vertex.number);
+            Cut cut{x[vertex.number], vertex.node, vertex.fraction, {}};
+            for (std::size_t k = 0; k < attribute_count; ++k) {
+                cut.attributes[k] = attributes[vertex.number * attribute_count + k];
             }
-            switch (kinds_[i]) {
-                case Kind::shared:
-                    to.cut(cuts_[i]);
-                    break;
-                case Kind::alone:
-                    to.cut_alone(cuts_[i]);
-                    break;
-                case Kind::unnamed:
-                    to.vertex(cuts_[i]);
-                    break;
-            }
+            to.cut(cut);
+            next = vertex.number + 1;
         }
+        others(next, x.size());
         for (const Ridge& corners : boundary_) to.boundary(corners);
         if (elements_.empty() && reference_.empty()) return to.simplices(simplices_);
         auto element = elements_.begin();
@@ -120,11 +124,16 @@ public:
     }
 
 private:
-    enum class Kind : std::uint8_t { shared, alone, unnamed };
+    struct Shared {
+        std::size_t number;  // of the vertex
+        std::array<NodeKey, 2> node;
+        double fraction;
+    };
 
     bool keeps_elements_;
-    std::vector<Kind> kinds_;  // of the cuts
-    std::vector<Cut> cuts_;
+    std::vector<Point> x_;            // of the vertices
+    std::vector<double> attributes_;  // likewise
+    std::vector<Shared> shared_;      // those that other tasks may know
     std::vector<Owner> elements_;
     std::vector<Simplex> simplices_;
     std::vector<Point> reference_;
