@@ -2,15 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What is done to many numbers at once is what is done to each of them, to the last bit; what comes
-// next in a block is what a recursion meets.
+// next in a block is what a recursion meets; and numbers tell the edges of a subtree apart.
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <limits>
+#include <map>
 #include <random>
+#include <set>
 
 #include <nestgrid/bisection_block.hpp>
 #include <nestgrid/pack.hpp>
+#include <nestgrid/subtree_nodes.hpp>
 #include <nestgrid/wide_point.hpp>
 
 using namespace nestgrid;
@@ -128,6 +131,10 @@ void expect_order() {
             EXPECT_EQ(
                 std::vector<std::size_t>(known.part.begin(), known.part.begin() + known.count),
                 order);
+            std::erase_if(order, [](std::size_t part) { return part < pattern.ends; });
+            const auto& ends = block_ends<pattern>[entered];
+            EXPECT_EQ(std::vector<std::size_t>(ends.part.begin(), ends.part.begin() + ends.count),
+                      order);
         }
     }
     EXPECT_EQ(met, parts == 2 ? 9U : 121U);  // 3^2; (2 + 3^2)^2
@@ -136,6 +143,112 @@ void expect_order() {
 TEST(Blocks, KnowWhatComesNext) {
     expect_order<maubach_block<2>>();
     expect_order<maubach_block<3>>();
+}
+
+/// A subtree of blocks, refined to the same level everywhere.
+template <const auto& pattern>
+struct Subtree {
+    using InSubtree = SubtreeNodes<pattern>;
+    static constexpr std::size_t corners = pattern.corners;
+    using Barycentric = std::array<int, corners>;  // of a whole
+    static constexpr int whole = 1 << 12;
+    struct Node {
+        Barycentric x{};
+        SubtreeNode word = 0;
+    };
+    using Element = std::array<Node, corners>;
+    using Edge = std::set<Barycentric>;
+
+    /// By level, what its elements' edges are told to be.
+    std::vector<std::vector<std::pair<std::array<Node, 2>, Edge>>> edges;
+
+    explicit Subtree(std::size_t number) {
+        Element root;
+        for (std::size_t i = 0; i < corners; ++i) {
+            root[i].x[i] = whole;
+            root[i].word = InSubtree::corner(InSubtree::root_corner(i), number, i);
+        }
+        walk(root, 0);
+    }
+
+private:
+    void walk(const Element& of, std::size_t blocks) {
+        std::array<Node, pattern.most_nodes> node;
+        std::copy(of.begin(), of.end(), node.begin());
+        for (std::size_t n = corners; n < pattern.nodes; ++n) {
+            const Node& a = node[pattern.parent[n][0]];
+            const Node& b = node[pattern.parent[n][1]];
+            for (std::size_t i = 0; i < corners; ++i) node[n].x[i] = (a.x[i] + b.x[i]) / 2;
+            node[n].word = InSubtree::middle(a.word, b.word);
+        }
+        for (std::size_t p = blocks == 0 ? 1 : 2; p < 2 * pattern.ends; ++p) {
+            const auto& part = pattern.part[p];
+            Element element;
+            for (std::size_t i = 0; i < corners; ++i) element[i] = node[part.corner[i]];
+            add(element, blocks * pattern.height + part.depth);
+            const bool is_end = p >= pattern.ends;
+            if (is_end && blocks + 1 < InSubtree::height) walk(element, blocks + 1);
+        }
+    }
+    void add(const Element& e, std::size_t level) {
+        if (edges.size() <= level) edges.resize(level + 1);
+        for (std::size_t i = 0; i < corners; ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                edges[level].push_back({{e[i], e[j]}, Edge{e[i].x, e[j].x}});
+            }
+        }
+    }
+};
+
+template <const auto& pattern>
+void expect_numbers_of_edges() {
+    using InSubtree = SubtreeNodes<pattern>;
+    EXPECT_EQ(InSubtree::height, 3);
+    std::vector<std::map<std::uint32_t, std::pair<std::size_t, typename Subtree<pattern>::Edge>>>
+        known;
+    for (const std::size_t number : {std::size_t{0}, std::size_t{1}, most_blocks - 1}) {
+        const Subtree<pattern> subtree(number);
+        known.resize(subtree.edges.size());
+        for (std::size_t level = 0; level < subtree.edges.size(); ++level) {
+            for (const auto& [ends, edge] : subtree.edges[level]) {
+                const auto& [a, b] = ends;
+                const std::uint32_t told = InSubtree::edge_number(a.word, b.word);
+                EXPECT_NE(told, InSubtree::no_number);
+                EXPECT_LT(told, InSubtree::edge_numbers(number + 1));
+                const auto [at, is_new] = known[level].try_emplace(told, number, edge);
+                EXPECT_EQ(at->second, std::pair(number, edge)) << "level " << level;
+                bool on_face = false;
+                for (std::size_t i = 0; i < pattern.corners; ++i) {
+                    on_face = on_face || (a.x[i] == 0 && b.x[i] == 0);
+                }
+                EXPECT_EQ(InSubtree::is_inside(a.word, b.word), !on_face);
+                EXPECT_EQ(is_within_root(a.word, b.word), !on_face);  // here the same
+            }
+        }
+    }
+}
+
+TEST(SubtreeEdges, HaveNumbersOfTheirOwn) {
+    expect_numbers_of_edges<maubach_block<2>>();
+    expect_numbers_of_edges<maubach_block<3>>();
+}
+
+/// Not even two nodes that are in none, or one that is and one that is not.
+TEST(SubtreeEdges, OutsideSubtreesHaveNone) {
+    using InSubtree = SubtreeNodes<maubach_block<3>>;
+    const SubtreeNode above = InSubtree::root_corner(0);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const SubtreeNode corner = InSubtree::corner(above, most_blocks - 1, i);
+        const auto below = InSubtree::middle_below(Pack<SubtreeNode>::all(corner),
+                                                   Pack<SubtreeNode>::all(corner))
+                               .numbers()[0];
+        for (const SubtreeNode node : {above, below, InSubtree::unknown}) {
+            EXPECT_EQ(InSubtree::edge_number(node, corner), InSubtree::no_number);
+            EXPECT_EQ(InSubtree::edge_number(node, above), InSubtree::no_number);
+            EXPECT_FALSE(InSubtree::is_inside(node, corner));
+            EXPECT_FALSE(InSubtree::is_inside(InSubtree::middle(node, above), above));
+        }
+    }
 }
 
 }  // namespace

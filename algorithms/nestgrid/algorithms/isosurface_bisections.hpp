@@ -363,7 +363,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_
     for (std::size_t k = 0; k < shared_count; ++k) {
         const std::size_t at = shared[k];
         const auto found = layer.number_of.find_or_add(names[k], next + static_cast<Number>(at));
-        number[at] = found.number;
+        number[at] = found.number | (found.is_new ? none : 0U);
         next -= found.is_new ? 0U : 1U;
     }
 
@@ -371,7 +371,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_
     std::array<BatchEdge, room> added;
     std::size_t count = 0;
     for (std::size_t i = 0; i < fresh_count; ++i) {
-        const bool is_new = number[i] >= layer.vertex_count;
+        const bool is_new = number[i] == none;
         number[i] = std::min(number[i], layer.vertex_count + static_cast<Number>(count));
         added[count] = cuts[fresh[i]];
         count += is_new ? 1 : 0;
