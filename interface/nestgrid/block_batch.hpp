@@ -139,8 +139,8 @@ struct BlockBatch {
     std::size_t element_count = 0;  ///< beside them
     Rows<Node> nodes;
     Rows<NodeKey> keys;
-    Rows<Real> values;  ///< P_S U
-    Rows<SubtreeNode> in_subtree;  ///< only where they are asked for
+    Rows<Real> values;                                ///< P_S U
+    Rows<SubtreeNode> in_subtree;                     ///< only where they are asked for
     std::array<std::uint8_t, 2 * room> orientations;  ///< 1 in a mirror; of blocks, part 1
     /// Of blocks, the ends that are reached, one bit each.
     std::array<std::uint8_t, room> ends;

@@ -337,6 +337,31 @@ TEST(KnownBisections, DrawNoMoreThanIsEntered) {
 }
 
 /// Isovalues between two numbers of the values' type, and at one.
+/// Two nodes in a row have one key.
+struct SharedKeys : LatticeBisection<3> {
+    using LatticeBisection<3>::LatticeBisection;
+    NodeKey key(Node n) const { return LatticeBisection<3>::key(n) & ~NodeKey{1}; }
+    NodeKey middle_key(NodeKey a, NodeKey b) const {
+        return LatticeBisection<3>::middle_key(a, b) & ~NodeKey{1};
+    }
+};
+
+TEST(KnownBisections, AreVerifiedVertexByVertex) {
+    const SmallField small;
+    const SharedKeys grid({.samples = small.n});
+    const LatticeField field(grid, std::span<const float>(small.data.values));
+    const auto draw = [&](bool verify) {
+        return isosurface(grid, field, small.data.isovalue, small.indicator, {.verify = verify});
+    };
+    EXPECT_GT(draw(false).surface.vertices.size(), 0U);
+    try {
+        draw(true);
+        ADD_FAILURE() << "nothing was found";
+    } catch (const GridError& error) {
+        EXPECT_NE(std::string(error.what()).find("at different places"), std::string::npos);
+    }
+}
+
 TEST(KnownBisections, TellInsideFromOutsideInTheirOwnType) {
     const Samples n{9, 9, 9};
     std::vector<float> values = sampled_fields(n)[0].values;

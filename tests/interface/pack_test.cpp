@@ -239,9 +239,9 @@ TEST(SubtreeEdges, OutsideSubtreesHaveNone) {
     const SubtreeNode above = InSubtree::root_corner(0);
     for (std::size_t i = 0; i < 4; ++i) {
         const SubtreeNode corner = InSubtree::corner(above, most_blocks - 1, i);
-        const auto below = InSubtree::middle_below(Pack<SubtreeNode>::all(corner),
-                                                   Pack<SubtreeNode>::all(corner))
-                               .numbers()[0];
+        const auto below =
+            InSubtree::middle_below(Pack<SubtreeNode>::all(corner), Pack<SubtreeNode>::all(corner))
+                .numbers()[0];
         for (const SubtreeNode node : {above, below, InSubtree::unknown}) {
             EXPECT_EQ(InSubtree::edge_number(node, corner), InSubtree::no_number);
             EXPECT_EQ(InSubtree::edge_number(node, above), InSubtree::no_number);

@@ -64,9 +64,7 @@ public:
         return fresh_count;
     }
     /// The numbers of those that were new, to be set.
-    std::span<Number> new_numbers() {
-        return std::span(number_).subspan(first_, count_ - first_);
-    }
+    std::span<Number> new_numbers() { return std::span(number_).subspan(first_, count_ - first_); }
     /// What was found becomes the number of a vertex.
     void end(std::span<Number> found) {
         const Number* const number = number_.data();
@@ -84,7 +82,7 @@ private:
 
     static constexpr Number none_ = std::numeric_limits<Number>::max();
 
-    std::vector<Number> entry_;  // by the number of an edge
+    std::vector<Number> entry_;   // by the number of an edge
     std::vector<Number> edge_;    // by where it is in the list
     std::vector<Number> number_;  // likewise, of its vertex
     std::size_t count_ = 0;       // in the lists

@@ -66,9 +66,8 @@ public:
         for (const Point& x : reference) reference_.push_back(x);
     }
     template <class Corners>
-    void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all)
-        requires(is_indexed)
-    {
+    void add_simplices(std::span<const std::uint32_t> vertices,
+                       std::span<const Corners> all) requires(is_indexed) {
         put_simplices(vertices, all, simplices_);
     }
     void add_boundary(const Ridge& corners) { boundary_.push_back(corners); }
@@ -94,9 +93,9 @@ public:
         const std::span<const double> attributes(attributes_);
         const auto others = [&](std::size_t first, std::size_t end) {
             if (first == end) return;
-            to.vertices(x.subspan(first, end - first),
-                        attributes.subspan(first * attribute_count,
-                                           (end - first) * attribute_count));
+            to.vertices(
+                x.subspan(first, end - first),
+                attributes.subspan(first * attribute_count, (end - first) * attribute_count));
         };
         std::size_t next = 0;
         for (std::size_t i = 0; i < shared_.size(); ++i) {
