@@ -210,6 +210,7 @@ struct BlockBatch {
                 nodes[i][b] = nodes[i][last];
                 keys[i][b] = keys[i][last];
                 values[i][b] = values[i][last];
+                in_subtree[i][b] = in_subtree[i][last];
             }
         }
     }

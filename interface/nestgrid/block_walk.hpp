@@ -7,7 +7,7 @@
 // Invariant: elements are extracted in the order of the plain traversal. A batch is a run of that
 // order, walked to its end before the next one begins; elements that stop travel down with the
 // blocks before them, until all of those are done.
-// Memory: one batch a level of blocks, on the stack: about 22 KB with single precision.
+// Memory: one batch a level of blocks, on the stack: about 25 KB with single precision.
 #pragma once
 
 #include <cstring>
@@ -42,10 +42,10 @@ private:
 ///     void expect(const NodeKey* nodes)          optional: eight that will be glanced at
 ///     unsigned extract(const BlockBatch&, const BatchSelection&)
 ///             what is selected, and in how many of the leaves there was anything to extract
-///     bool names_edges() const                   optional, and, where it says yes, a batch tells
-///     void begin_subtrees(std::uint32_t numbers)
-///                                                of nodes in subtrees (subtree_nodes.hpp): what
-///                                                was inside subtrees before comes never again
+///     bool names_edges() const                   optional, with the next one: whether batches are
+///                                                to tell of nodes in subtrees (subtree_nodes.hpp)
+///     void begin_subtrees(std::uint32_t numbers) edges will have numbers below; what was inside
+///                                                subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
 template <class Grid, class Field, class Visitor>
 class BlockWalk {

@@ -178,6 +178,7 @@ void compare(std::size_t rounds) {
 #ifdef NESTGRID_WITH_OPENVDB
     print("openvdb_triangles", static_cast<double>(openvdb_triangles));
     print("openvdb_over_ours", ratio("openvdb", "indexed"));
+    print("openvdb_over_soup", ratio("openvdb", "soup"));
 #endif
 
     // A small surface in large data: a sphere around the middle.
@@ -206,9 +207,13 @@ void compare(std::size_t rounds) {
                 per_visit.push_back(static_cast<double>(counts.visited));
             });
         }
+        small.add("small_soup",
+                  [&] { bucky.draw_soup_of(bucky.grid, field, indicator, 0.05, 0.0F); });
         small.run();
         print("flying_edges_over_ours",
               small.time("small_flying_edges") / small.time("small_" + std::to_string(0.05)));
+        print("flying_edges_over_soup",
+              small.time("small_flying_edges") / small.time("small_soup"));
         for (std::size_t i = 0; i < radii.size(); ++i) {
             const std::string name = "small_" + std::to_string(radii[i]);
             print("ns_per_visited_at_radius_" + std::to_string(radii[i]).substr(0, 4),
@@ -268,6 +273,8 @@ void compare(std::size_t rounds) {
          {"contour3dlineargrid", "contour3dlineargrid_spanspace", "contourgrid"}) {
         print(std::string(name) + "_over_ours",
               unstructured.time(name) / unstructured.time("ours"));
+        print(std::string(name) + "_over_soup",
+              unstructured.time(name) / unstructured.time("soup_ours"));
     }
     print("contour3dlineargrid_spanspace_soup_over_ours",
           unstructured.time("contour3dlineargrid_spanspace_soup") / unstructured.time("soup_ours"));

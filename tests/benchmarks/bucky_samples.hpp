@@ -55,6 +55,15 @@ struct Bucky {
     std::size_t draw_soup(const Grid& of, const Field& values, float threshold,
                           nestgrid::TraversalCounts* counts = nullptr,
                           const Executor& executor = {}) {
+        return draw_soup_of(of, values, indicator, double{bucky_isovalue}, threshold, counts,
+                            executor);
+    }
+    /// The same of other samples.
+    template <class Grid, class Field, class Executor = nestgrid::SequentialExecutor>
+    std::size_t draw_soup_of(const Grid& of, const Field& values,
+                             const nestgrid::HierarchicalIndicator& by, double isovalue,
+                             float threshold, nestgrid::TraversalCounts* counts = nullptr,
+                             const Executor& executor = {}) {
         Triangle* to = soup.data();
         const auto put = [&to](const std::array<nestgrid::Point, 3>& x) {
             const auto narrow = [](double number) { return static_cast<float>(number); };
@@ -63,11 +72,10 @@ struct Bucky {
                      narrow(x[2][0]), narrow(x[2][1]), narrow(x[2][2])};
         };
         using Sink = nestgrid::SimplexStream<3, decltype(put)>;
-        const double isovalue = bucky_isovalue;
-        const nestgrid::Threshold<nestgrid::HierarchicalIndicator> criterion{&indicator, threshold};
+        const nestgrid::Threshold<nestgrid::HierarchicalIndicator> criterion{&by, threshold};
         const auto result = nestgrid::extract_isosurfaces(
             of, values, std::span<const double>(&isovalue, 1), std::vector<Sink>{Sink(put)},
-            criterion, indicator, {}, executor);
+            criterion, by, {}, executor);
         if (counts != nullptr) *counts = result.front().counts;
         return static_cast<std::size_t>(to - soup.data());
     }

@@ -30,10 +30,10 @@
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/node_gradients.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/subtree_vertices.hpp>
 #include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/algorithms/surface_log.hpp>
 #include <nestgrid/algorithms/transition_contours.hpp>
-#include <nestgrid/algorithms/subtree_vertices.hpp>
 #include <nestgrid/algorithms/vertex_numbers.hpp>
 #include <nestgrid/table.hpp>
 #include <nestgrid/shape_functions.hpp>
@@ -305,6 +305,17 @@ private:
     template <class Blocks>
     void raise_error_bound(const Blocks& blocks, Layer& layer, std::size_t id,
                            unsigned parts) const;
+    template <class Corners>
+    void put_simplices(Layer& layer, std::span<const BlockVertex> v,
+                       std::span<const Corners> all);
+    template <class Corners>
+    void put_simplex(Layer& layer, std::span<const BlockVertex> v, const Corners& corners);
+    template <class Blocks>
+    void put_boundaries(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
+                        const BlockContours& contours, const CutList& list,
+                        std::span<const BatchEdge> cuts, const Number* v);
+
+    // isosurface_cuts.hpp
     template <class Blocks>
     void find_points(const Blocks& blocks, const Layer& layer, std::span<const BatchEdge> cuts,
                      WidePoint* to);
@@ -316,15 +327,6 @@ private:
     template <class Blocks>
     void verify_vertices(const Blocks& blocks, const Layer& layer,
                          std::span<const BatchEdge> cuts, const Number* v);
-    template <class Corners>
-    void put_simplices(Layer& layer, std::span<const BlockVertex> v,
-                       std::span<const Corners> all);
-    template <class Corners>
-    void put_simplex(Layer& layer, std::span<const BlockVertex> v, const Corners& corners);
-    template <class Blocks>
-    void put_boundaries(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
-                        const BlockContours& contours, const CutList& list,
-                        std::span<const BatchEdge> cuts, const Number* v);
 
     // isosurface_plain.hpp
     const ContourTable& contours_of(Shape shape);
@@ -368,8 +370,7 @@ private:
     Number add_new(const Cut& cut);
     void verify(const Layer& layer, Number number, const Point& x) const;
     Vertex add_unnamed(const Point& x, std::span<const double> attributes);
-    void add_unnamed(std::span<const Point> x, std::span<const double> attributes)
-        requires(indexed);
+    void add_unnamed(std::span<const Point> x, std::span<const double> attributes);
     Number number_of(const Vertex& vertex, const Point& reference);
     Number vertex(std::uint8_t edge);
     Number node_vertex(std::size_t corner);

@@ -322,3 +322,4 @@ NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
 #include <nestgrid/algorithms/isosurface_vertices.hpp>
 #include <nestgrid/algorithms/isosurface_plain.hpp>
 #include <nestgrid/algorithms/isosurface_bisections.hpp>
+#include <nestgrid/algorithms/isosurface_cuts.hpp>

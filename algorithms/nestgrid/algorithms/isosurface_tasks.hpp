@@ -125,6 +125,7 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
     struct Receiver {
         IsosurfaceVisitor* to;
         std::vector<Vertex>& known;
+        std::span<const Point> points{};  // where there are no indices
 
         NESTGRID_INLINE void expect([[maybe_unused]] const std::array<NodeKey, 2>& node) const {
             if constexpr (indexed) {
@@ -142,17 +143,24 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
                 known.resize(before + x.size());
                 std::iota(known.data() + before, known.data() + known.size(), first);
                 to->add_unnamed(x, attributes);
+            } else {
+                points = x;
             }
         }
         void element(const typename Log::Owner& e) {
             to->layer_->sink.add_element(e.element, e.shape, e.level);
         }
-        void simplex(typename Log::Simplex corners, std::span<const Point> reference) {
-            if constexpr (indexed) {
-                for (auto& corner : corners) corner = known[corner];
+        void simplex(const typename Log::Simplex& corners, std::span<const Point> reference) {
+            std::array<Vertex, static_cast<std::size_t>(dimension)> v;
+            for (std::size_t k = 0; k < v.size(); ++k) {
+                if constexpr (indexed) {
+                    v[k] = known[corners[k]];
+                } else {
+                    v[k] = points[corners[k]];
+                }
             }
             to->count_simplices(1);
-            to->put_simplex(corners, reference);
+            to->put_simplex(v, reference);
         }
         void simplices(std::span<const typename Log::Simplex> all) {
             Sink& sink = to->layer_->sink;

@@ -128,9 +128,8 @@ NESTGRID_VISITOR::add_unnamed(const Point& x, std::span<const double> attributes
 }
 
 /// Some that a task knows alone.
-NESTGRID_VISITOR::add_unnamed(std::span<const Point> x, std::span<const double> attributes) -> void
-    requires(indexed)
-{
+NESTGRID_VISITOR::add_unnamed(std::span<const Point> x, std::span<const double> attributes)
+    -> void {
     Layer& layer = *layer_;
     if (none - layer.vertex_count < x.size()) throw_too_many_vertices();
     layer.vertex_count += static_cast<Number>(x.size());

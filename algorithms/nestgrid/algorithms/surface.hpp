@@ -30,6 +30,7 @@
 //     void append(Sink& part)    puts what is in a part behind what is here, and empties it
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstdint>

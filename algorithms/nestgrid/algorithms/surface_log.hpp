@@ -34,9 +34,8 @@ public:
     static constexpr bool logs = true;
     static constexpr bool indexed = is_indexed;
     using Cut = SurfaceCut<attribute_count>;
-    using Corner = std::conditional_t<is_indexed, std::uint32_t, Point>;
-    using Simplex = std::array<Corner, static_cast<std::size_t>(dimension)>;
-    using Ridge = std::array<Corner, static_cast<std::size_t>(dimension - 1)>;
+    using Simplex = std::array<std::uint32_t, static_cast<std::size_t>(dimension)>;
+    using Ridge = std::array<std::uint32_t, static_cast<std::size_t>(dimension - 1)>;
     struct Owner {
         Element element;
         Shape shape;
@@ -61,7 +60,8 @@ public:
     void add_element(const Element& element, Shape shape, int level) {
         if (keeps_elements_) elements_.push_back({element, shape, level, simplices_.size()});
     }
-    NESTGRID_INLINE void add_simplex(const Simplex& corners, std::span<const Point> reference) {
+    NESTGRID_INLINE void add_simplex(const Simplex& corners,
+                                     std::span<const Point> reference) requires(is_indexed) {
         simplices_.push_back(corners);
         for (const Point& x : reference) reference_.push_back(x);
     }
@@ -69,6 +69,27 @@ public:
     void add_simplices(std::span<const std::uint32_t> vertices,
                        std::span<const Corners> all) requires(is_indexed) {
         put_simplices(vertices, all, simplices_);
+    }
+    // Where there are no indices, corners are kept once for all that are put down together.
+    NESTGRID_INLINE void add_simplex(
+        const std::array<Point, static_cast<std::size_t>(dimension)>& corners,
+        std::span<const Point> reference) requires(!is_indexed) {
+        Simplex& simplex = simplices_.emplace_back();
+        for (std::size_t k = 0; k < simplex.size(); ++k) {
+            simplex[k] = static_cast<std::uint32_t>(x_.size());
+            x_.push_back(corners[k]);
+        }
+        for (const Point& x : reference) reference_.push_back(x);
+    }
+    template <class Corners>
+    void add_simplices(std::span<const WidePoint> x,
+                       std::span<const Corners> all) requires(!is_indexed) {
+        const auto first = static_cast<std::uint32_t>(x_.size());
+        for (const WidePoint& corner : x) x_.push_back(Point(corner));
+        for (const Corners& corners : all) {
+            Simplex& simplex = simplices_.emplace_back();
+            for (std::size_t k = 0; k < simplex.size(); ++k) simplex[k] = first + corners[k];
+        }
     }
     void add_boundary(const Ridge& corners) { boundary_.push_back(corners); }
 
@@ -86,6 +107,7 @@ public:
 
     /// Repeats the calls, those for vertices before all others; corners are numbers of vertices in
     /// the order they were added here. Those that other tasks may know are announced by expect().
+    /// Without indices there are points instead, all in one call.
     template <class Receiver>
     void repeat(Receiver&& to) const {
         constexpr std::size_t ahead = 16;
@@ -130,7 +152,7 @@ private:
     };
 
     bool keeps_elements_;
-    std::vector<Point> x_;            // of the vertices
+    std::vector<Point> x_;            // of the vertices, or of corners
     std::vector<double> attributes_;  // likewise
     std::vector<Shared> shared_;      // those that other tasks may know
     std::vector<Owner> elements_;
