@@ -116,6 +116,10 @@ inline double cut_fraction(double isovalue, double low, double high) {
     return raised > 1 - least ? 1 - least : raised;
 }
 
+[[noreturn]] inline void throw_too_many_vertices() {
+    throw GridError("the surface has 2^32 vertices or more");
+}
+
 /// Draws the level sets of several isovalues in one traversal; each has a sink of its own.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 class IsosurfaceVisitor {

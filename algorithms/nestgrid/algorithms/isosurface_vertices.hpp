@@ -61,10 +61,6 @@ NESTGRID_VISITOR::make_node(const State& s, std::size_t corner) const -> Cut {
     return cut;
 }
 
-[[noreturn]] inline void throw_too_many_vertices() {
-    throw GridError("the surface has 2^32 vertices or more");
-}
-
 /// The vertex with a name; make() says where it lies, where that is not known yet.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Make>
