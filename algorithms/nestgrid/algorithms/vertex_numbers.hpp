@@ -59,13 +59,13 @@ public:
     void reserve(std::size_t more) {
         while (8 * (size_ + more) >= 5 * slots_.size()) grow();
     }
-    /// Of a table with room for it: the number of the vertex between two nodes, which is `next`
-    /// where it is new. There is no branch that depends on whether it is.
-    /// \param next greater than the numbers there are
     struct Found {
         Number number;
         bool is_new;
     };
+    /// Of a table with room for it: the number of the vertex between two nodes, which is `next`
+    /// where it is new. There is no branch that depends on whether it is.
+    /// \param next greater than the numbers there are
     NESTGRID_INLINE Found find_or_add(const Name& name, Number next) {
         Slot* slot = place(name);
         const bool is_new = slot->round != round_;
