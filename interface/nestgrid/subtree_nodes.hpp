@@ -66,7 +66,8 @@ public:
     static constexpr int height = divisions_ == 2 ? 3 : 1;
 
 private:
-    static constexpr std::uint32_t extent_ = height == 3 ? 8 : divisions_;
+    static constexpr std::uint32_t extent_ =
+        height == 3 ? divisions_ * divisions_ * divisions_ : divisions_;
     static constexpr std::uint32_t per_direction_ = 2 * extent_ + 1;  // sums of two coordinates
     /// Of the edges of a subtree; even, that a node can have half of it.
     static constexpr std::uint32_t numbers_ = [] {

@@ -336,7 +336,6 @@ TEST(KnownBisections, DrawNoMoreThanIsEntered) {
     EXPECT_GT(hidden, 0U);
 }
 
-/// Isovalues between two numbers of the values' type, and at one.
 /// Two nodes in a row have one key.
 struct SharedKeys : LatticeBisection<3> {
     using LatticeBisection<3>::LatticeBisection;
@@ -362,6 +361,7 @@ TEST(KnownBisections, AreVerifiedVertexByVertex) {
     }
 }
 
+/// Isovalues between two numbers of the values' type, and at one.
 TEST(KnownBisections, TellInsideFromOutsideInTheirOwnType) {
     const Samples n{9, 9, 9};
     std::vector<float> values = sampled_fields(n)[0].values;

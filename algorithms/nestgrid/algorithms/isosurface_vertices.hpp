@@ -102,12 +102,12 @@ NESTGRID_VISITOR::add_new(const Cut& cut) -> Number {
     if (layer_->vertex_count == none) throw_too_many_vertices();
     if constexpr (logs) {
         layer_->sink.add_cut(cut);
-        return layer_->vertex_count++;
-    }
-    layer_->sink.add_vertex(cut.x, cut.attributes);
-    if (options_->normals) {
-        layer_->where.push_back({gradients_.slot(cut.node[0]), gradients_.slot(cut.node[1]),
-                                 cut.fraction, {}});
+    } else {
+        layer_->sink.add_vertex(cut.x, cut.attributes);
+        if (options_->normals) {
+            layer_->where.push_back({gradients_.slot(cut.node[0]), gradients_.slot(cut.node[1]),
+                                     cut.fraction, {}});
+        }
     }
     return layer_->vertex_count++;
 }
@@ -117,13 +117,13 @@ NESTGRID_VISITOR::add_unnamed(const Point& x, std::span<const double> attributes
     if constexpr (!indexed) {
         return x;
     } else {
-        layer_->sink.add_vertex(x, attributes);
-        if (options_->normals && !logs) layer_->where.push_back({none, none, 0.0, {}});
-        return layer_->vertex_count++;
+        const Number number = layer_->vertex_count;
+        add_unnamed(std::span(&x, 1), attributes);
+        return number;
     }
 }
 
-/// Some that a task knows alone.
+/// Several, inside one element or known to one task alone.
 NESTGRID_VISITOR::add_unnamed(std::span<const Point> x, std::span<const double> attributes)
     -> void {
     Layer& layer = *layer_;

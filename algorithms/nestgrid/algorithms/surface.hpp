@@ -86,10 +86,12 @@ struct Surface {
     }
 };
 
+namespace detail {
+
 /// Simplices whose corners are some of these vertices, behind others.
 template <class Corners, std::size_t size>
-void put_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all,
-                   std::vector<std::array<std::uint32_t, size>>& to) {
+void append_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all,
+                      std::vector<std::array<std::uint32_t, size>>& to) {
     std::array<std::array<std::uint32_t, size>, 64> some;  // memory is written once, in wide words
     while (!all.empty()) {
         const std::size_t count = std::min(some.size(), all.size());
@@ -100,6 +102,8 @@ void put_simplices(std::span<const std::uint32_t> vertices, std::span<const Corn
         all = all.subspan(count);
     }
 }
+
+}  // namespace detail
 
 /// Fills a Surface.
 template <int dimension, class Element>
@@ -137,7 +141,7 @@ public:
     }
     template <class Corners>
     void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all) {
-        put_simplices(vertices, all, surface_->simplices);
+        detail::append_simplices(vertices, all, surface_->simplices);
         if (elements_) {
             surface_->element_of.resize(surface_->simplices.size(),
                                         static_cast<std::uint32_t>(surface_->elements.size() - 1));

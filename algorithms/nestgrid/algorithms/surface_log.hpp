@@ -68,7 +68,7 @@ public:
     template <class Corners>
     void add_simplices(std::span<const std::uint32_t> vertices,
                        std::span<const Corners> all) requires(is_indexed) {
-        put_simplices(vertices, all, simplices_);
+        detail::append_simplices(vertices, all, simplices_);
     }
     // Where there are no indices, corners are kept once for all that are put down together.
     NESTGRID_INLINE void add_simplex(

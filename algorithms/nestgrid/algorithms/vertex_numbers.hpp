@@ -46,7 +46,7 @@ public:
     /// The number of the vertex between two nodes; make() gives it where it is new.
     template <class Make>
     NESTGRID_INLINE Number find(const Name& name, Make&& make) {
-        if (8 * size_ >= 5 * slots_.size()) grow();
+        reserve(1);
         Slot* slot = place(name);
         if (slot->round == round_) return slot->number;
         const Number number = make();
@@ -56,7 +56,7 @@ public:
     }
 
     /// For as many more vertices.
-    void reserve(std::size_t more) {
+    NESTGRID_INLINE void reserve(std::size_t more) {
         while (8 * (size_ + more) >= 5 * slots_.size()) grow();
     }
     struct Found {
