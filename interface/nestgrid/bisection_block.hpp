@@ -143,7 +143,7 @@ struct BlockOrder {
 };
 
 /// By the parts 2 ... ends - 1 that are entered, one bit each from bit 0, and, in the bits above,
-/// those that stop. Only such as are reached.
+/// those that stop. Only such as are reached. Where none stops, the ends that are entered.
 template <const auto& pattern>
 inline constexpr auto block_orders = [] {
     constexpr std::size_t ends = pattern.ends;
@@ -159,20 +159,6 @@ inline constexpr auto block_orders = [] {
             const std::size_t part = pattern.part_above(end, ~entered);
             if (part < ends && (!is_set(part, bits) || end != pattern.first_end(part))) continue;
             result[i].part[result[i].count++] = static_cast<std::uint8_t>(part);
-        }
-    }
-    return result;
-}();
-
-/// The ends that are entered, by the parts 2 ... ends - 1 that are, likewise.
-template <const auto& pattern>
-inline constexpr auto block_ends = [] {
-    std::array<BlockOrder<pattern.ends>, pattern.part_sets> result{};
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        const auto& order = block_orders<pattern>[i];
-        for (std::size_t k = 0; k < order.count; ++k) {
-            if (order.part[k] < pattern.ends) continue;
-            result[i].part[result[i].count++] = order.part[k];
         }
     }
     return result;

@@ -224,7 +224,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Queue& batch, s
                                                            std::size_t end, Steps& steps) const {
     for (std::size_t b = first; b < end; ++b) {
         steps.append(order_of(batch, b), b);
-        steps.end.append(block_ends<pattern_>[static_cast<std::size_t>(batch.entered[b])], b);
+        steps.end.append(block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b])], b);
     }
     for (std::size_t i = 0; i < steps.end.count; ++i) {
         const std::size_t b = steps.end.block[i];

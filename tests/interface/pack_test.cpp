@@ -132,7 +132,7 @@ void expect_order() {
                 std::vector<std::size_t>(known.part.begin(), known.part.begin() + known.count),
                 order);
             std::erase_if(order, [](std::size_t part) { return part < pattern.ends; });
-            const auto& ends = block_ends<pattern>[entered];
+            const auto& ends = block_orders<pattern>[entered];
             EXPECT_EQ(std::vector<std::size_t>(ends.part.begin(), ends.part.begin() + ends.count),
                       order);
         }
