@@ -13,11 +13,13 @@
 // Consequence: a cut is named by, and computed from, its maximal edge, so that elements on both
 // sides of a change of level find the same; and what is drawn below a closed face can be told to
 // the element above it, by the key of the face.
-// They live in the frames of the splits that closed them: valid while the element is on the stack.
+// They live in the frames of the splits that closed them, and refer to the nodes there: valid while
+// the element is on the stack.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -26,31 +28,64 @@
 
 namespace nestgrid {
 
-/// An edge with its two ends; component c of the value at end i is value[i * components + c].
+/// Key of a face from those of its corners, in any order. Own keys may be small numbers, whose sums
+/// coincide, so each is mixed first.
+class FaceKey {
+public:
+    constexpr void add_corner(NodeKey key) { add_mixed(detail::mix(key)); }
+    /// \param mixed of a corner that several faces have: mix() of its key
+    constexpr void add_mixed(NodeKey mixed) { sum_ += mixed; }
+    constexpr NodeKey key() const { return detail::mix(sum_); }
+
+private:
+    NodeKey sum_ = 0;
+};
+
+/// The nodes of a split that closed something.
+struct ClosingNodes {
+    const NodeKey* key;      ///< by number in the rule: corners first
+    const NodeKey* new_key;  ///< those of the new nodes
+};
+
+/// An edge with its two ends, nodes of the split that closed it.
 /// \tparam State of an element on the way down
 template <class State, class Real, std::size_t components>
 struct MaximalEdge {
-    std::array<NodeKey, 2> key;
-    std::array<Real, 2 * components> value;
-    std::array<std::uint8_t, 2> end;  ///< nodes of the split that closed it
-    const State* element;             ///< that was split
-    const Rule* rule;
-    const Point* places;  ///< of the nodes of that split, where they are carried along; or null
+    struct Split : ClosingNodes {
+        const State* element;  ///< that was split
+        const Rule* rule;
+        const Real* value;    ///< component c of node n at [n * components + c]
+        const Point* places;  ///< where they are carried along; or null
+    };
+
+    const Split* split;
+    std::array<std::uint8_t, 2> end;
+
+    NodeKey key(std::size_t i) const { return split->key[end[i]]; }
+    Real value(std::size_t i, std::size_t component) const {
+        return split->value[end[i] * components + component];
+    }
 };
 
 struct ClosedFace {
-    NodeKey key;              ///< face_key() of its corners
     const ClosedFace* outer;  ///< the least closed face it is a proper part of, or null
-    NodeKey split;            ///< which nodes divide it, where it is divided one way; or 0
-};
+    const RuleFace* face;     ///< in the rule of the split that closed it
+    const ClosingNodes* nodes;
 
-/// Key of a face from those of its corners, in any order. Own keys may be small numbers, whose sums
-/// coincide, so each is mixed first.
-constexpr NodeKey face_key(std::span<const NodeKey> corners) {
-    NodeKey sum = 0;
-    for (const NodeKey key : corners) sum += detail::mix(key);
-    return detail::mix(sum);
-}
+    NodeKey key() const {
+        FaceKey k;
+        for (std::size_t i = 0; i < face->corners; ++i) k.add_corner(nodes->key[face->corner[i]]);
+        return k.key();
+    }
+    /// Which nodes divide it, where it is divided one way; or 0.
+    NodeKey divided_by() const {
+        NodeKey sum = 0;
+        for (NodeMask left = face->one_way ? face->first : 0; left != 0; left &= left - 1) {
+            sum += detail::mix(nodes->new_key[std::countr_zero(left)]);
+        }
+        return sum;
+    }
+};
 
 /// What is closed around the edges and faces of an element.
 template <class State, class Real, std::size_t components, std::size_t corners>

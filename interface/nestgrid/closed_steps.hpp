@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include <nestgrid/traversal.hpp>
 
@@ -16,6 +17,7 @@ struct Traversal<Grid, Field, needs>::Parts {
     using Closed = typename State::Closed;
     static constexpr std::size_t edges = Closed::rule_edges;
 
+    typename Closed::Edge::Split split;
     std::array<typename Closed::Edge, edges> closed_edge;
     std::array<const typename Closed::Edge*, edges + 1> edge;  // around each edge of the rule
     std::array<ClosedFace, max_rule_faces> closed_face;
@@ -51,56 +53,43 @@ template <class Grid, class Field, Needs needs>
 void Traversal<Grid, Field, needs>::close(const State& s, const Rule& rule, const Nodes& nodes,
                                           Parts& parts) const {
     if constexpr (needs.closed) {
+        using Closed = typename State::Closed;
         const Topology& t = s.topology();
         const auto corners = static_cast<std::size_t>(s.corner_count());
         if (rule.edges.size() > Parts::edges) {
             throw GridError("rule '" + rule.name + "' has too many edges for this grid");
         }
-        std::array<NodeKey, max_corners> corner_key;
-        keys(s, corner_key);
-        const auto key = [&](std::uint8_t n) { return n < corners ? corner_key[n] : nodes.key[n]; };
-        const Point* places = nullptr;
+        if constexpr (!State::carries_keys) keys(s, std::span<NodeKey>(nodes.key, corners));
+        parts.split.key = nodes.key;
+        parts.split.new_key = nodes.key + corners;
+        parts.split.element = &s;
+        parts.split.rule = &rule;
+        parts.split.value = nodes.value.data();
+        parts.split.places = nullptr;
         if constexpr (State::carries_positions) {
-            if (!own_positions_) places = nodes.position.data();
+            if (!own_positions_) parts.split.places = nodes.position.data();
         }
+        // Which ones are closed nobody can predict: they are chosen without branches.
         for (std::size_t e = 0; e < rule.edges.size(); ++e) {
             const RuleEdge& edge = rule.edges[e];
-            parts.edge[e] = e < t.edges ? s.closed.edge(e) : nullptr;
-            if ((edge.inner & ~nodes.mean) != 0) {
-                parts.edge[e] = nullptr;
-            } else if (parts.edge[e] == nullptr && edge.inner != 0) {
-                auto& closed = parts.closed_edge[e];
-                closed.end = edge.end;
-                closed.element = &s;
-                closed.rule = &rule;
-                closed.places = places;
-                for (std::size_t i = 0; i < 2; ++i) {
-                    closed.key[i] = key(edge.end[i]);
-                    for (std::size_t c = 0; c < State::components; ++c) {
-                        closed.value[i * State::components + c] =
-                            nodes.value[edge.end[i] * State::components + c];
-                    }
-                }
-                parts.edge[e] = &closed;
-            }
+            parts.closed_edge[e] = {&parts.split, edge.end};
+            const typename Closed::Edge* outer = e < t.edges ? s.closed.edge(e) : nullptr;
+            const typename Closed::Edge* own = edge.inner != 0 ? &parts.closed_edge[e] : nullptr;
+            const bool divided = (edge.inner & ~nodes.mean) != 0;
+            const std::array around{outer != nullptr ? outer : own,
+                                    static_cast<const typename Closed::Edge*>(nullptr)};
+            parts.edge[e] = around[divided];
             parts.edges_closed |= std::uint32_t{parts.edge[e] != nullptr} << e;
         }
         for (std::size_t f = 0; f < rule.faces.size(); ++f) {
             const RuleFace& face = rule.faces[f];
-            parts.face[f] = face.parent != no_face ? parts.face[face.parent] : s.closed.face(f);
+            const ClosedFace* outer =
+                face.parent != no_face ? parts.face[face.parent] : s.closed.face(f);
+            parts.closed_face[f] = {outer, &face, &parts.split};
+            const bool closes = face.divided && (face.inner & ~nodes.mean) == 0;
+            const std::array around{outer, std::as_const(parts.closed_face).data() + f};
+            parts.face[f] = around[closes];
             parts.faces_closed |= std::uint32_t{parts.face[f] != nullptr} << f;
-            if (!face.divided || (face.inner & ~nodes.mean) != 0) continue;
-            std::array<NodeKey, 4> loop;
-            for (std::size_t i = 0; i < face.corners; ++i) loop[i] = key(face.corner[i]);
-            const std::span<const NodeKey> of(loop.data(), face.corners);
-            NodeKey divided_by = 0;
-            for (NodeMask left = face.one_way ? face.first : 0; left != 0; left &= left - 1) {
-                divided_by += detail::mix(key(static_cast<std::uint8_t>(
-                    corners + static_cast<std::size_t>(std::countr_zero(left)))));
-            }
-            parts.closed_face[f] = {face_key(of), parts.face[f], divided_by};
-            parts.face[f] = &parts.closed_face[f];
-            parts.faces_closed |= std::uint32_t{1} << f;
         }
     }
 }
@@ -110,15 +99,16 @@ auto Traversal<Grid, Field, needs>::positions(const typename State::Closed::Edge
     -> std::array<Point, 2>
     requires(needs.closed)
 {
-    if (edge.places != nullptr) return {edge.places[edge.end[0]], edge.places[edge.end[1]]};
-    const auto corners = static_cast<std::size_t>(edge.element->corner_count());
+    const auto& split = *edge.split;
+    if (split.places != nullptr) return {split.places[edge.end[0]], split.places[edge.end[1]]};
+    const auto corners = static_cast<std::size_t>(split.element->corner_count());
     std::array<Point, node_capacity_> x;
-    positions(*edge.element, x);
+    positions(*split.element, x);
     const std::size_t last = std::max(edge.end[0], edge.end[1]);
     for (std::size_t n = corners; n <= last; ++n) {
         const bool asked = n == edge.end[0] || n == edge.end[1];
-        if (!asked && edge.rule->steps == 1) continue;  // no parent of another new node
-        x[n] = detail::interpolate(edge.rule->new_nodes[n - corners], x.data());
+        if (!asked && split.rule->steps == 1) continue;  // no parent of another new node
+        x[n] = detail::interpolate(split.rule->new_nodes[n - corners], x.data());
     }
     return {x[edge.end[0]], x[edge.end[1]]};
 }

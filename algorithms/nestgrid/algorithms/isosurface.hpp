@@ -161,6 +161,8 @@ public:
 
     /// Ends the traversal with OverLimit when there are more simplices than that.
     void limit(std::uint64_t simplices) { limit_ = simplices; }
+    /// Drawn so far.
+    std::uint64_t simplices() const { return drawn_; }
 
     /// Whether elements may stop without conforming, so that there is something to record.
     bool must_record() const;
@@ -269,14 +271,15 @@ private:
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s, bool draws);
     void add_error(const State& s, Layer& layer) const;
-    void draw(const State& s, Layer& layer, unsigned pattern);
+    void begin_drawing();
+    void draw(const State& s, unsigned pattern, unsigned joins);
 
     // isosurface_transitions.hpp
     void record(const State& s, Layer& layer, unsigned pattern);
-    unsigned recorded_edges(const State& s, const Layer& layer, unsigned pattern);
+    unsigned recorded_faces(const State& s, const Layer& layer, unsigned pattern);
     unsigned choose(const State& s, Layer& layer, unsigned pattern, unsigned alternating);
-    bool adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
-               unsigned signs, bool& is_joined);
+    bool adopt(const State& s, Layer& layer, std::size_t on, std::size_t side, unsigned signs,
+               bool& is_joined);
     void fill_gaps(Layer& layer);
     void leave_for_later(const State& s);
 
@@ -448,7 +451,9 @@ private:
     std::vector<Point> reference_;         // where they lie in it, where wanted
     std::array<Number, State::Closed::edges> on_edge_{};
     std::array<Number, max_corners> on_corner_{};
-    unsigned recorded_ = 0;      // edges cut where a finer side recorded something, one bit each
+    unsigned recorded_ = 0;      // cut faces on which a finer side recorded something, one bit each
+    std::array<Number, max_faces> on_face_{};  // what, by face
+    std::vector<Number> between_;
     std::uint16_t chained_ = 0;  // edges with a chain behind them
     std::array<std::vector<Number>, State::Closed::edges> chain_;
 };

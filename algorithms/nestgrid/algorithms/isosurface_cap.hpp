@@ -69,13 +69,15 @@ NESTGRID_VISITOR::side_key(const State& s, std::uint8_t edge, const FaceTopology
     bool upwards = key_[a] < key_[b];
     std::array<NodeKey, 2> ends{key_[a], key_[b]};
     if (const auto* m = s.closed.edge(edge)) {
-        ends = m->key;
+        ends = {m->key(0), m->key(1)};
         const auto [begin, end] = walk_->positions(*m);
         const bool along = dot(x_[b] - x_[a], end - begin) > 0;
-        upwards = along == (m->key[0] < m->key[1]);
+        upwards = along == (ends[0] < ends[1]);
     }
     const bool up = upwards == (forward == (s.orientation > 0));
-    return face_key(ends) + (up ? 1 : 0);
+    FaceKey key;
+    for (const NodeKey end : ends) key.add_corner(end);
+    return key.key() + (up ? 1 : 0);
 }
 
 NESTGRID_VISITOR::record_cap(const State& s, Layer& layer, unsigned pattern) -> void {
@@ -112,6 +114,9 @@ NESTGRID_VISITOR::cap_chain(const State& s, Layer& layer, const FaceTopology& fa
     std::vector<Number> between;
     const std::uint8_t edge = polygon.edge[side];
     if (edge == no_edge || recording_ || layer.drawn_below->empty()) return between;
+    const Number* sides = layer.drawn_below->find_face(
+        side_key(s, edge, face, polygon.point[side].from, false));
+    if (sides == nullptr) return between;
     const auto end = [&](const CapPoint& p) {
         const NodeKey key = key_[face.corner[p.from]];
         return layer.drawn_below->find(p.cut ? name(s, edge) : KeyPair(key, key));
@@ -119,11 +124,10 @@ NESTGRID_VISITOR::cap_chain(const State& s, Layer& layer, const FaceTopology& fa
     const Number* from = end(polygon.point[side]);
     const Number* to = end(polygon.point[(side + 1) % polygon.count]);
     if (from == nullptr || to == nullptr) return between;
-    const NodeKey key = side_key(s, edge, face, polygon.point[side].from, false);
     const bool mirrored = s.orientation < 0;
     if (mirrored) std::swap(from, to);
     const bool found = layer.drawn_below->follow(
-        key, *to, [&](Number v) { return v == *from; },
+        *sides, *to, [&](Number v) { return v == *from; },
         [&](Number v) { between.push_back(v); });
     if (!found) return {};
     if (!mirrored) std::reverse(between.begin(), between.end());

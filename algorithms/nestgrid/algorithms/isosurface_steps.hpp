@@ -216,24 +216,31 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
             if (boundary != 0) record_cap(s, layer, bits);
         }
         if (!draws) continue;
-        recorded_ = recording_ ? 0 : recorded_edges(s, layer, bits);
-        if (plainly_ && recorded_ == 0) {
-            if (const Contour* contour = plain_contour(s.shape, bits)) {
-                draw_plainly(s, layer, contour, bits);
-                add_error(s, layer);
-                continue;
-            }
+        recorded_ = recording_ ? 0 : recorded_faces(s, layer, bits);
+        const Contour* plain = plainly_ ? plain_contour(s.shape, bits) : nullptr;
+        unsigned joins = 0;
+        if (plain == nullptr || recorded_ != 0) {
+            begin_drawing();
+            joins = choose(s, layer, bits, contours_of(s.shape).alternating(bits));
         }
-        begun_ = false;
-        local_.clear();
-        reference_.clear();
-        on_edge_.fill(none);
-        if (boundary != 0) on_corner_.fill(none);
-        chained_ = 0;
-        if (bits != all) draw(s, layer, bits);
+        if (plain != nullptr && (recorded_ == 0 || !chained())) {
+            draw_plainly(s, layer, plain, bits);
+            add_error(s, layer);
+            continue;
+        }
+        if (bits != all) draw(s, bits, joins);
         if (boundary != 0) draw_cap(s, layer, bits);
         if (begun_) add_error(s, layer);
     }
+}
+
+NESTGRID_VISITOR::begin_drawing() -> void {
+    begun_ = false;
+    local_.clear();
+    reference_.clear();
+    on_edge_.fill(none);
+    on_corner_.fill(none);
+    chained_ = 0;
 }
 
 /// Keys and positions of the corners, and their gradients where the element is drawn.
@@ -279,10 +286,8 @@ NESTGRID_VISITOR::loop_of(const State& s, std::size_t face) -> FaceTopology {
     }
 }
 
-NESTGRID_VISITOR::draw(const State& s, Layer& layer, unsigned pattern) -> void {
-    const ContourTable& table = contours_of(s.shape);
-    const unsigned alternating = table.alternating(pattern);
-    const Contour& contour = table.at(pattern, choose(s, layer, pattern, alternating));
+NESTGRID_VISITOR::draw(const State& s, unsigned pattern, unsigned joins) -> void {
+    const Contour& contour = contours_of(s.shape).at(pattern, joins);
     const unsigned boundary = walk_->boundary(s);
     if constexpr (dimension == 2) {
         for (std::size_t l = 0; l < contour.loop_count; ++l) {

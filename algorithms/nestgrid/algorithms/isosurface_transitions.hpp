@@ -41,6 +41,13 @@ NESTGRID_VISITOR::leave_for_later(const State& s) -> void {
 
 NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void {
     const Topology& t = s.topology();
+    struct Segment {
+        const ClosedFace* around;
+        std::array<std::uint8_t, 2> edge;
+    };
+    std::array<Segment, 2 * max_faces> segments;
+    std::size_t count = 0;
+    unsigned edges = 0;
     unsigned closed = 0;
     for (std::size_t f = 0; f < t.faces; ++f) {
         closed |= unsigned{s.closed.face(f) != nullptr} << f;
@@ -49,7 +56,6 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
          left &= left - 1) {
         const auto f = static_cast<std::size_t>(std::countr_zero(left));
         const FaceTopology& face = t.face[f];
-        const ClosedFace* around = s.closed.face(f);
         unsigned signs = 0;
         for (std::size_t i = 0; i < face.corners; ++i) {
             signs |= (pattern >> face.corner[i] & 1U) << i;
@@ -57,45 +63,69 @@ NESTGRID_VISITOR::record(const State& s, Layer& layer, unsigned pattern) -> void
         const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
         const FaceContour& contour =
             face_contour(face.corners, signs, alternating && joined(s, face));
-        const auto end = [&](std::uint8_t side) {
+        const auto cut = [&](std::uint8_t side) {
             const std::uint8_t edge = edge_between(s.shape, face.corner[side],
                                                    face.corner[(side + 1U) % face.corners]);
-            return layer.transitions.vertex(name(s, edge),
-                                            [&] { return make_cut(s, layer, edge); });
+            edges |= 1U << edge;
+            return edge;
         };
         for (std::size_t i = 0; i < contour.count; ++i) {
-            const Number from = end(contour.segment[i].falls);
-            const Number to = end(contour.segment[i].rises);
+            std::array<std::uint8_t, 2> edge{cut(contour.segment[i].falls),
+                                             cut(contour.segment[i].rises)};
             // A mirrored element sees its faces, and the segments on them, the other way round.
-            if (s.orientation > 0) {
-                layer.transitions.record(around, from, to, {s.element, s.shape, s.level});
-            } else {
-                layer.transitions.record(around, to, from, {s.element, s.shape, s.level});
-            }
+            if (s.orientation < 0) std::swap(edge[0], edge[1]);
+            segments[count++] = {s.closed.face(f), edge};
         }
+    }
+    std::array<KeyPair, max_edges> names;  // all of them, so that none waits for another one's slot
+    for (unsigned left = edges; left != 0; left &= left - 1) {
+        const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
+        names[e] = name(s, e);
+        layer.transitions.expect(names[e]);
+    }
+    std::array<Number, max_edges> vertices;
+    for (unsigned left = edges; left != 0; left &= left - 1) {
+        const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
+        vertices[e] = layer.transitions.vertex(names[e], [&] { return make_cut(s, layer, e); });
+    }
+    for (const Segment& segment : std::span(segments).first(count)) {
+        layer.transitions.record(segment.around, vertices[segment.edge[0]],
+                                 vertices[segment.edge[1]], {s.element, s.shape, s.level});
     }
 }
 
-NESTGRID_VISITOR::recorded_edges(const State& s, const Layer& layer, unsigned pattern) -> unsigned {
+/// Cut faces on which a finer side recorded something, one bit each; on_face_ is their numbers.
+NESTGRID_VISITOR::recorded_faces(const State& s, const Layer& layer, unsigned pattern) -> unsigned {
     if (dimension == 2 || layer.drawn_below->empty()) return 0;
-    unsigned edges = 0;
-    for (unsigned left = contours_of(s.shape).cut_edges(pattern); left != 0; left &= left - 1) {
-        const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
-        edges |= unsigned{layer.drawn_below->find(name(s, e)) != nullptr} << e;
+    const Topology& t = s.topology();
+    std::array<NodeKey, max_corners> mixed;
+    for (std::size_t i = 0; i < t.corners; ++i) mixed[i] = mix(key_[i]);
+    unsigned faces = 0;
+    for (unsigned left = contours_of(s.shape).cut_faces(pattern); left != 0; left &= left - 1) {
+        const auto f = static_cast<std::size_t>(std::countr_zero(left));
+        FaceKey key;
+        for (std::size_t i = 0; i < t.face[f].corners; ++i) {
+            key.add_mixed(mixed[t.face[f].corner[i]]);
+        }
+        if (const Number* face = layer.drawn_below->find_face(key.key())) {
+            on_face_[f] = *face;
+            faces |= 1U << f;
+        }
     }
-    return edges;
+    return faces;
 }
 
 /// What the finer side draws on a face from the cut of one of its sides, if anything.
 /// \return whether there was something; is_joined is set by it on a face whose signs alternate
-NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, std::size_t side,
+NESTGRID_VISITOR::adopt(const State& s, Layer& layer, std::size_t on, std::size_t side,
                         unsigned signs, bool& is_joined) -> bool {
+    const FaceTopology& face = s.topology().face[on];
     const std::size_t n = face.corners;
     const auto edge_at = [&](std::size_t i) {
         return edge_between(s.shape, face.corner[i], face.corner[(i + 1) % n]);
     };
-    if ((recorded_ >> edge_at(side) & 1U) == 0) return false;
     const Number* from = layer.drawn_below->find(name(s, edge_at(side)));
+    if (from == nullptr) return false;
     std::array<Number, 2> ends{none, none};
     std::array<std::size_t, 2> sides{};
     std::size_t count = 0;
@@ -108,28 +138,26 @@ NESTGRID_VISITOR::adopt(const State& s, Layer& layer, const FaceTopology& face, 
         sides[count] = i;
         ends[count++] = *end;
     }
-    std::array<NodeKey, 4> keys;
-    for (std::size_t i = 0; i < n; ++i) keys[i] = key_[face.corner[i]];
-    std::vector<Number> between;
+    between_.clear();
     std::size_t end = 0;
     const bool found = layer.drawn_below->follow(
-        face_key(std::span<const NodeKey>(keys.data(), n)), *from,
+        on_face_[on], *from,
         [&](Number v) {
             if (v != ends[0] && v != ends[1]) return false;
             end = sides[v == ends[0] ? 0 : 1];
             return true;
         },
-        [&](Number v) { between.push_back(v); });
+        [&](Number v) { between_.push_back(v); });
     if (!found) return false;
     // Loops run from where the sign rises to where it falls.
     const bool mirrored = s.orientation < 0;
     const std::size_t rises = mirrored ? end : side;
     const std::size_t falls = mirrored ? side : end;
-    if (!between.empty()) {
-        if (mirrored) std::reverse(between.begin(), between.end());
-        for (Number& v : between) v = recorded(v, face);
+    if (!between_.empty()) {
+        if (mirrored) std::reverse(between_.begin(), between_.end());
+        for (Number& v : between_) v = recorded(v, face);
         chained_ |= static_cast<std::uint16_t>(1U << edge_at(rises));
-        chain_[edge_at(rises)] = std::move(between);
+        chain_[edge_at(rises)].swap(between_);
     }
     is_joined = (falls + 1) % n == rises;
     return true;
@@ -144,26 +172,21 @@ NESTGRID_VISITOR::choose(const State& s, Layer& layer, unsigned pattern, unsigne
         const auto f = static_cast<std::size_t>(std::countr_zero(left));
         if (joined(s, loop_of(s, f))) joins |= 1U << f;
     }
-    if (recorded_ == 0) return joins;
     const Topology& t = s.topology();
-    for (unsigned left = contours_of(s.shape).cut_faces(pattern); left != 0; left &= left - 1) {
+    for (unsigned left = recorded_; left != 0; left &= left - 1) {
         const auto f = static_cast<std::size_t>(std::countr_zero(left));
         const FaceTopology& face = t.face[f];
         unsigned signs = 0;
-        unsigned known = 0;
         for (std::size_t i = 0; i < face.corners; ++i) {
             signs |= (pattern >> face.corner[i] & 1U) << i;
-            known += recorded_ >> edge_between(s.shape, face.corner[i],
-                                               face.corner[(i + 1U) % face.corners]) & 1U;
         }
-        if (known < 2) continue;
         for (std::size_t i = 0; i < face.corners; ++i) {
             // The finer side draws from where our segment comes back to where it leaves.
             const unsigned there = signs >> i & 1U;
             const unsigned beyond = signs >> ((i + 1U) % face.corners) & 1U;
             if (there == beyond || (there != 0) != (s.orientation < 0)) continue;
             bool is_joined = false;
-            if (adopt(s, layer, face, i, signs, is_joined) && (alternating >> f & 1U) != 0) {
+            if (adopt(s, layer, f, i, signs, is_joined) && (alternating >> f & 1U) != 0) {
                 joins = (joins & ~(1U << f)) | (unsigned{is_joined} << f);
             }
         }

@@ -13,7 +13,7 @@
 namespace nestgrid::detail {
 
 NESTGRID_VISITOR::name(const State& s, std::uint8_t edge) const -> KeyPair {
-    if (const auto* maximal = s.closed.edge(edge)) return {maximal->key[0], maximal->key[1]};
+    if (const auto* maximal = s.closed.edge(edge)) return {maximal->key(0), maximal->key(1)};
     const auto& [a, b] = s.topology().edge[edge];
     return {key_[a], key_[b]};
 }
@@ -26,9 +26,11 @@ NESTGRID_VISITOR::make_cut(const State& s, const Layer& layer, std::uint8_t edge
     Cut cut;
     if (const auto* maximal = s.closed.edge(edge)) {
         x = walk_->positions(*maximal);
-        cut.node = maximal->key;
-        for (std::size_t i = 0; i < 2 * stride; ++i) {
-            value[i / stride][i % stride] = static_cast<double>(maximal->value[i]);
+        for (std::size_t end = 0; end < 2; ++end) {
+            cut.node[end] = maximal->key(end);
+            for (std::size_t i = 0; i < stride; ++i) {
+                value[end][i] = static_cast<double>(maximal->value(end, i));
+            }
         }
     } else {
         for (std::size_t end = 0; end < 2; ++end) {

@@ -38,9 +38,10 @@ public:
     /// it leaves the region U >= C on its right.
     void record(const ClosedFace* innermost, Index from, Index to, const Owner& owner) {
         for (const ClosedFace* face = innermost; face != nullptr; face = face->outer) {
-            record(face->key, from, to);
-            if (face->split == 0) continue;
-            note_split(face->key, {face->split, owner});
+            const NodeKey key = face->key();
+            record(key, from, to);
+            const NodeKey divided_by = face->divided_by();
+            if (divided_by != 0) note_split(key, {divided_by, owner});
         }
     }
     void record(NodeKey face, Index from, Index to) { segments_.push_back({face, from, to}); }
@@ -53,6 +54,9 @@ public:
         if (is_new) cuts_.push_back(make());
         return number;
     }
+
+    /// vertex(name) will be asked for soon.
+    void expect(const KeyPair& name) const { vertex_of_.prefetch(name); }
 
     /// Adds what another task recorded, as if this one had gone on with that task's elements.
     void append(const TransitionContours& other) {
@@ -79,8 +83,8 @@ public:
                   [](const Gap& a, const Gap& b) { return a.loop < b.loop; });
         conflicts_ = {};
         split_of_ = {};
-        names_.reset(cuts_.size());
-        vertex_of_.for_each([&](const KeyPair& name, Index) { names_.add(hash(name)); });
+        faces_.reset(face_number_.size());
+        face_number_.for_each([&](NodeKey face, Index) { faces_.add(hash(face)); });
     }
 
     const std::vector<Gap>& gaps() const { return gaps_; }
@@ -88,21 +92,23 @@ public:
     bool empty() const { return segments_.empty(); }
 
     /// The recorded vertex with a name, or null.
-    const Index* find(const KeyPair& name) const {
-        return names_.perhaps(hash(name)) ? vertex_of_.find(name) : nullptr;
+    const Index* find(const KeyPair& name) const { return vertex_of_.find(name); }
+
+    /// The number of a face on which something was recorded, or null.
+    const Index* find_face(NodeKey key) const {
+        return faces_.perhaps(hash(key)) ? face_number_.find(key) : nullptr;
     }
 
     const Cut& cut(Index vertex) const { return cuts_[vertex]; }
 
-    /// Follows what is drawn on a face from vertex `from` until `stop(vertex)` says so, calling
-    /// pass(vertex) for those between. \return whether it got there
+    /// Follows what is drawn on a face, by its number, from vertex `from` until `stop(vertex)` says
+    /// so, calling pass(vertex) for those between. \return whether it got there
     template <class Stop, class Pass>
-    bool follow(NodeKey face, Index from, Stop&& stop, Pass&& pass) const {
+    bool follow(Index face, Index from, Stop&& stop, Pass&& pass) const {
         const std::span<const Segment> on_face = segments_on(face);
         for (std::size_t steps = 0; steps < on_face.size(); ++steps) {
-            const auto next =
-                std::lower_bound(on_face.begin(), on_face.end(), Segment{face, from, 0}, before);
-            if (next == on_face.end() || next->from != from) return false;
+            const Segment* next = first_from(from, on_face);
+            if (next == nullptr) return false;
             from = next->to;
             if (stop(from)) return true;
             pass(from);
@@ -123,7 +129,7 @@ public:
 
     std::size_t memory_bytes() const {
         return (segments_.capacity() + grouped_.capacity()) * sizeof(Segment) +
-               cuts_.capacity() * sizeof(Cut) + names_.memory_bytes() + vertex_of_.memory_bytes() +
+               cuts_.capacity() * sizeof(Cut) + faces_.memory_bytes() + vertex_of_.memory_bytes() +
                face_number_.memory_bytes() +
                (first_on_.capacity() + face_of_.capacity() + place_.capacity()) * sizeof(Index);
     }
@@ -150,7 +156,23 @@ private:
         return a.from != b.from ? a.from < b.from : a.to < b.to;
     }
 
-    /// Puts those on one face behind each other, in order.
+    /// Few segments are faster looked through than sorted.
+    static constexpr std::size_t few = 8;
+    /// Of the segments from a vertex, the one to the least vertex; or null.
+    static const Segment* first_from(Index from, std::span<const Segment> on_face) {
+        if (on_face.size() > few) {
+            const auto next =
+                std::lower_bound(on_face.begin(), on_face.end(), Segment{0, from, 0}, before);
+            return next == on_face.end() || next->from != from ? nullptr : &*next;
+        }
+        const Segment* found = nullptr;
+        for (const Segment& s : on_face) {
+            if (s.from == from && (found == nullptr || s.to < found->to)) found = &s;
+        }
+        return found;
+    }
+
+    /// Puts those on one face behind each other, in order where they are many.
     void group_segments() {
         face_of_.resize(segments_.size());
         for (std::size_t i = 0; i < segments_.size(); ++i) {
@@ -167,22 +189,24 @@ private:
         }
         segments_.swap(grouped_);
         for (std::size_t f = 0; f + 1 < first_on_.size(); ++f) {
+            if (first_on_[f + 1] - first_on_[f] <= few) continue;
             std::sort(segments_.begin() + first_on_[f], segments_.begin() + first_on_[f + 1],
                       before);
         }
     }
 
-    std::span<const Segment> segments_on(NodeKey face) const {
-        const Index* number = face_number_.find(face);
-        if (number == nullptr) return {};
-        return std::span(segments_).subspan(first_on_[*number],
-                                            first_on_[*number + 1U] - first_on_[*number]);
+    std::span<const Segment> segments_on(Index face) const {
+        const Index first = first_on_[face];
+        return std::span(segments_).subspan(first, first_on_[face + 1U] - first);
     }
 
     /// Segments that only one side draws link up to loops: each vertex is as often left as met.
     void find_gaps(NodeKey face, const Owner& owner) {
         std::vector<Segment> left;
-        const std::span<const Segment> all = segments_on(face);
+        const Index number = *face_number_.find(face);
+        std::sort(segments_.begin() + first_on_[number], segments_.begin() + first_on_[number + 1U],
+                  before);
+        const std::span<const Segment> all = segments_on(number);
         for (const Segment& s : all) {
             if (!std::binary_search(all.begin(), all.end(), Segment{face, s.to, s.from}, before)) {
                 if (left.empty() || !(left.back() == s)) left.push_back(s);
@@ -214,7 +238,7 @@ private:
     std::vector<Index> face_of_;   // what group_segments() needs
     std::vector<Index> place_;
     std::vector<Segment> grouped_;
-    KeyFilter names_;
+    KeyFilter faces_;
 };
 
 }  // namespace nestgrid

@@ -27,29 +27,43 @@ struct TriangleBudget {
 
 namespace detail {
 
+/// Keeps nothing, for the visitor counts; can be filled in parts.
+template <int dimension>
+struct CountedSimplices {
+    static constexpr bool indexed = false;
+
+    CountedSimplices part() const { return {}; }
+    void append(CountedSimplices&) {}
+    bool keeps_elements() const { return false; }
+    template <class Element>
+    void add_element(const Element&, Shape, int) {}
+    void add_simplex(const std::array<Point, static_cast<std::size_t>(dimension)>&,
+                     std::span<const Point>) {}
+    template <class Corners>
+    void add_simplices(std::span<const WidePoint>, std::span<const Corners>) {}
+};
+
 /// Triangles (segments) under a criterion, or nothing where there are more than `most`.
 template <class Grid, class Field, class S, class Indicator, class Executor>
 std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& field, double isovalue,
                                              const S& criterion, const Indicator& indicator,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor) {
-    std::uint64_t count = 0;
-    const auto add = [&](const auto&) { ++count; };
-    using Sink = SimplexStream<Grid::dimension, std::decay_t<decltype(add)>>;
+    using Sink = CountedSimplices<Grid::dimension>;
     using Visitor = IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>;
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
     const typename Visitor::Walk walk(grid, field, indicator.hanging());
-    Visitor visitor(walk, std::span<const double>(&isovalue, 1), std::vector<Sink>{Sink(add)},
-                    criterion, indicator, plain);
+    Visitor visitor(walk, std::span<const double>(&isovalue, 1), std::vector<Sink>(1), criterion,
+                    indicator, plain);
     visitor.limit(most);
     try {
         visitor.run(executor);
     } catch (const OverLimit&) {
         return std::nullopt;
     }
-    return count;
+    return visitor.simplices();
 }
 
 }  // namespace detail
