@@ -41,6 +41,18 @@ void require_no_missing(NodeMask missing, const State& s) {
 }
 
 inline Point interpolate(const Stencil& s, const Point* position) {
+    const auto at = [&](std::size_t i) -> const Point& { return position[s.parent[i]]; };
+    if (s.mean == Mean::midpoint) {
+        const Point& a = at(0);
+        const Point& b = at(1);
+        return {midpoint(a[0], b[0]), midpoint(a[1], b[1]), midpoint(a[2], b[2])};
+    }
+    if (s.mean == Mean::face) {
+        const auto mean = [&](std::size_t d) {
+            return face_mean(at(0)[d], at(1)[d], at(2)[d], at(3)[d]);
+        };
+        return {mean(0), mean(1), mean(2)};
+    }
     const double* x = position->data();
     return {interpolate(s, x, 3, 0), interpolate(s, x, 3, 1), interpolate(s, x, 3, 2)};
 }

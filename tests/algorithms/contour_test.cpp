@@ -391,6 +391,35 @@ void expect_same_residual_in_boxes() {
     }
 }
 
+/// The same for a prism whose edges between its triangles are equal.
+TEST(AffineResidual, IsTheSameInShearedPrismsAndNearThem) {
+    std::mt19937 random(6);
+    const auto number = [&] { return static_cast<double>(random() % 2048) / 1024 - 1; };
+    for (int round = 0; round < 200; ++round) {
+        const Point along{number(), number(), 1.5 + number()};
+        std::array<Point, 6> x;
+        std::array<double, 6> u;
+        const std::array<Point, 3> below{
+            Point{number(), number(), 0}, {2 + number(), number(), number()}, {number(), 3, 0}};
+        for (std::size_t i = 0; i < 3; ++i) {
+            x[i] = below[i];
+            x[i + 3] = below[i] + along;
+        }
+        for (double& value : u) value = number();
+        const std::span<const Point, 6> at(x);
+        const std::span<const double, 6> values(u);
+        ASSERT_TRUE(detail::is_sheared_prism(at));
+        const double in_prism = affine_residual(at, values);
+        const double z = std::exchange(x[5][2], x[5][2] + 1e-11);
+        ASSERT_FALSE(detail::is_sheared_prism(at));
+        EXPECT_NEAR(in_prism, affine_residual(at, values), 1e-9);
+        EXPECT_GT(in_prism, 0);
+        x[5][2] = z;
+        for (std::size_t i = 0; i < 6; ++i) u[i] = 0.3 + dot({0.5, -2, 0.7}, x[i]);
+        EXPECT_NEAR(affine_residual(at, values), 0, 1e-14);
+    }
+}
+
 TEST(AffineResidual, IsTheSameInBoxesAndNearThem) {
     expect_same_residual_in_boxes<4>();
     expect_same_residual_in_boxes<8>();

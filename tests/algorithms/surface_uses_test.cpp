@@ -60,13 +60,11 @@ public:
         for (std::size_t k = 0; k < n; ++k) put(keys[k], out, k);
         return 0;
     }
-    NodeMask new_values(const typename Grid::Element& e, NodeMask which,
-                        std::span<double> out) const {
-        std::array<NodeKey, max_new_nodes> keys;
-        const auto n = static_cast<std::size_t>(grid_->split(e)->new_node_count());
-        grid_->new_keys(e, std::span(keys).first(n));
-        for (std::size_t k = 0; k < n; ++k) {
-            if ((which >> k & 1U) != 0) put(keys[k], out, k);
+    NodeMask new_values(const typename Grid::Element& e, NodeMask which, std::span<double> out,
+                        typename Grid::Context& context) const {
+        const std::span<const std::uint32_t> nodes = grid_->new_nodes(e, context);
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            if ((which >> k & 1U) != 0) put(nodes[k], out, k);
         }
         return 0;
     }

@@ -68,6 +68,26 @@ double affine_residual_of_parallelepiped(std::span<const double, n> u) {
     return greatest;
 }
 
+/// Whether the edges of a prism between its two triangles are equal, to the last bit.
+inline bool is_sheared_prism(std::span<const Point, 6> x) {
+    bool same = true;
+    for (std::size_t i = 4; i < 6; ++i) {
+        for (std::size_t d = 0; d < 3; ++d) same &= x[i][d] - x[i - 3][d] == x[3][d] - x[0][d];
+    }
+    return same;
+}
+
+/// The same residual: there the fit is that of the means over these edges, which are those of an
+/// affine function, and half the mean difference along them.
+inline double affine_residual_of_sheared_prism(std::span<const double, 6> u) {
+    std::array<double, 3> slope;
+    for (std::size_t i = 0; i < 3; ++i) slope[i] = (u[i + 3] - u[i]) / 2;
+    const double mean = (slope[0] + slope[1] + slope[2]) / 3;
+    double greatest = 0;
+    for (const double s : slope) greatest = std::max(greatest, std::abs(s - mean));
+    return greatest;
+}
+
 }  // namespace detail
 
 /// How far values at the corners of an element are from any affine function: the greatest residual
@@ -79,6 +99,9 @@ template <std::size_t n>  // corners: the loops are short, and unrolled
 double affine_residual(std::span<const Point, n> x, std::span<const double, n> u) {
     if constexpr (n == 4 || n == 8) {
         if (detail::is_parallelepiped(x)) return detail::affine_residual_of_parallelepiped(u);
+    }
+    if constexpr (n == 6) {
+        if (detail::is_sheared_prism(x)) return detail::affine_residual_of_sheared_prism(u);
     }
     std::array<std::array<double, n>, 4> basis;  // 1, x, y, z at the corners
     std::array<double, n> rest;

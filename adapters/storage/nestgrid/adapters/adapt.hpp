@@ -190,9 +190,8 @@ void Rewrite<Family>::unpack(const Element& e, std::uint32_t place, Marker& mark
     const std::uint16_t number = table_[code].inner[e.inner].rule;
     const StoredRule& stored = table_.rule(number);
     const Rule& rule = *stored.rule;
-    std::array<std::uint32_t, max_new_nodes> node;
-    grid_.for_each_new_node(e, [&](std::size_t k, std::uint32_t n) { node[k] = n; });
-    const std::span<const std::uint32_t> nodes(node.data(), stored.nodes.size());
+    typename Grid::Context context;
+    const std::span<const std::uint32_t> nodes = grid_.new_nodes(e, context);
     if (stored.temporary) {
         tree_.remember(tree_.elements[place], number, nodes);
         tree_.elements[place].mark = ask_children(e, rule, level, marker);
@@ -200,7 +199,7 @@ void Rewrite<Family>::unpack(const Element& e, std::uint32_t place, Marker& mark
     }
     const std::uint32_t child = tree_.restore(place, number, nodes);
     std::array<Element, static_cast<std::size_t>(Grid::max_children)> below;
-    grid_.children(e, std::span(below).first(rule.children.size()));
+    grid_.children(e, std::span(below).first(rule.children.size()), context);
     for (std::uint32_t k = 0; k < rule.children.size(); ++k) unpack(below[k], child + k, marker);
 }
 
@@ -218,7 +217,8 @@ template <class Family>
 template <class Marker>
 Mark Rewrite<Family>::ask_children(const Element& e, const Rule& rule, int level, Marker& marker) {
     std::array<Element, static_cast<std::size_t>(Grid::max_children)> below;
-    grid_.children(e, std::span(below).first(rule.children.size()));
+    typename Grid::Context context;
+    grid_.children(e, std::span(below).first(rule.children.size()), context);
     Mark least = Mark::refine, most = Mark::coarsen;
     for (std::size_t k = 0; k < rule.children.size(); ++k) {
         const Mark mark = ask(below[k], rule.children[k].shape, level + 1, marker);

@@ -91,6 +91,19 @@ public:
         std::uint8_t inner;     ///< element inside the pattern that refines it
     };
 
+    /// New nodes of the element that was asked about last: one operation after the other wants
+    /// them. Of the grid as it is: adapt() and renumber() make it void.
+    class Context {
+        friend StoredGrid;
+        std::uint32_t record_ = none_;
+        std::uint16_t pattern_ = 0;
+        std::uint8_t exit_ = 0;
+        std::uint8_t inner_ = 0;
+        std::uint32_t count_ = 0;
+        std::array<std::uint32_t, static_cast<std::size_t>(Family::max_new_nodes)> node_;
+    };
+    Context make_context() const { return {}; }
+
     /// \throw InvalidInput where the coarse grid fails check_and_orient(), or the family has no
     ///        rule for a shape of it
     explicit StoredGrid(CoarseGrid coarse, const Family& family = {},
@@ -104,30 +117,30 @@ public:
         if (code == 0) return nullptr;
         return table_.rule(table_[code].inner[e.inner].rule).rule.get();
     }
-    void children(const Element& e, std::span<Element> out) const;
+    void children(const Element& e, std::span<Element> out, Context& context) const;
 
     // Optional operations.
     std::size_t node_count() const { return node_count_; }
     void corner_keys(const Element& e, std::span<NodeKey> out) const {
         std::copy_n(e.corner.begin(), out.size(), out.begin());
     }
-    void new_keys(const Element& e, std::span<NodeKey> out) const {
-        for_each_new_node(e, [&](std::size_t k, std::uint32_t node) { out[k] = node; });
+    void new_keys(const Element& e, std::span<NodeKey> out, Context& context) const {
+        std::ranges::copy(new_nodes(e, context), out.begin());
     }
     bool conforming() const requires(Family::conforming) { return true; }
-    NodeMask constrained(const Element& e) const requires(!Family::conforming) {
+    NodeMask constrained(const Element& e, Context& context) const requires(!Family::conforming) {
         NodeMask mask = 0;
         if (code_of(e) == 0 || hanging_.empty()) return mask;
-        for_each_new_node(e, [&](std::size_t k, std::uint32_t node) {
-            mask |= NodeMask{hanging_[node / 32] >> (node % 32) & 1U} << k;
-        });
+        const std::span<const std::uint32_t> nodes = new_nodes(e, context);
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            mask |= NodeMask{hanging_[nodes[k] / 32] >> (nodes[k] % 32) & 1U} << k;
+        }
         return mask;
     }
     std::uint64_t epoch() const { return epoch_; }
 
-    /// Calls function(k, node) for every new node k of a refined element.
-    template <class Function>
-    void for_each_new_node(const Element& e, Function&& function) const;
+    /// Numbers of the new nodes of a refined element, valid until the next call with the context.
+    std::span<const std::uint32_t> new_nodes(const Element& e, Context& context) const;
 
     /// One step of adaptation: asks marker(Leaf) for the Mark of every leaf, refines and coarsens,
     /// and does what the family's closure demands. Nodes keep their numbers; new ones take free
@@ -189,6 +202,10 @@ private:
     unsigned code_of(const Element& e) const {
         return e.record == none_ ? 0 : raw_code(e.record, e.exit) & ~has_record_;
     }
+    /// How many of the two codes in a word have a record.
+    static std::size_t records_in(std::uint32_t codes) {
+        return (codes >> 15U & 1U) + (codes >> 31U);
+    }
     Record record(const Element& e) const {
         const Pattern& p = table_[e.pattern];
         const std::uint32_t* at = words_.data() + e.record;
@@ -196,7 +213,7 @@ private:
         r.links = r.mask + p.mask_words();
         r.references = r.links;
         for (std::size_t i = 0; i < p.code_words(); ++i) {
-            r.references += std::popcount(r.codes[i] & 0x80008000U);
+            r.references += records_in(r.codes[i]);
         }
         return r;
     }
@@ -205,7 +222,7 @@ private:
         const Record r = record(e);
         std::size_t before = 0;
         for (std::size_t i = 0; i < e.exit / 2U; ++i) {
-            before += static_cast<std::size_t>(std::popcount(r.codes[i] & 0x80008000U));
+            before += records_in(r.codes[i]);
         }
         if (e.exit % 2 == 1 && (r.codes[e.exit / 2] & 0x8000U) != 0) ++before;
         return r.links[before];
@@ -247,9 +264,10 @@ public:
         for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = values_[nodes[k]];
         return 0;
     }
-    NodeMask new_values(const Element& e, NodeMask, std::span<Real> out) const {
-        grid_->for_each_new_node(
-            e, [&](std::size_t k, std::uint32_t node) { out[k] = values_[node]; });
+    NodeMask new_values(const Element& e, NodeMask, std::span<Real> out,
+                        typename Grid::Context& context) const {
+        const std::span<const std::uint32_t> nodes = grid_->new_nodes(e, context);
+        for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = values_[nodes[k]];
         return 0;
     }
     Real value(NodeKey node) const { return values_[static_cast<std::size_t>(node)]; }

@@ -39,32 +39,62 @@ auto StoredGrid<Family>::coarse(std::size_t i) const -> CoarseElement<Element> {
     return c;
 }
 
+namespace detail {
+
+/// std::popcount without the call that it is on processors that may lack the instruction.
+constexpr std::uint32_t count_ones(std::uint32_t x) {
+#if defined(__POPCNT__)
+    return static_cast<std::uint32_t>(std::popcount(x));
+#else
+    x -= x >> 1U & 0x55555555U;
+    x = (x & 0x33333333U) + (x >> 2U & 0x33333333U);
+    return ((x + (x >> 4U)) & 0x0F0F0F0FU) * 0x01010101U >> 24U;
+#endif
+}
+
+}  // namespace detail
+
 template <class Family>
-template <class Function>
-void StoredGrid<Family>::for_each_new_node(const Element& e, Function&& function) const {
-    const Record r = record(e);
-    const auto& entity_of_exit = table_[e.pattern].exits[e.exit].entity;
-    const Pattern::Inner& inner = table_[code_of(e)].inner[e.inner];
-    for (std::size_t k = 0; k < inner.entity.size(); ++k) {
-        const unsigned entity = entity_of_exit[inner.entity[k]];
-        auto rank = static_cast<std::size_t>(
-            std::popcount(r.mask[entity / 32] & ((1U << entity % 32) - 1U)));
-        for (std::size_t i = 0; i < entity / 32; ++i) {
-            rank += static_cast<std::size_t>(std::popcount(r.mask[i]));
-        }
-        function(k, r.references[rank]);
+std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
+                                                             Context& context) const {
+    if (context.record_ == e.record && context.pattern_ == e.pattern && context.exit_ == e.exit &&
+        context.inner_ == e.inner) {
+        return {context.node_.data(), context.count_};
     }
+    const Record r = record(e);
+    const Pattern& pattern = table_[e.pattern];
+    const auto& entity_of_exit = pattern.exits[e.exit].entity;
+    const Pattern::Inner& inner = table_[code_of(e)].inner[e.inner];
+    std::array<std::uint32_t, max_entities / 32> before;  // each word of the mask
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < pattern.mask_words(); ++i) {
+        before[i] = sum;
+        sum += detail::count_ones(r.mask[i]);
+    }
+    const std::size_t count = inner.entity.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const unsigned entity = entity_of_exit[inner.entity[k]];
+        const std::uint32_t lower = r.mask[entity / 32] & ((1U << entity % 32) - 1U);
+        context.node_[k] = r.references[before[entity / 32] + detail::count_ones(lower)];
+    }
+    context.record_ = e.record;
+    context.pattern_ = e.pattern;
+    context.exit_ = e.exit;
+    context.inner_ = e.inner;
+    context.count_ = static_cast<std::uint32_t>(count);
+    return {context.node_.data(), count};
 }
 
 template <class Family>
-void StoredGrid<Family>::children(const Element& e, std::span<Element> out) const {
+void StoredGrid<Family>::children(const Element& e, std::span<Element> out,
+                                  Context& context) const {
     const unsigned code = code_of(e);
     const Pattern::Inner& inner = table_[code].inner[e.inner];
     const Rule& rule = *table_.rule(inner.rule).rule;
     std::array<std::uint32_t, static_cast<std::size_t>(max_corners + max_new_nodes)> node;
     const auto corners = static_cast<std::size_t>(rule.corner_count());
     std::copy_n(e.corner.begin(), corners, node.begin());
-    for_each_new_node(e, [&](std::size_t k, std::uint32_t n) { node[corners + k] = n; });
+    std::ranges::copy(new_nodes(e, context), node.begin() + rule.corner_count());
     const std::uint32_t below = link(e);
     for (std::size_t c = 0; c < out.size(); ++c) {
         const Child& child = rule.children[c];
@@ -126,7 +156,7 @@ private:
             x[n + k] = sum;
         }
         std::array<Element, static_cast<std::size_t>(Grid::max_children)> child;
-        grid_.children(e, std::span(child).first(rule->children.size()));
+        grid_.children(e, std::span(child).first(rule->children.size()), context_);
         for (std::size_t c = 0; c < rule->children.size(); ++c) {
             const Child& to = rule->children[c];
             std::array<Point, static_cast<std::size_t>(Grid::max_corners)> y;
@@ -137,6 +167,7 @@ private:
 
     const Grid& grid_;
     Visitor& visitor_;
+    typename Grid::Context context_;
     std::size_t coarse_ = 0;
 };
 
