@@ -315,6 +315,10 @@ private:
     template <class Corners>
     void put_simplices(Layer& layer, std::span<const BlockVertex> v,
                        std::span<const Corners> all);
+    using Extracted = ExtractedElement<ElementOf<Grid>>;
+    template <class Corners>
+    void put_extracted(Layer& layer, std::span<const Extracted> elements,
+                       std::span<const BlockVertex> v, std::span<const Corners> all);
     template <class Corners>
     void put_simplex(Layer& layer, std::span<const BlockVertex> v, const Corners& corners);
     template <class Blocks>

@@ -246,16 +246,17 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
     if (!keeps_elements(layer.sink)) {
         put_simplices(layer, vertices, run.simplices());
     } else {
-        auto left = run.simplices();
+        std::array<Extracted, Run::most_fours> elements;
+        std::size_t count = 0;
         for (const CutEntry& entry : list.entries()) {
             for_each_part(blocks, selection, layer, entry, [&](std::size_t part, unsigned bits) {
-                layer.sink.add_element(blocks.element(entry.id, part), simplex_shape,
-                                       level_of(entry.id, pattern.part[part].depth));
-                const std::size_t count = contours.piece(bits).count == 4 ? 2 : 1;
-                for (const auto& corners : left.first(count)) put_simplex(layer, vertices, corners);
-                left = left.subspan(count);
+                elements[count++] = {blocks.element(entry.id, part), simplex_shape,
+                                     level_of(entry.id, pattern.part[part].depth),
+                                     contours.piece(bits).count == 4 ? 2U : 1U};
             });
         }
+        put_extracted(layer, std::span<const Extracted>(elements).first(count), vertices,
+                      run.simplices());
     }
     if constexpr (indexed) {
         put_boundaries(blocks, selection, layer, contours, list, run.cuts(), v.data());
@@ -305,6 +306,22 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_sim
         layer.sink.add_simplices(v, all);
     } else {
         for (const Corners& corners : all) put_simplex(layer, v, corners);
+    }
+}
+
+template <class Grid, class Field, class S, class Indicator, class Sink>
+template <class Corners>
+NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_extracted(
+    Layer& layer, std::span<const Extracted> elements, std::span<const BlockVertex> v,
+    std::span<const Corners> all) {
+    if constexpr (requires { layer.sink.add_extracted(elements, v, all); }) {
+        layer.sink.add_extracted(elements, v, all);
+    } else {
+        for (const Extracted& e : elements) {
+            layer.sink.add_element(e.element, e.shape, e.level);
+            for (const Corners& corners : all.first(e.simplices)) put_simplex(layer, v, corners);
+            all = all.subspan(e.simplices);
+        }
     }
 }
 

@@ -173,6 +173,22 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
             }
             for (const auto& corners : all) simplex(corners, {});
         }
+        void extracted(std::span<const typename Log::Owner> elements,
+                       std::span<const typename Log::Simplex> all) {
+            Sink& sink = to->layer_->sink;
+            const std::span<const Vertex> of(known);
+            if constexpr (indexed && requires { sink.add_extracted(elements, of, all); }) {
+                if (!to->options_->normals) {
+                    to->count_simplices(all.size());
+                    return sink.add_extracted(elements, of, all);
+                }
+            }
+            for (const auto& e : elements) {
+                element(e);
+                for (const auto& corners : all.first(e.simplices)) simplex(corners, {});
+                all = all.subspan(e.simplices);
+            }
+        }
         void boundary(typename Log::Ridge corners) {
             if constexpr (indexed) {
                 for (auto& corner : corners) corner = known[corner];

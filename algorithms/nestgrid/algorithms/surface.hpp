@@ -18,6 +18,9 @@
 //     void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all)
 //         optional: several from one element, or from any where it keeps none; Corners is any array
 //         of numbers that say which of the vertices are the corners, of a segment the first two
+//     void add_extracted(std::span<const ExtractedElement<Element>> elements,
+//                        std::span<const std::uint32_t> vertices, std::span<const Corners> all)
+//         optional: several elements and all simplices from them, in their order
 //     void add_boundary(const Ridge& vertices)        on the boundary of the domain
 //     void set_normal(std::uint32_t vertex, const Point& unit)   at the end, where asked for
 // A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
@@ -86,6 +89,15 @@ struct Surface {
     }
 };
 
+/// An element that contributes to a surface.
+template <class Element>
+struct ExtractedElement {
+    Element element;
+    Shape shape;
+    int level;
+    std::uint32_t simplices;  ///< how many come from it
+};
+
 namespace detail {
 
 /// Simplices whose corners are some of these vertices, behind others.
@@ -145,6 +157,21 @@ public:
         if (elements_) {
             surface_->element_of.resize(surface_->simplices.size(),
                                         static_cast<std::uint32_t>(surface_->elements.size() - 1));
+        }
+    }
+    template <class Corners>
+    void add_extracted(std::span<const ExtractedElement<Element>> elements,
+                       std::span<const std::uint32_t> vertices, std::span<const Corners> all) {
+        detail::append_simplices(vertices, all, surface_->simplices);
+        if (!elements_) return;
+        std::size_t simplex = surface_->element_of.size();
+        surface_->element_of.resize(surface_->simplices.size());
+        for (const ExtractedElement<Element>& e : elements) {
+            const auto number = static_cast<std::uint32_t>(surface_->elements.size());
+            for (const std::size_t end = simplex + e.simplices; simplex < end; ++simplex) {
+                surface_->element_of[simplex] = number;
+            }
+            add_element(e.element, e.shape, e.level);
         }
     }
     void add_boundary(const typename Target::Ridge& vertices) {

@@ -36,12 +36,7 @@ public:
     using Cut = SurfaceCut<attribute_count>;
     using Simplex = std::array<std::uint32_t, static_cast<std::size_t>(dimension)>;
     using Ridge = std::array<std::uint32_t, static_cast<std::size_t>(dimension - 1)>;
-    struct Owner {
-        Element element;
-        Shape shape;
-        int level;
-        std::size_t first;  ///< simplex from it
-    };
+    using Owner = ExtractedElement<Element>;
 
     /// \param elements whether the sink it is for keeps them
     explicit SurfaceLog(bool elements) : keeps_elements_{elements} {}
@@ -58,17 +53,25 @@ public:
     Point position(std::uint32_t vertex) const { return x_[vertex]; }
     bool keeps_elements() const { return keeps_elements_; }
     void add_element(const Element& element, Shape shape, int level) {
-        if (keeps_elements_) elements_.push_back({element, shape, level, simplices_.size()});
+        if (keeps_elements_) elements_.push_back({element, shape, level, 0});
     }
     NESTGRID_INLINE void add_simplex(const Simplex& corners,
                                      std::span<const Point> reference) requires(is_indexed) {
         simplices_.push_back(corners);
+        if (keeps_elements_) ++elements_.back().simplices;
         for (const Point& x : reference) reference_.push_back(x);
     }
     template <class Corners>
     void add_simplices(std::span<const std::uint32_t> vertices,
                        std::span<const Corners> all) requires(is_indexed) {
         detail::append_simplices(vertices, all, simplices_);
+        if (keeps_elements_) elements_.back().simplices += static_cast<std::uint32_t>(all.size());
+    }
+    template <class Corners>
+    void add_extracted(std::span<const Owner> elements, std::span<const std::uint32_t> vertices,
+                       std::span<const Corners> all) requires(is_indexed) {
+        detail::append_simplices(vertices, all, simplices_);
+        elements_.insert(elements_.end(), elements.begin(), elements.end());
     }
     // Where there are no indices, corners are kept once for all that are put down together.
     NESTGRID_INLINE void add_simplex(
@@ -79,6 +82,7 @@ public:
             simplex[k] = static_cast<std::uint32_t>(x_.size());
             x_.push_back(corners[k]);
         }
+        if (keeps_elements_) ++elements_.back().simplices;
         for (const Point& x : reference) reference_.push_back(x);
     }
     template <class Corners>
@@ -90,6 +94,7 @@ public:
             Simplex& simplex = simplices_.emplace_back();
             for (std::size_t k = 0; k < simplex.size(); ++k) simplex[k] = first + corners[k];
         }
+        if (keeps_elements_) elements_.back().simplices += static_cast<std::uint32_t>(all.size());
     }
     void add_boundary(const Ridge& corners) { boundary_.push_back(corners); }
 
@@ -133,15 +138,23 @@ public:
         }
         others(next, x.size());
         for (const Ridge& corners : boundary_) to.boundary(corners);
-        if (elements_.empty() && reference_.empty()) return to.simplices(simplices_);
-        auto element = elements_.begin();
-        std::span<const Point> reference(reference_);
-        const std::size_t step = reference_.empty() ? 0 : dimension;
-        for (std::size_t i = 0; i < simplices_.size(); ++i) {
-            if (element != elements_.end() && element->first == i) to.element(*element++);
-            to.simplex(simplices_[i], reference.first(step));
-            reference = reference.subspan(step);
+        const std::span<const Simplex> all(simplices_);
+        if (reference_.empty()) {
+            return elements_.empty() ? to.simplices(all)
+                                     : to.extracted(std::span<const Owner>(elements_), all);
         }
+        std::size_t from = 0;
+        const auto some = [&](std::size_t count) {
+            for (const std::size_t end = from + count; from < end; ++from) {
+                to.simplex(all[from],
+                           std::span<const Point>(reference_).subspan(from * dimension, dimension));
+            }
+        };
+        for (const Owner& owner : elements_) {
+            to.element(owner);
+            some(owner.simplices);
+        }
+        some(all.size() - from);
     }
 
 private:
