@@ -4,6 +4,7 @@
 // The steps of the traversal; included by traversal.hpp.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 
 #include <nestgrid/key_table.hpp>
@@ -13,22 +14,41 @@ namespace nestgrid {
 
 namespace detail {
 
-/// Component c of the weighted mean of the parents of a stencil; node n's value is at
-/// value[n * stride + c].
-template <class Real>
-Real interpolate(const Stencil& s, const Real* value, std::size_t stride, std::size_t c = 0) {
-    const auto at = [&](std::size_t i) { return value[s.parent[i] * stride + c]; };
-    if (s.mean == Mean::midpoint) return midpoint(at(0), at(1));
-    if (s.mean == Mean::face) return face_mean(at(0), at(1), at(2), at(3));
-    std::array<Real, max_corners> product;
-    Real lo = at(0);
-    Real hi = at(0);
-    for (std::size_t i = 0; i < s.count; ++i) {
-        product[i] = static_cast<Real>(s.weight[i] * at(i));
-        lo = std::min(lo, at(i));
-        hi = std::max(hi, at(i));
+/// The first components of the weighted mean of the parents of a stencil; component c of node n is
+/// at value[n * stride + c].
+template <std::size_t count, class Real>
+std::array<Real, count> interpolate(const Stencil& s, const Real* value, std::size_t stride) {
+    std::array<Real, count> result;
+    const auto set = [&](auto&& mean) {
+        for (std::size_t c = 0; c < count; ++c) {
+            result[c] = mean([&](std::size_t i) { return value[s.parent[i] * stride + c]; });
+        }
+    };
+    if (s.mean == Mean::midpoint) {
+        set([](const auto& at) { return midpoint(at(0), at(1)); });
+    } else if (s.mean == Mean::face) {
+        set([](const auto& at) { return face_mean(at(0), at(1), at(2), at(3)); });
+    } else {
+        set([&](const auto& at) {
+            std::array<Real, max_corners> product;
+            Real lo = at(0);
+            Real hi = at(0);
+            for (std::size_t i = 0; i < s.count; ++i) {
+                product[i] = static_cast<Real>(s.weight[i] * at(i));
+                lo = std::min(lo, at(i));
+                hi = std::max(hi, at(i));
+            }
+            return ordered_sum(std::span<Real>(product.data(), s.count), lo, hi);
+        });
     }
-    return ordered_sum(std::span<Real>(product.data(), s.count), lo, hi);
+    return result;
+}
+template <class Real>
+Real interpolate(const Stencil& s, const Real* value, std::size_t stride) {
+    return interpolate<1>(s, value, stride)[0];
+}
+inline Point interpolate(const Stencil& s, const Point* position) {
+    return interpolate<3>(s, position->data(), 3);
 }
 
 /// \throw GridError where one of these new nodes of an element has no value
@@ -38,23 +58,6 @@ void require_no_missing(NodeMask missing, const State& s) {
     throw GridError("the field has no value at new node " +
                     std::to_string(std::countr_zero(missing)) + " of an element on level " +
                     std::to_string(s.level) + " below coarse element " + std::to_string(s.coarse));
-}
-
-inline Point interpolate(const Stencil& s, const Point* position) {
-    const auto at = [&](std::size_t i) -> const Point& { return position[s.parent[i]]; };
-    if (s.mean == Mean::midpoint) {
-        const Point& a = at(0);
-        const Point& b = at(1);
-        return {midpoint(a[0], b[0]), midpoint(a[1], b[1]), midpoint(a[2], b[2])};
-    }
-    if (s.mean == Mean::face) {
-        const auto mean = [&](std::size_t d) {
-            return face_mean(at(0)[d], at(1)[d], at(2)[d], at(3)[d]);
-        };
-        return {mean(0), mean(1), mean(2)};
-    }
-    const double* x = position->data();
-    return {interpolate(s, x, 3, 0), interpolate(s, x, 3, 1), interpolate(s, x, 3, 2)};
 }
 
 }  // namespace detail
@@ -321,10 +324,8 @@ void Traversal<Grid, Field, needs>::project(const State& s, const Split& split,
     if ((mean & rule.all()) == 0) return;
     for (NodeMask left = mean & rule.all(); left != 0; left &= left - 1) {
         const auto n = static_cast<std::size_t>(std::countr_zero(left));
-        for (std::size_t q = 0; q < c_count; ++q) {
-            value[(corners + n) * c_count + q] =
-                detail::interpolate(rule.new_nodes[n], value, c_count, q);
-        }
+        std::ranges::copy(detail::interpolate<c_count>(rule.new_nodes[n], value, c_count),
+                          value + (corners + n) * c_count);
     }
 }
 

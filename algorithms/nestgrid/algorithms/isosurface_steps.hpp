@@ -219,11 +219,12 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
         recorded_ = recording_ ? 0 : recorded_faces(s, layer, bits);
         const Contour* plain = plainly_ ? plain_contour(s.shape, bits) : nullptr;
         unsigned joins = 0;
+        chained_ = 0;
         if (plain == nullptr || recorded_ != 0) {
             begin_drawing();
             joins = choose(s, layer, bits, contours_of(s.shape).alternating(bits));
         }
-        if (plain != nullptr && (recorded_ == 0 || !chained())) {
+        if (plain != nullptr && !chained()) {
             draw_plainly(s, layer, plain, bits);
             add_error(s, layer);
             continue;
@@ -240,7 +241,6 @@ NESTGRID_VISITOR::begin_drawing() -> void {
     reference_.clear();
     on_edge_.fill(none);
     on_corner_.fill(none);
-    chained_ = 0;
 }
 
 /// Keys and positions of the corners, and their gradients where the element is drawn.

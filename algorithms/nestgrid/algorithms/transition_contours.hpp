@@ -189,10 +189,12 @@ private:
         }
         segments_.swap(grouped_);
         for (std::size_t f = 0; f + 1 < first_on_.size(); ++f) {
-            if (first_on_[f + 1] - first_on_[f] <= few) continue;
-            std::sort(segments_.begin() + first_on_[f], segments_.begin() + first_on_[f + 1],
-                      before);
+            if (first_on_[f + 1] - first_on_[f] > few) sort_segments(f);
         }
+    }
+    void sort_segments(std::size_t face) {
+        std::sort(segments_.begin() + first_on_[face], segments_.begin() + first_on_[face + 1],
+                  before);
     }
 
     std::span<const Segment> segments_on(Index face) const {
@@ -204,8 +206,7 @@ private:
     void find_gaps(NodeKey face, const Owner& owner) {
         std::vector<Segment> left;
         const Index number = *face_number_.find(face);
-        std::sort(segments_.begin() + first_on_[number], segments_.begin() + first_on_[number + 1U],
-                  before);
+        sort_segments(number);
         const std::span<const Segment> all = segments_on(number);
         for (const Segment& s : all) {
             if (!std::binary_search(all.begin(), all.end(), Segment{face, s.to, s.from}, before)) {
