@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include <nestgrid/batch_cuts.hpp>
 #include <nestgrid/bisection_block.hpp>
 #include <nestgrid/pack.hpp>
 #include <nestgrid/subtree_nodes.hpp>
@@ -59,14 +60,6 @@ struct BatchPlaces {
         return (node + (is_block(id) ? 0 : block_rows)) * most_blocks + id % most_blocks;
     }
 };
-
-/// Between two places of a batch.
-struct BatchEdge {
-    std::uint16_t low;
-    std::uint16_t high;
-};
-/// As many may be asked for their points.
-inline constexpr std::size_t edges_at_once = 128;
 
 /// How many of the lowest sixteen bits are set; there are no others.
 template <class Unsigned>
@@ -224,21 +217,10 @@ struct BlockBatch {
 
     /// Of what has a number.
     NESTGRID_INLINE bool mirrored(std::size_t id) const { return orientations[id] != 0; }
-    /// x, y, z and the value at a place.
-    NESTGRID_INLINE WidePoint point(std::size_t place) const requires(!AnswersInRows<Grid>) {
-        return WidePoint(grid->position(nodes.all[place]), static_cast<double>(values.all[place]));
-    }
-    /// At both ends of edges, one behind the other.
-    /// \param edges not more than edges_at_once
-    void points(std::span<const BatchEdge> edges, WidePoint* x) const {
-        if constexpr (AnswersInRows<Grid>) {
-            points_in_rows(edges, x);
-        } else {
-            for (const auto& [low, high] : edges) {
-                *x++ = point(low);
-                *x++ = point(high);
-            }
-        }
+    /// Where edges are cut.
+    /// \param to as many
+    void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const {
+        cut_edges(*this, edges, isovalue, to);
     }
     Point position(std::size_t place) const { return grid->position(nodes.all[place]); }
     /// A part of a block, or an element.
@@ -261,20 +243,6 @@ private:
         bisections[e] = static_cast<std::uint8_t>(bisection);
         element_levels[e] = static_cast<std::uint16_t>(on_level);
         greatest_bounds[room + e] = bound;
-    }
-    void points_in_rows(std::span<const BatchEdge> edges, WidePoint* x) const {
-        std::array<Node, 2 * edges_at_once> of{};
-        std::array<Point, 2 * edges_at_once> at;
-        const std::size_t many = edges.size();
-        for (std::size_t i = 0; i < many; ++i) {
-            of[2 * i] = nodes.all[edges[i].low];
-            of[2 * i + 1] = nodes.all[edges[i].high];
-        }
-        grid->positions(std::span(of).first(2 * many), std::span(at).first(2 * many));
-        for (std::size_t i = 0; i < many; ++i) {
-            *x++ = WidePoint(at[2 * i], static_cast<double>(values.all[edges[i].low]));
-            *x++ = WidePoint(at[2 * i + 1], static_cast<double>(values.all[edges[i].high]));
-        }
     }
 };
 

@@ -100,7 +100,7 @@ void GridChecker<Grid, Field>::check_known_bisection(const Known& known, const N
     }
 }
 
-/// Whether eight at once are what they are one by one: middles of nodes, and of keys.
+/// Whether several at once are what they are one by one: middles of nodes and of keys, positions.
 template <class Grid, class Field>
 template <class Known, class Handle, class Demand>
 void GridChecker<Grid, Field>::check_packs(const Known& known, Handle a, Handle b, Handle z,
@@ -120,6 +120,17 @@ void GridChecker<Grid, Field>::check_packs(const Known& known, Handle a, Handle 
                             return known.middle(from, to);
                         }),
            "the middle of a pack of nodes");
+    if constexpr (PacksPositions<Known>) {
+        std::array<Handle, doubles_at_once> nodes;
+        for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = i % 2 == 0 ? a : z;
+        known.template with_packed_positions<doubles_at_once>([&](const auto& positions) {
+            const auto x = positions(Pack<Handle, doubles_at_once>::load(nodes.data()));
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                const Point one{x[0].numbers()[i], x[1].numbers()[i], x[2].numbers()[i]};
+                demand(one == known.position(nodes[i]), "the position of a pack of nodes");
+            }
+        });
+    }
     if constexpr (KnowsBlocks<Known>) {
         const NodeKey key = known.key(z);
         demand(known.middle_key(known.key(a), known.key(b)) == key, "the key between two");

@@ -21,7 +21,7 @@ public:
     static constexpr const auto& pattern = maubach_block<dim>;
 
     virtual Point position(std::size_t place) const = 0;
-    virtual void points(std::span<const BatchEdge> edges, WidePoint* x) const = 0;
+    virtual void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const = 0;
     virtual nestgrid_element element(std::size_t id, std::size_t part) const = 0;
     virtual unsigned boundary(std::size_t id, std::size_t part) const = 0;
 
@@ -127,8 +127,9 @@ private:
         explicit Blocks(const Batch& batch) : ErasedBlocks<dim, Real>(batch), of{&batch} {}
 
         Point position(std::size_t place) const override { return of->position(place); }
-        void points(std::span<const BatchEdge> edges, WidePoint* x) const override {
-            of->points(edges, x);
+        void cuts(std::span<const BatchEdge> edges, double isovalue,
+                  WidePoint* to) const override {
+            of->cuts(edges, isovalue, to);
         }
         nestgrid_element element(std::size_t id, std::size_t part) const override {
             return erased(of->element(id, part));

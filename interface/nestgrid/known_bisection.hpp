@@ -17,6 +17,10 @@
 //     NodeKey key(Node)
 //     Point position(Node)
 //     bool whole()                                     that nothing is masked or outside
+// and, best,
+//     void with_packed_positions<count>(function)      calls function(positions), once, where
+//                                                      positions(Pack<Node, count>) is a
+//                                                      PackedPoint<count> of the same positions
 // They must agree with split(), children(), new_keys(), corner_keys() and corner_positions(); its
 // field offers
 //     template <bool whole> value_type value_at(Node, NodeKey)
@@ -46,6 +50,7 @@
 #include <cstdint>
 #include <span>
 
+#include <nestgrid/pack.hpp>
 #include <nestgrid/traversal.hpp>
 
 namespace nestgrid {
@@ -94,6 +99,11 @@ concept KnowsBisections = requires(const Grid& grid, const Field& field, const E
     { grid.position(node) } -> std::same_as<Point>;
     { grid.whole() } -> std::same_as<bool>;
     { field.template value_at<true>(node, NodeKey{}) } -> std::same_as<typename Field::value_type>;
+};
+
+template <class Grid>
+concept PacksPositions = Packable<typename Grid::Node> && requires(const Grid& grid) {
+    grid.template with_packed_positions<doubles_at_once>([](auto&&) {});
 };
 
 template <class Grid>

@@ -17,12 +17,8 @@ class WidePoint {
 public:
     WidePoint() = default;
 #if defined(__GNUC__)
-    /// \param value a fourth number, which takes part in sums, differences and multiples
-    NESTGRID_INLINE explicit WidePoint(const Point& x, double value = 0)
-        : xy_{x[0], x[1]}, z_{x[2], value} {}
+    NESTGRID_INLINE explicit WidePoint(const Point& x) : xy_{x[0], x[1]}, z_{x[2], 0} {}
     NESTGRID_INLINE explicit operator Point() const { return {xy_[0], xy_[1], z_[0]}; }
-
-    NESTGRID_INLINE double value() const { return z_[1]; }
 
     NESTGRID_INLINE friend WidePoint operator-(const WidePoint& a, const WidePoint& b) {
         return {a.xy_ - b.xy_, a.z_ - b.z_};
@@ -46,24 +42,22 @@ private:
     Pair xy_;
     Pair z_;
 #else
-    explicit WidePoint(const Point& x, double value = 0) : x_{x}, value_{value} {}
+    explicit WidePoint(const Point& x) : x_{x} {}
     explicit operator Point() const { return x_; }
-    double value() const { return value_; }
 
     friend WidePoint operator-(const WidePoint& a, const WidePoint& b) {
-        return WidePoint(a.x_ - b.x_, a.value_ - b.value_);
+        return WidePoint(a.x_ - b.x_);
     }
     friend WidePoint operator+(const WidePoint& a, const WidePoint& b) {
-        return WidePoint(a.x_ + b.x_, a.value_ + b.value_);
+        return WidePoint(a.x_ + b.x_);
     }
     friend WidePoint operator*(double s, const WidePoint& a) {
-        return WidePoint(s * a.x_, s * a.value_);
+        return WidePoint(s * a.x_);
     }
     friend double dot(const WidePoint& a, const WidePoint& b) { return dot(a.x_, b.x_); }
 
 private:
     Point x_;
-    double value_;
 #endif
 };
 

@@ -110,6 +110,7 @@ enum class Mistake {
     block,
     nodes,
     keys,
+    positions,
     whole
 };
 
@@ -144,6 +145,16 @@ struct Mistaken : LatticeBisection<3> {
         const Point x = LatticeBisection<3>::position(n);
         return mistake == Mistake::position ? Point{x[0], x[2], x[1]} : x;
     }
+    template <std::size_t count, class Function>
+    void with_packed_positions(Function&& function) const {
+        LatticeBisection<3>::with_packed_positions<count>([&](const auto& positions) {
+            function([&](const Pack<Node, count>& n) {
+                auto x = positions(n);
+                if (mistake == Mistake::positions) x[2] = x[1];
+                return x;
+            });
+        });
+    }
     using LatticeBisection<3>::whole;
     bool whole(const std::array<Node, 4>& n) const {
         return mistake == Mistake::whole || LatticeBisection<3>::whole(n);
@@ -176,6 +187,7 @@ TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {
     EXPECT_NE(complaint<Mistake::block>().find("of a block"), std::string::npos);
     EXPECT_NE(complaint<Mistake::nodes>().find("pack of nodes"), std::string::npos);
     EXPECT_NE(complaint<Mistake::keys>().find("pack of keys"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::positions>().find("position of a pack"), std::string::npos);
     EXPECT_NE(complaint<Mistake::whole>().find("what is whole"), std::string::npos);
 }
 

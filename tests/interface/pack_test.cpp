@@ -47,9 +47,9 @@ class Packs : public testing::Test {};
 using Numbers = testing::Types<float, double, std::uint32_t, std::uint64_t>;
 TYPED_TEST_SUITE(Packs, Numbers);
 
-TYPED_TEST(Packs, DoWhatIsDoneToOne) {
-    using T = TypeParam;
-    using P = Pack<T>;
+template <class T, std::size_t size>
+void expect_packs_do_what_is_done_to_one() {
+    using P = Pack<T, size>;
     std::mt19937_64 random(1);
     for (int round = 0; round < 1000; ++round) {
         const std::array<T, pack> a = random_numbers<T>(random);
@@ -59,7 +59,7 @@ TYPED_TEST(Packs, DoWhatIsDoneToOne) {
         const P pb = P::load(b.data());
         const auto expect = [&](const auto& result, auto&& of_one) {
             const auto numbers = result.numbers();
-            for (std::size_t i = 0; i < pack; ++i) {
+            for (std::size_t i = 0; i < size; ++i) {
                 EXPECT_EQ(bits_of(numbers[i]), bits_of(of_one(a[i], b[i]))) << i;
             }
         };
@@ -69,7 +69,12 @@ TYPED_TEST(Packs, DoWhatIsDoneToOne) {
         expect(pa + pb, [](T x, T y) { return static_cast<T>(x + y); });
         expect(pa - pb, [](T x, T y) { return static_cast<T>(x - y); });
         expect(at_most(pa, pb), [&](T x, T y) { return x <= y ? all : MaskOf<T>{0}; });
+        const P copy = pa;
+        expect(copy, [](T x, T) { return x; });
         expect(P::all(a[0]), [&](T, T) { return a[0]; });
+        // One of them known to the compiler.
+        expect(min(pa, P::all(1)), [](T x, T) { return std::min(x, T{1}); });
+        expect(max(pa, P::all(1)), [](T x, T) { return std::max(x, T{1}); });
         expect(P::make([&](auto i) { return b[i]; }), [](T, T y) { return y; });
         expect(pa.template as<MaskOf<T>>(), [](T x, T) { return bits_of(x); });
         if constexpr (std::is_integral_v<T>) {
@@ -78,8 +83,20 @@ TYPED_TEST(Packs, DoWhatIsDoneToOne) {
             expect(without(pa, pb), [](T x, T y) { return x & ~y; });
             expect(pa << 5, [](T x, T) { return x << 5U; });
             expect(pa >> 5, [](T x, T) { return x >> 5U; });
+        } else {
+            expect(pa * pb, [](T x, T y) { return x * y; });
+            expect(pa / P::all(3), [](T x, T) { return x / 3; });
+        }
+        if constexpr (std::is_same_v<T, std::uint64_t>) {
+            expect(to_double(pa >> 12), [](T x, T) { return static_cast<double>(x >> 12U); });
         }
     }
+}
+
+TYPED_TEST(Packs, DoWhatIsDoneToOne) {
+    expect_packs_do_what_is_done_to_one<TypeParam, pack>();
+    expect_packs_do_what_is_done_to_one<TypeParam, 4>();
+    expect_packs_do_what_is_done_to_one<TypeParam, 2>();
 }
 
 TEST(WidePoints, AreEqualToPoints) {

@@ -95,10 +95,9 @@ public:
         static constexpr std::array<std::array<std::uint8_t, 6>, 4> order{
             {{0, 1, 2, 2, 3, 0}, {1, 0, 2, 3, 2, 0}, {1, 2, 3, 3, 0, 1}, {2, 1, 3, 0, 3, 1}}};
         const auto& of = order[(other ? 2U : 0U) + four.mirrored % 2U];
-        std::uint16_t* const to = simplex_[four.first_simplex].data();
-        std::array<std::uint16_t, 6> corners;
-        for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = four.cut[of[i]];
-        std::memcpy(to, corners.data(), sizeof(corners));
+        Corners* const to = &simplex_[four.first_simplex];
+        to[0] = {four.cut[of[0]], four.cut[of[1]], four.cut[of[2]]};
+        to[1] = {four.cut[of[3]], four.cut[of[4]], four.cut[of[5]]};
     }
 
 private:

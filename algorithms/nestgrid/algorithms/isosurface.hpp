@@ -108,14 +108,6 @@ struct ContourOwner {
     int level;
 };
 
-/// Where an edge is cut, seen from its lower end.
-inline double cut_fraction(double isovalue, double low, double high) {
-    constexpr double least = 0x1p-20;
-    const double fraction = (isovalue - low) / (high - low);
-    const double raised = fraction < least ? least : fraction;
-    return raised > 1 - least ? 1 - least : raised;
-}
-
 [[noreturn]] inline void throw_too_many_vertices() {
     throw GridError("the surface has 2^32 vertices or more");
 }
@@ -327,9 +319,6 @@ private:
                         std::span<const BatchEdge> cuts, const Number* v);
 
     // isosurface_cuts.hpp
-    template <class Blocks>
-    void find_points(const Blocks& blocks, const Layer& layer, std::span<const BatchEdge> cuts,
-                     WidePoint* to);
     template <class Blocks>
     void find_vertices(const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts,
                        Number* v);

@@ -230,7 +230,7 @@ NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_
     if constexpr (indexed) {
         find_vertices(blocks, layer, run.cuts(), v.data());
     } else {
-        find_points(blocks, layer, run.cuts(), v.data());
+        blocks.cuts(run.cuts(), layer.isovalue, v.data());
     }
     for (const auto& four : run.fours()) {
         const auto x = [&](std::size_t i) -> decltype(auto) {

@@ -9,30 +9,6 @@
 
 namespace nestgrid::detail {
 
-/// Where the cuts lie.
-template <class Grid, class Field, class S, class Indicator, class Sink>
-template <class Blocks>
-NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::find_points(
-    const Blocks& blocks, const Layer& layer, std::span<const BatchEdge> cuts, WidePoint* to) {
-    const double isovalue = layer.isovalue;
-    const auto between = [&](const WidePoint& a, const WidePoint& b) NESTGRID_INLINE_LAMBDA {
-        return a + cut_fraction(isovalue, a.value(), b.value()) * (b - a);
-    };
-    if constexpr (requires { blocks.point(0); }) {
-        for (const auto& [low, high] : cuts) {
-            *to++ = between(blocks.point(low), blocks.point(high));
-        }
-    } else {
-        std::array<WidePoint, 2 * edges_at_once> x;
-        while (!cuts.empty()) {
-            const std::size_t count = std::min(cuts.size(), edges_at_once);
-            blocks.points(cuts.first(count), x.data());
-            for (std::size_t i = 0; i < count; ++i) *to++ = between(x[2 * i], x[2 * i + 1]);
-            cuts = cuts.subspan(count);
-        }
-    }
-}
-
 /// The vertices on the cuts, numbered in their order. Each step is a loop of its own, without a
 /// branch that depends on which of them are known.
 template <class Grid, class Field, class S, class Indicator, class Sink>
@@ -98,7 +74,7 @@ template <class Blocks>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_vertices(
     const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts) {
     std::array<WidePoint, BlockContourRun<Blocks::pattern>::most_cuts> x;
-    find_points(blocks, layer, cuts, x.data());
+    blocks.cuts(cuts, layer.isovalue, x.data());
     layer.vertex_count += static_cast<Number>(cuts.size());
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         if constexpr (logs) {
@@ -120,7 +96,7 @@ template <class Blocks>
 NESTGRID_NOINLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::verify_vertices(
     const Blocks& blocks, const Layer& layer, std::span<const BatchEdge> cuts, const Number* v) {
     std::array<WidePoint, BlockContourRun<Blocks::pattern>::most_cuts> x;
-    find_points(blocks, layer, cuts, x.data());
+    blocks.cuts(cuts, layer.isovalue, x.data());
     for (std::size_t i = 0; i < cuts.size(); ++i) verify(layer, v[i], Point(x[i]));
 }
 

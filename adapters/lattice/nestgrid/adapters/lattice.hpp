@@ -18,6 +18,7 @@
 
 #include <nestgrid/error.hpp>
 #include <nestgrid/operations.hpp>
+#include <nestgrid/pack.hpp>
 
 namespace nestgrid {
 
@@ -88,6 +89,40 @@ public:
             for (std::size_t r = 0; r < 3; ++r) x[r] += geometry_.direction[r][d] * step;
         }
         return x;
+    }
+    /// function(positions), where positions(Pack<Place, count>) are the same of several at once, to
+    /// the last bit (where products and sums are not fused).
+    template <std::size_t count, class Function>
+    NESTGRID_INLINE void with_packed_positions(Function&& function) const {
+        using Numbers = Pack<double, count>;
+        using Places = Pack<Place, count>;
+        const PackedPoint<count> origin = packed<count>(geometry_.origin);
+        const PackedPoint<count> spacing = packed<count>(geometry_.spacing);
+        const auto step = [&](const Places& p, auto d) NESTGRID_INLINE_LAMBDA -> Numbers {
+            constexpr Place coordinate = (Place{1} << bits_) - 1;
+            const auto from = d == 0 ? p : p >> static_cast<int>(bits_ * d);
+            return spacing[d] *
+                   to_double(d + 1 == size_ ? from : from & Places::all(coordinate));
+        };
+        if (aligned_) {
+            function([&](const Places& p) NESTGRID_INLINE_LAMBDA {
+                PackedPoint<count> x = origin;
+                unrolled<size_>([&](auto d) NESTGRID_INLINE_LAMBDA { x[d] = x[d] + step(p, d); });
+                return x;
+            });
+        } else {
+            const auto& row = geometry_.direction;
+            const std::array<PackedPoint<count>, 3> direction{
+                packed<count>(row[0]), packed<count>(row[1]), packed<count>(row[2])};
+            function([&](const Places& p) NESTGRID_INLINE_LAMBDA {
+                PackedPoint<count> x = origin;
+                unrolled<size_>([&](auto d) NESTGRID_INLINE_LAMBDA {
+                    const Numbers along = step(p, d);
+                    for (std::size_t r = 0; r < 3; ++r) x[r] = x[r] + direction[r][d] * along;
+                });
+                return x;
+            });
+        }
     }
     /// Corner k, in tensor order, of the cube with edges of 2^level cells.
     static Place corner_of_box(Place low, unsigned level, std::size_t k) {

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where edges between nodes of a batch of blocks are cut by a level set.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <nestgrid/known_bisection.hpp>
+#include <nestgrid/pack.hpp>
+#include <nestgrid/wide_point.hpp>
+
+namespace nestgrid {
+
+/// Between two places of a batch: U < isovalue at one, U >= isovalue at the other.
+struct BatchEdge {
+    std::uint16_t low;
+    std::uint16_t high;
+};
+
+namespace detail {
+
+template <class Batch>
+NESTGRID_INLINE WidePoint cut_between(const Batch& batch, const BatchEdge& edge, const Point& low,
+                                      const Point& high, double isovalue) {
+    const auto value = [&](std::size_t place) {
+        return static_cast<double>(batch.values.all[place]);
+    };
+    const WidePoint a(low);
+    return a + cut_fraction(isovalue, value(edge.low), value(edge.high)) * (WidePoint(high) - a);
+}
+
+/// \param positions of packs of nodes
+/// \param edges a multiple of doubles_at_once
+template <class Batch, class Positions>
+NESTGRID_INLINE void cut_in_packs(const Batch& batch, const Positions& positions,
+                                  std::span<const BatchEdge> edges, double isovalue,
+                                  WidePoint* to) {
+    using Numbers = Pack<double, doubles_at_once>;
+    using Nodes = Pack<typename Batch::Node, doubles_at_once>;
+    const auto value = Numbers::all(isovalue);
+    const auto least = Numbers::all(least_cut_fraction);
+    const auto most = Numbers::all(1 - least_cut_fraction);
+    for (const BatchEdge* edge = edges.data(); edge != edges.data() + edges.size();
+         edge += doubles_at_once, to += doubles_at_once) {
+        const auto values = [&](auto end) NESTGRID_INLINE_LAMBDA {
+            return Numbers::make([&](auto i) NESTGRID_INLINE_LAMBDA {
+                return static_cast<double>(batch.values.all[edge[i].*end]);
+            });
+        };
+        const auto ends = [&](auto end) NESTGRID_INLINE_LAMBDA {
+            return positions(Nodes::make([&](auto i) NESTGRID_INLINE_LAMBDA {
+                return batch.nodes.all[edge[i].*end];
+            }));
+        };
+        const Numbers fraction = cut_fraction(value, values(&BatchEdge::low),
+                                              values(&BatchEdge::high), least, most);
+        const auto low = ends(&BatchEdge::low);
+        const auto high = ends(&BatchEdge::high);
+        PackedPoint<doubles_at_once> x;
+        for (std::size_t d = 0; d < 3; ++d) x[d] = low[d] + fraction * (high[d] - low[d]);
+        unrolled<doubles_at_once>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            to[i] = WidePoint({x[0].template number<i>(), x[1].template number<i>(),
+                               x[2].template number<i>()});
+        });
+    }
+}
+
+template <class Batch>
+void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, double isovalue,
+                 WidePoint* to) {
+    constexpr std::size_t at_once = 128;
+    std::array<typename Batch::Node, 2 * at_once> of{};
+    std::array<Point, 2 * at_once> x;
+    while (!edges.empty()) {
+        const std::size_t count = std::min(edges.size(), at_once);
+        for (std::size_t i = 0; i < count; ++i) {
+            of[2 * i] = batch.nodes.all[edges[i].low];
+            of[2 * i + 1] = batch.nodes.all[edges[i].high];
+        }
+        batch.grid->positions(std::span(of).first(2 * count), std::span(x).first(2 * count));
+        for (std::size_t i = 0; i < count; ++i) {
+            *to++ = cut_between(batch, edges[i], x[2 * i], x[2 * i + 1], isovalue);
+        }
+        edges = edges.subspan(count);
+    }
+}
+
+}  // namespace detail
+
+/// Where edges are cut; the same bits however the grid is asked.
+/// \param to as many
+template <class Batch>
+void cut_edges(const Batch& batch, std::span<const BatchEdge> edges, double isovalue,
+               WidePoint* to) {
+    using Grid = std::remove_cvref_t<decltype(*batch.grid)>;
+    if constexpr (PacksPositions<Grid>) {
+        const std::size_t rest = edges.size() % doubles_at_once;
+        const auto whole = edges.first(edges.size() - rest);
+        std::array<BatchEdge, doubles_at_once> last;
+        std::array<WidePoint, doubles_at_once> x;
+        for (std::size_t i = 0; i < rest; ++i) last[i] = edges[whole.size() + i];
+        batch.grid->template with_packed_positions<doubles_at_once>([&](const auto& positions) {
+            detail::cut_in_packs(batch, positions, whole, isovalue, to);
+            if (rest == 0) return;
+            std::fill(last.begin() + rest, last.end(), last[0]);
+            detail::cut_in_packs(batch, positions, last, isovalue, x.data());
+            std::copy_n(x.begin(), rest, to + whole.size());
+        });
+    } else if constexpr (AnswersInRows<Grid>) {
+        detail::cut_in_rows(batch, edges, isovalue, to);
+    } else {
+        for (const BatchEdge& edge : edges) {
+            *to++ = detail::cut_between(batch, edge, batch.position(edge.low),
+                                        batch.position(edge.high), isovalue);
+        }
+    }
+}
+
+}  // namespace nestgrid
