@@ -52,19 +52,18 @@ NESTGRID_INLINE void cut_in_packs(const Batch& batch, const Positions& positions
             });
         };
         const auto ends = [&](auto end) NESTGRID_INLINE_LAMBDA {
-            return positions(Nodes::make([&](auto i) NESTGRID_INLINE_LAMBDA {
-                return batch.nodes.all[edge[i].*end];
-            }));
+            return positions(Nodes::make(
+                [&](auto i) NESTGRID_INLINE_LAMBDA { return batch.nodes.all[edge[i].*end]; }));
         };
-        const Numbers fraction = cut_fraction(value, values(&BatchEdge::low),
-                                              values(&BatchEdge::high), least, most);
+        const Numbers fraction =
+            cut_fraction(value, values(&BatchEdge::low), values(&BatchEdge::high), least, most);
         const auto low = ends(&BatchEdge::low);
         const auto high = ends(&BatchEdge::high);
         PackedPoint<doubles_at_once> x;
         for (std::size_t d = 0; d < 3; ++d) x[d] = low[d] + fraction * (high[d] - low[d]);
         unrolled<doubles_at_once>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            to[i] = WidePoint({x[0].template number<i>(), x[1].template number<i>(),
-                               x[2].template number<i>()});
+            to[i] = WidePoint(
+                {x[0].template number<i>(), x[1].template number<i>(), x[2].template number<i>()});
         });
     }
 }

@@ -11,8 +11,8 @@
 
 namespace nestgrid {
 
-/// The results are those of the same operations on a Point, to the last bit, where the compiler does
-/// not fuse products and sums (-ffp-contract=off, or a machine that cannot).
+/// The results are those of the same operations on a Point, to the last bit, where the compiler
+/// does not fuse products and sums (-ffp-contract=off, or a machine that cannot).
 class WidePoint {
 public:
     WidePoint() = default;
@@ -51,9 +51,7 @@ private:
     friend WidePoint operator+(const WidePoint& a, const WidePoint& b) {
         return WidePoint(a.x_ + b.x_);
     }
-    friend WidePoint operator*(double s, const WidePoint& a) {
-        return WidePoint(s * a.x_);
-    }
+    friend WidePoint operator*(double s, const WidePoint& a) { return WidePoint(s * a.x_); }
     friend double dot(const WidePoint& a, const WidePoint& b) { return dot(a.x_, b.x_); }
 
 private:

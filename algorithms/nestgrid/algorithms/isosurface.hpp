@@ -23,7 +23,7 @@
 #include <memory>
 #include <mutex>
 
-#include <nestgrid/algorithms/block_contour_run.hpp>
+#include <nestgrid/algorithms/block_drawing.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/frontier.hpp>
@@ -94,23 +94,12 @@ concept IndexedSink = !requires {
     requires !Sink::indexed;
 };
 
-/// Whether to tell a sink of the elements its simplices come from.
-template <class Sink>
-bool keeps_elements(const Sink& sink) {
-    if constexpr (requires { sink.keeps_elements(); }) return sink.keeps_elements();
-    return true;
-}
-
 template <class Grid>
 struct ContourOwner {
     ElementOf<Grid> element;
     Shape shape;
     int level;
 };
-
-[[noreturn]] inline void throw_too_many_vertices() {
-    throw GridError("the surface has 2^32 vertices or more");
-}
 
 /// Draws the level sets of several isovalues in one traversal; each has a sink of its own.
 template <class Grid, class Field, class S, class Indicator, class Sink>
@@ -130,6 +119,7 @@ public:
     };
     static constexpr std::size_t attribute_count = State::components - 1;
     using Number = std::uint32_t;
+    using Element = ElementOf<Grid>;
     using Cut = SurfaceCut<attribute_count>;
     static constexpr bool logs = requires { requires Sink::logs; };
     static constexpr bool in_parts = !indexed && SinkInParts<Sink>;
@@ -216,6 +206,8 @@ public:
 
 private:
     friend class ContourFilling<IsosurfaceVisitor>;
+    template <class, class>
+    friend class BlockDrawing;
     template <class, class, class, class, class>
     friend class IsosurfaceVisitor;
 
@@ -277,56 +269,6 @@ private:
 
     // isosurface_bisections.hpp
     bool knows_bisections_of_grid() const;
-    template <class Blocks>
-    void set_signs(const Blocks& blocks, const BatchSelection& selection, Layer& layer);
-    using BlockVertex = std::conditional_t<indexed, Number, WidePoint>;
-    struct CutEntry {
-        const BlockContours::Front* front;
-        const BlockContours::Contour* contour;
-        std::uint16_t first_cut;
-        std::uint16_t id;  // in the batch
-    };
-    struct CutList {  // what a level passes through
-        std::size_t count = 0;
-        std::array<CutEntry, 3 * most_blocks + 1> entry;  // of blocks each half
-
-        std::span<const CutEntry> entries() const { return {entry.data(), count}; }
-    };
-    template <class Blocks>
-    void draw_list(const Blocks& blocks, const BatchSelection& selection, Layer& layer,
-                   const BlockContours& contours, CutList& list);
-    template <class Blocks>
-    static unsigned parts_meant(const Blocks& blocks, const BatchSelection& selection,
-                                std::size_t id);
-    template <class Blocks, class Function>
-    void for_each_part(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
-                       const CutEntry& entry, Function&& function) const;
-    template <class Blocks>
-    void raise_error_bound(const Blocks& blocks, Layer& layer, std::size_t id,
-                           unsigned parts) const;
-    template <class Corners>
-    void put_simplices(Layer& layer, std::span<const BlockVertex> v,
-                       std::span<const Corners> all);
-    using Extracted = ExtractedElement<ElementOf<Grid>>;
-    template <class Corners>
-    void put_extracted(Layer& layer, std::span<const Extracted> elements,
-                       std::span<const BlockVertex> v, std::span<const Corners> all);
-    template <class Corners>
-    void put_simplex(Layer& layer, std::span<const BlockVertex> v, const Corners& corners);
-    template <class Blocks>
-    void put_boundaries(const Blocks& blocks, const BatchSelection& selection, const Layer& layer,
-                        const BlockContours& contours, const CutList& list,
-                        std::span<const BatchEdge> cuts, const Number* v);
-
-    // isosurface_cuts.hpp
-    template <class Blocks>
-    void find_vertices(const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts,
-                       Number* v);
-    template <class Blocks>
-    void add_vertices(const Blocks& blocks, Layer& layer, std::span<const BatchEdge> cuts);
-    template <class Blocks>
-    void verify_vertices(const Blocks& blocks, const Layer& layer,
-                         std::span<const BatchEdge> cuts, const Number* v);
 
     // isosurface_plain.hpp
     const ContourTable& contours_of(Shape shape);
@@ -386,6 +328,7 @@ private:
     void simplex(const std::array<Number, static_cast<std::size_t>(dimension)>& locals);
     void put_simplex(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
                      std::span<const Point> reference);
+    void add_area(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v);
     void add_boundary(const std::array<Number, static_cast<std::size_t>(dimension - 1)>& locals);
 
     // isosurface_normals.hpp

@@ -327,4 +327,3 @@ NESTGRID_VISITOR::draw(const State& s, unsigned pattern, unsigned joins) -> void
 #include <nestgrid/algorithms/isosurface_vertices.hpp>
 #include <nestgrid/algorithms/isosurface_plain.hpp>
 #include <nestgrid/algorithms/isosurface_bisections.hpp>
-#include <nestgrid/algorithms/isosurface_cuts.hpp>

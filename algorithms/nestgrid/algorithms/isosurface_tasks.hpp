@@ -150,44 +150,37 @@ NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
         void element(const typename Log::Owner& e) {
             to->layer_->sink.add_element(e.element, e.shape, e.level);
         }
-        void simplex(const typename Log::Simplex& corners, std::span<const Point> reference) {
-            std::array<Vertex, static_cast<std::size_t>(dimension)> v;
-            for (std::size_t k = 0; k < v.size(); ++k) {
-                if constexpr (indexed) {
-                    v[k] = known[corners[k]];
-                } else {
-                    v[k] = points[corners[k]];
-                }
+        std::span<const Vertex> all_vertices() const {
+            if constexpr (indexed) {
+                return known;
+            } else {
+                return points;
             }
+        }
+        std::array<Vertex, static_cast<std::size_t>(dimension)> vertices_of(
+            const typename Log::Simplex& corners) const {
+            std::array<Vertex, static_cast<std::size_t>(dimension)> v;
+            for (std::size_t k = 0; k < v.size(); ++k) v[k] = all_vertices()[corners[k]];
+            return v;
+        }
+        void simplex(const typename Log::Simplex& corners, std::span<const Point> reference) {
             to->count_simplices(1);
-            to->put_simplex(v, reference);
+            to->put_simplex(vertices_of(corners), reference);
         }
         void simplices(std::span<const typename Log::Simplex> all) {
-            Sink& sink = to->layer_->sink;
-            const std::span<const Vertex> of(known);
-            if constexpr (indexed && requires { sink.add_simplices(of, all); }) {
-                if (!to->options_->normals) {
-                    to->count_simplices(all.size());
-                    return sink.add_simplices(of, all);
-                }
-            }
-            for (const auto& corners : all) simplex(corners, {});
+            to->count_simplices(all.size());
+            put_simplices<dimension>(to->layer_->sink, all_vertices(), all);
+            add_areas(all);
         }
         void extracted(std::span<const typename Log::Owner> elements,
                        std::span<const typename Log::Simplex> all) {
-            Sink& sink = to->layer_->sink;
-            const std::span<const Vertex> of(known);
-            if constexpr (indexed && requires { sink.add_extracted(elements, of, all); }) {
-                if (!to->options_->normals) {
-                    to->count_simplices(all.size());
-                    return sink.add_extracted(elements, of, all);
-                }
-            }
-            for (const auto& e : elements) {
-                element(e);
-                for (const auto& corners : all.first(e.simplices)) simplex(corners, {});
-                all = all.subspan(e.simplices);
-            }
+            to->count_simplices(all.size());
+            put_extracted<dimension>(to->layer_->sink, elements, all_vertices(), all);
+            add_areas(all);
+        }
+        void add_areas(std::span<const typename Log::Simplex> all) {
+            if (!to->options_->normals) return;
+            for (const auto& corners : all) to->add_area(vertices_of(corners));
         }
         void boundary(typename Log::Ridge corners) {
             if constexpr (indexed) {

@@ -274,13 +274,16 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_sim
     const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
     std::span<const Point> reference) {
     layer_->sink.add_simplex(v, reference);
+    if (options_->normals) add_area(v);
+}
+
+/// For normals.
+NESTGRID_VISITOR::add_area(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v)
+    -> void {
     if constexpr (indexed && !logs && dimension == 3) {
-        if (options_->normals) {
-            const Point x = layer_->sink.position(v[0]);
-            const Point n =
-                cross(layer_->sink.position(v[1]) - x, layer_->sink.position(v[2]) - x);
-            for (const Number i : v) layer_->where[i].around = layer_->where[i].around + n;
-        }
+        const Point x = layer_->sink.position(v[0]);
+        const Point n = cross(layer_->sink.position(v[1]) - x, layer_->sink.position(v[2]) - x);
+        for (const Number i : v) layer_->where[i].around = layer_->where[i].around + n;
     }
 }
 

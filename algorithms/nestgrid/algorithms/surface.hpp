@@ -100,6 +100,45 @@ struct ExtractedElement {
 
 namespace detail {
 
+/// Whether to tell a sink of the elements its simplices come from.
+template <class Sink>
+bool keeps_elements(const Sink& sink) {
+    if constexpr (requires { sink.keeps_elements(); }) return sink.keeps_elements();
+    return true;
+}
+
+/// Puts simplices into a sink whose corners are some of these vertices: numbers where it is
+/// indexed, else points.
+template <int dimension, class Sink, class Vertex, class Corners>
+NESTGRID_INLINE void put_simplices(Sink& sink, std::span<const Vertex> v,
+                                   std::span<const Corners> all) {
+    if constexpr (requires { sink.add_simplices(v, all); }) {
+        sink.add_simplices(v, all);
+    } else {
+        using Corner = std::conditional_t<std::is_same_v<Vertex, WidePoint>, Point, Vertex>;
+        for (const Corners& corners : all) {
+            std::array<Corner, static_cast<std::size_t>(dimension)> simplex;
+            for (std::size_t k = 0; k < simplex.size(); ++k) simplex[k] = Corner(v[corners[k]]);
+            sink.add_simplex(simplex, {});
+        }
+    }
+}
+
+/// The same with the elements they come from.
+template <int dimension, class Sink, class Extracted, class Vertex, class Corners>
+NESTGRID_INLINE void put_extracted(Sink& sink, std::span<const Extracted> elements,
+                                   std::span<const Vertex> v, std::span<const Corners> all) {
+    if constexpr (requires { sink.add_extracted(elements, v, all); }) {
+        sink.add_extracted(elements, v, all);
+    } else {
+        for (const Extracted& e : elements) {
+            sink.add_element(e.element, e.shape, e.level);
+            put_simplices<dimension>(sink, v, all.first(e.simplices));
+            all = all.subspan(e.simplices);
+        }
+    }
+}
+
 /// Simplices whose corners are some of these vertices, behind others.
 template <class Corners, std::size_t size>
 void append_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all,

@@ -13,10 +13,15 @@
 #include <utility>
 #include <vector>
 
+#include <nestgrid/error.hpp>
 #include <nestgrid/inlining.hpp>
 #include <nestgrid/key_table.hpp>
 
 namespace nestgrid {
+
+[[noreturn]] inline void throw_too_many_vertices() {
+    throw GridError("the surface has 2^32 vertices or more");
+}
 
 class VertexNumbers {
 public:

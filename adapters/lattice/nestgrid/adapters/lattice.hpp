@@ -101,8 +101,7 @@ public:
         const auto step = [&](const Places& p, auto d) NESTGRID_INLINE_LAMBDA -> Numbers {
             constexpr Place coordinate = (Place{1} << bits_) - 1;
             const auto from = d == 0 ? p : p >> static_cast<int>(bits_ * d);
-            return spacing[d] *
-                   to_double(d + 1 == size_ ? from : from & Places::all(coordinate));
+            return spacing[d] * to_double(d + 1 == size_ ? from : from & Places::all(coordinate));
         };
         if (aligned_) {
             function([&](const Places& p) NESTGRID_INLINE_LAMBDA {
