@@ -181,13 +181,13 @@ void Rewrite<Family>::unpack(Marker& marker) {
 template <class Family>
 template <class Marker>
 void Rewrite<Family>::unpack(const Element& e, std::uint32_t place, Marker& marker) {
-    const unsigned code = grid_.code_of(e);
+    const unsigned code = grid_.code_of(e.place);
     const int level = tree_.elements[place].level;
     if (code == 0) {
         tree_.elements[place].mark = ask(e, tree_.elements[place].shape, level, marker);
         return;
     }
-    const std::uint16_t number = table_[code].inner[e.inner].rule;
+    const std::uint16_t number = table_[code].inner[e.place.inner].rule;
     const StoredRule& stored = table_.rule(number);
     const Rule& rule = *stored.rule;
     typename Grid::Context context;

@@ -83,22 +83,25 @@ public:
     static constexpr int max_children = Family::max_children;
     static constexpr Shape only_shape = detail::only_shape<Family>();
 
-    struct Element {
-        std::array<std::uint32_t, static_cast<std::size_t>(Family::max_corners)> corner;
+    /// Where an element stands in the store.
+    struct Place {
         std::uint32_t record;   ///< where the pattern of the refined element stands, or none_
         std::uint16_t pattern;  ///< that this record belongs to
         std::uint8_t exit;      ///< of that pattern, which is the refined element
         std::uint8_t inner;     ///< element inside the pattern that refines it
+
+        friend bool operator==(const Place&, const Place&) = default;
+    };
+    struct Element {
+        std::array<std::uint32_t, static_cast<std::size_t>(Family::max_corners)> corner;
+        Place place;
     };
 
     /// New nodes of the element that was asked about last: one operation after the other wants
     /// them. Of the grid as it is: adapt() and renumber() make it void.
     class Context {
         friend StoredGrid;
-        std::uint32_t record_ = none_;
-        std::uint16_t pattern_ = 0;
-        std::uint8_t exit_ = 0;
-        std::uint8_t inner_ = 0;
+        Place place_{none_, 0, 0, 0};
         std::uint32_t count_ = 0;
         std::array<std::uint32_t, static_cast<std::size_t>(Family::max_new_nodes)> node_;
     };
@@ -113,9 +116,9 @@ public:
     std::size_t coarse_count() const { return coarse_.element_count(); }
     CoarseElement<Element> coarse(std::size_t i) const;
     const Rule* split(const Element& e) const {
-        const unsigned code = code_of(e);
+        const unsigned code = code_of(e.place);
         if (code == 0) return nullptr;
-        return table_.rule(table_[code].inner[e.inner].rule).rule.get();
+        return table_.rule(table_[code].inner[e.place.inner].rule).rule.get();
     }
     void children(const Element& e, std::span<Element> out, Context& context) const;
 
@@ -130,7 +133,7 @@ public:
     bool conforming() const requires(Family::conforming) { return true; }
     NodeMask constrained(const Element& e, Context& context) const requires(!Family::conforming) {
         NodeMask mask = 0;
-        if (code_of(e) == 0 || hanging_.empty()) return mask;
+        if (code_of(e.place) == 0 || hanging_.empty()) return mask;
         const std::span<const std::uint32_t> nodes = new_nodes(e, context);
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             mask |= NodeMask{hanging_[nodes[k] / 32] >> (nodes[k] % 32) & 1U} << k;
@@ -199,16 +202,16 @@ private:
     unsigned raw_code(std::uint32_t record, unsigned exit) const {
         return words_[record + exit / 2] >> (exit % 2 * 16) & 0xFFFFU;
     }
-    unsigned code_of(const Element& e) const {
-        return e.record == none_ ? 0 : raw_code(e.record, e.exit) & ~has_record_;
+    unsigned code_of(const Place& place) const {
+        return place.record == none_ ? 0 : raw_code(place.record, place.exit) & ~has_record_;
     }
     /// How many of the two codes in a word have a record.
     static std::size_t records_in(std::uint32_t codes) {
         return (codes >> 15U & 1U) + (codes >> 31U);
     }
-    Record record(const Element& e) const {
-        const Pattern& p = table_[e.pattern];
-        const std::uint32_t* at = words_.data() + e.record;
+    Record record(const Place& place) const {
+        const Pattern& p = table_[place.pattern];
+        const std::uint32_t* at = words_.data() + place.record;
         Record r{at, at + p.code_words(), nullptr, nullptr};
         r.links = r.mask + p.mask_words();
         r.references = r.links;
@@ -217,14 +220,14 @@ private:
         }
         return r;
     }
-    std::uint32_t link(const Element& e) const {
-        if ((raw_code(e.record, e.exit) & has_record_) == 0) return none_;
-        const Record r = record(e);
+    std::uint32_t link(const Place& place) const {
+        if ((raw_code(place.record, place.exit) & has_record_) == 0) return none_;
+        const Record r = record(place);
         std::size_t before = 0;
-        for (std::size_t i = 0; i < e.exit / 2U; ++i) {
+        for (std::size_t i = 0; i < place.exit / 2U; ++i) {
             before += records_in(r.codes[i]);
         }
-        if (e.exit % 2 == 1 && (r.codes[e.exit / 2] & 0x8000U) != 0) ++before;
+        if (place.exit % 2 == 1 && (r.codes[place.exit / 2] & 0x8000U) != 0) ++before;
         return r.links[before];
     }
 

@@ -33,9 +33,7 @@ auto StoredGrid<Family>::coarse(std::size_t i) const -> CoarseElement<Element> {
         c.corners[k] = coarse_.nodes[nodes[k]];
         c.ids[k] = c.element.corner[k] = nodes[k];
     }
-    c.element.record = root_[i];
-    c.element.pattern = static_cast<std::uint16_t>(c.shape);
-    c.element.exit = c.element.inner = 0;
+    c.element.place = {root_[i], static_cast<std::uint16_t>(c.shape), 0, 0};
     return c;
 }
 
@@ -57,14 +55,12 @@ constexpr std::uint32_t count_ones(std::uint32_t x) {
 template <class Family>
 std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
                                                              Context& context) const {
-    if (context.record_ == e.record && context.pattern_ == e.pattern && context.exit_ == e.exit &&
-        context.inner_ == e.inner) {
-        return {context.node_.data(), context.count_};
-    }
-    const Record r = record(e);
-    const Pattern& pattern = table_[e.pattern];
-    const auto& entity_of_exit = pattern.exits[e.exit].entity;
-    const Pattern::Inner& inner = table_[code_of(e)].inner[e.inner];
+    const Place& place = e.place;
+    if (context.place_ == place) return {context.node_.data(), context.count_};
+    const Record r = record(place);
+    const Pattern& pattern = table_[place.pattern];
+    const auto& entity_of_exit = pattern.exits[place.exit].entity;
+    const Pattern::Inner& inner = table_[code_of(place)].inner[place.inner];
     std::array<std::uint32_t, max_entities / 32> before;  // each word of the mask
     std::uint32_t sum = 0;
     for (std::size_t i = 0; i < pattern.mask_words(); ++i) {
@@ -77,10 +73,7 @@ std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
         const std::uint32_t lower = r.mask[entity / 32] & ((1U << entity % 32) - 1U);
         context.node_[k] = r.references[before[entity / 32] + detail::count_ones(lower)];
     }
-    context.record_ = e.record;
-    context.pattern_ = e.pattern;
-    context.exit_ = e.exit;
-    context.inner_ = e.inner;
+    context.place_ = place;
     context.count_ = static_cast<std::uint32_t>(count);
     return {context.node_.data(), count};
 }
@@ -88,14 +81,14 @@ std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
 template <class Family>
 void StoredGrid<Family>::children(const Element& e, std::span<Element> out,
                                   Context& context) const {
-    const unsigned code = code_of(e);
-    const Pattern::Inner& inner = table_[code].inner[e.inner];
+    const unsigned code = code_of(e.place);
+    const Pattern::Inner& inner = table_[code].inner[e.place.inner];
     const Rule& rule = *table_.rule(inner.rule).rule;
     std::array<std::uint32_t, static_cast<std::size_t>(max_corners + max_new_nodes)> node;
     const auto corners = static_cast<std::size_t>(rule.corner_count());
     std::copy_n(e.corner.begin(), corners, node.begin());
     std::ranges::copy(new_nodes(e, context), node.begin() + rule.corner_count());
-    const std::uint32_t below = link(e);
+    const std::uint32_t below = link(e.place);
     for (std::size_t c = 0; c < out.size(); ++c) {
         const Child& child = rule.children[c];
         Element& o = out[c];
@@ -103,17 +96,8 @@ void StoredGrid<Family>::children(const Element& e, std::span<Element> out,
             o.corner[i] = node[child.corner[i]];
         }
         const Pattern::Target target = inner.child[c];
-        if (target.exit) {
-            o.record = below;
-            o.pattern = static_cast<std::uint16_t>(code);
-            o.exit = target.number;
-            o.inner = 0;
-        } else {
-            o.record = e.record;
-            o.pattern = e.pattern;
-            o.exit = e.exit;
-            o.inner = target.number;
-        }
+        o.place = target.exit ? Place{below, static_cast<std::uint16_t>(code), target.number, 0}
+                              : Place{e.place.record, e.place.pattern, e.place.exit, target.number};
     }
 }
 
