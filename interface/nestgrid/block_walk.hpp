@@ -11,7 +11,6 @@
 #pragma once
 
 #include <cstring>
-#include <tuple>
 
 #include <nestgrid/block_batch.hpp>
 
@@ -102,6 +101,11 @@ private:
         std::array<Stopped, stopped_room_ + 1> stopped;
         std::size_t stopped_count = 0;
         std::size_t taken = 0;  // of them
+
+        /// The block that the next of them comes before, if any.
+        std::size_t stopped_before() const {
+            return taken < stopped_count ? stopped[taken].before : ~std::size_t{0};
+        }
     };
     /// Parts of blocks.
     struct Parts {
@@ -120,7 +124,9 @@ private:
     /// In the order of the traversal: ends, which are split, and what stops.
     struct Steps : Parts {
         using Parts::room;
-        Parts end;  // the ends alone, and of those:
+        std::array<Row<Real>, ends_> least;  // of the values at the corners of each end
+        std::array<Row<Real>, ends_> greatest;
+        Parts end;  // the ends that are reached, and of those:
         alignas(64) std::array<Real, room + 1> lo;
         alignas(64) std::array<Real, room + 1> hi;
         alignas(64) std::array<NodeKey, room + 1> node;
@@ -161,11 +167,19 @@ private:
         return block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |
                                                                batch.stops[b] << (ends_ - 2))];
     }
-    NESTGRID_INLINE static std::pair<Real, Real> range_within(const Batch& batch, std::size_t b,
-                                                              std::size_t part) {
-        const auto& corner = pattern_.part[part].corner;
-        return range_of<Real>({batch.values[corner[0]][b], batch.values[corner[1]][b],
-                               batch.values[corner[2]][b], batch.values[corner[3]][b]});
+    struct PackedRange {
+        Pack<Real> lo;
+        Pack<Real> hi;
+    };
+    /// Of the values at the corners of a part of eight blocks.
+    template <std::size_t part>
+    NESTGRID_INLINE static PackedRange range_within(const Batch& batch, std::size_t first) {
+        constexpr auto corner = pattern_.part[part].corner;
+        const auto value = [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
+            return Pack<Real>::load(batch.values[corner[i]] + first);
+        };
+        const Pack<Real> u0 = value(0), u1 = value(1), u2 = value(2), u3 = value(3);
+        return {min(min(u0, u1), min(u2, u3)), max(max(u0, u1), max(u2, u3))};
     }
     /// \return whether there is no room for another
     static bool put(const Stopped& element, Queue& next);
@@ -181,7 +195,7 @@ private:
     /// Calls function(const Stopped&) for those up to a block that were not taken yet.
     template <class Function>
     static void take_stopped(Queue& batch, std::size_t block, Function&& function) {
-        while (batch.taken < batch.stopped_count && batch.stopped[batch.taken].before <= block) {
+        while (batch.stopped_before() <= block) {
             function(batch.stopped[batch.taken++]);
         }
     }

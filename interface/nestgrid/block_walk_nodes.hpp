@@ -65,8 +65,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
                   NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
                       return grid_->middle_key(a, b);
                   });
-        expect(batch.keys[at] + first);
     });
+    each_new_node([&](auto at, std::size_t first)
+                      NESTGRID_INLINE_LAMBDA { expect(batch.keys[at] + first); });
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
         Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
             return field_->template value_at<!TellsWhereWhole<Grid>>(batch.nodes[at][first + b],

@@ -58,13 +58,17 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     std::uint64_t descended = batch.count;
     std::array<bool, room_> split;  // the ends of each
     look_whether_split(batch, split);
-    for (std::size_t b = 0; b < batch.count; ++b) {
+    const std::size_t count = batch.count;
+    for (std::size_t b = 0; b < count; ++b) {
         const auto& reached = pattern_.reached[static_cast<std::size_t>(batch.entered[b])];
-        batch.entered[b] &= reached.interior;
-        batch.stops[b] &= reached.interior;
+        const MaskOf<Real> entered = batch.entered[b] & reached.interior;
+        const MaskOf<Real> stops = batch.stops[b] & reached.interior;
+        batch.entered[b] = entered;
+        batch.stops[b] = stops;
         batch.ends[b] = reached.ends;
-        batch.undivided[b] = static_cast<std::uint8_t>(
-            batch.stops[b] == 0 ? 0U : ~static_cast<unsigned>(batch.entered[b]) & interior_);
+        const unsigned any = stops != 0 ? ~0U : 0U;
+        batch.undivided[b] =
+            static_cast<std::uint8_t>(~static_cast<unsigned>(entered) & interior_ & any);
         descended += reached.descended;
     }
     count_->bisect(descended, *visitor_);
@@ -104,14 +108,10 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) 
         auto greatest = Pack<Real>::all(0);
         unrolled<ends_ - 2>([&](auto i) NESTGRID_INLINE_LAMBDA {
             constexpr auto part = pattern_.part[i + 2];
-            const auto value = [&](std::size_t corner) NESTGRID_INLINE_LAMBDA {
-                return Pack<Real>::load(batch.values[part.corner[corner]] + first);
-            };
-            const Pack<Real> u0 = value(0), u1 = value(1), u2 = value(2), u3 = value(3);
+            const auto [lo, hi] = range_within<i + 2>(batch, first);
             const PackedGlance<Real> glance = visitor_->glance(
                 PackedElements<Real>{grid_->rule(part.bisection), batch.level + part.depth,
-                                     batch.keys[part.middle] + first, min(min(u0, u1), min(u2, u3)),
-                                     max(max(u0, u1), max(u2, u3))});
+                                     batch.keys[part.middle] + first, lo, hi});
             const auto bit = Bits::all(MaskOf<Real>{1} << i);
             descend = descend | (glance.descend & bit);
             stop = stop | (glance.stop & bit);
@@ -135,7 +135,7 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_blocks(Queue& ba
                                                                        bool are_leaves) {
     BatchSelection selection;
     selection.ends_are_leaves = are_leaves;
-    if (batch.taken == batch.stopped_count || batch.stopped[batch.taken].before >= end) {
+    if (batch.stopped_before() >= end) {
         selection.add_blocks(first, end);
     } else {
         for (std::size_t b = first; b < end; ++b) {
@@ -193,11 +193,15 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
         if (put(element, next)) finish_next();
     };
     std::size_t next_end = 0;
+    std::size_t due = batch.stopped_before();
     // No branch here depends on what was seen: both are written, and counted where they are so.
     for (std::size_t i = 0; i < steps.count; ++i) {
         const std::size_t b = steps.block[i];
         const std::size_t part = steps.part[i];
-        take_stopped(batch, b, put_stopped);
+        if (due <= b) {
+            take_stopped(batch, b, put_stopped);
+            due = batch.stopped_before();
+        }
         if (next.count == room_) finish_next();
         const bool is_end = part >= ends_;
         const MaskOf<Real> ended = is_end ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
@@ -222,6 +226,13 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Queue& batch, std::size_t first,
                                                            std::size_t end, Steps& steps) const {
+    for (std::size_t b = first / pack * pack; b < end; b += pack) {
+        unrolled<ends_>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const auto [lo, hi] = range_within<ends_ + i>(batch, b);
+            lo.store(steps.least[i].data() + b);
+            hi.store(steps.greatest[i].data() + b);
+        });
+    }
     for (std::size_t b = first; b < end; ++b) {
         steps.append(order_of(batch, b), b);
         steps.end.append(block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b])], b);
@@ -230,7 +241,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Queue& batch, s
         const std::size_t b = steps.end.block[i];
         const std::size_t part = steps.end.part[i];
         const auto& parent = parent_of_new_[part];
-        std::tie(steps.lo[i], steps.hi[i]) = range_within(batch, b, part);
+        steps.lo[i] = steps.least[part - ends_][b];
+        steps.hi[i] = steps.greatest[part - ends_][b];
         if constexpr (AnswersInRows<Grid>) {
             steps.from[i] = batch.nodes[parent[0]][b];
             steps.to[i] = batch.nodes[parent[1]][b];
@@ -310,9 +322,7 @@ bool BlockWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
 /// Walks what was gathered.
 template <class Grid, class Field, class Visitor>
 void BlockWalk<Grid, Field, Visitor>::finish(Queue& next) {
-    if (next.taken < next.stopped_count && next.stopped[next.taken].before == 0) {
-        extract_first_stopped(next);
-    }
+    if (next.stopped_before() == 0) extract_first_stopped(next);
     if (next.count > 0) walk(next);
     next.count = 0;
     next.stopped_count = 0;

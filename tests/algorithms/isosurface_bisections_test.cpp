@@ -403,7 +403,7 @@ TEST(KnownBisections, AskForEightNodesWhatTheyAskForOne) {
             for (std::size_t i = 0; i < pack; ++i) nodes[i] = first + i;
             for (const HierarchicalIndicator* by : {&indicator, &another}) {
                 const auto known = by->look_up(nodes.data());
-                const auto holds = criterion.holds(nodes.data(), *by, known).numbers();
+                const auto holds = criterion.packed().holds(nodes.data(), *by, known).numbers();
                 for (std::size_t i = 0; i < pack; ++i) {
                     const std::span<const NodeKey> one(&nodes[i], 1);
                     const NodeMask mask = criterion({grid.rule(0), one, 1, 0});

@@ -66,7 +66,8 @@ public:
         }
         /// In the order of the parts; of a mirror behind those that are not.
         NESTGRID_INLINE const Corners* simplices(const Contour& c, bool mirrored) const {
-            return simplices_.data() + c.first_simplex + (mirrored ? c.simplex_count : 0U);
+            // No branch, for no processor would predict it.
+            return simplices_.data() + c.first_simplex + (c.simplex_count & (mirrored ? ~0U : 0U));
         }
         NESTGRID_INLINE const Four* fours(const Contour& c) const {
             return fours_.data() + c.first_four;

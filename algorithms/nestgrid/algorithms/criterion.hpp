@@ -50,16 +50,22 @@ struct Threshold {
         }
         return mask & ~nodes.outside;
     }
-    /// At which of eight nodes, none of them outside.
-    /// \param known what `by` knows of them
-    template <class Known>
-        requires std::same_as<decltype(std::declval<Known>().stop()), Pack<float>>
-    NESTGRID_INLINE Pack<std::uint32_t> holds(const NodeKey* nodes, const Indicator& by,
-                                              const Known& known) const {
-        const Pack<float> stop =
-            indicator == &by ? known.stop() : indicator->look_up(nodes).stop();
-        return at_most(stop, Pack<float>::all(float_below(epsilon)));
-    }
+    /// The same of eight nodes.
+    struct Packed {
+        const Indicator* indicator;
+        Pack<float> epsilon;
+
+        /// At which of them, none of them outside.
+        /// \param known what `by` knows of them
+        template <class Known>
+            requires std::same_as<decltype(std::declval<Known>().stop()), Pack<float>>
+        NESTGRID_INLINE Pack<std::uint32_t> holds(const NodeKey* nodes, const Indicator& by,
+                                                  const Known& known) const {
+            return at_most(indicator == &by ? known.stop() : indicator->look_up(nodes).stop(),
+                           epsilon);
+        }
+    };
+    Packed packed() const { return {indicator, Pack<float>::all(float_below(epsilon))}; }
 };
 
 /// S(x) = (level of x > deepest), section 4. Saturated, because no node is created below a

@@ -101,6 +101,16 @@ struct ContourOwner {
     int level;
 };
 
+/// A criterion that is asked for eight nodes at once (criterion.hpp), where it can be.
+template <class S>
+auto packed_criterion(const S& criterion) {
+    if constexpr (requires { criterion.packed(); }) {
+        return criterion.packed();
+    } else {
+        return Nothing{};
+    }
+}
+
 /// Draws the level sets of several isovalues in one traversal; each has a sink of its own.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 class IsosurfaceVisitor {
@@ -230,6 +240,10 @@ private:
         Number vertex_count = 0;
         std::array<MaskOf<Real>, 2 * most_blocks> signs{};  // of what is in a batch
     };
+    struct PackedLevel {  // of bisections that are looked at eight at once
+        Pack<Real> least_inside;
+        Pack<Real> greatest_outside;
+    };
     using Vertex = std::conditional_t<indexed, Number, Point>;
     using VertexName = std::conditional_t<indexed, VertexNumbers::Name, Nothing>;
     static constexpr Number none = std::numeric_limits<Number>::max();
@@ -355,6 +369,8 @@ private:
     bool bisects_ = false;  // and bisections are known at compile time
     std::array<const ContourTable*, shape_count> table_{};
     std::vector<Layer> layers_;
+    std::vector<PackedLevel> packed_levels_;
+    decltype(packed_criterion(std::declval<const S&>())) packed_criterion_;
     TraversalCounts counts_;
     TraversalCounts all_counts_;  // of the first walk, where it meets everything
     bool recording_ = false;      // the first walk of two

@@ -79,13 +79,13 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
     using Mask = typename Reals::Mask;
     PackedGlance<Real> result;
     Mask holds;
-    if constexpr (requires(const S& s) {
-                      { s.holds(e.node, *indicator_, indicator_->look_up(e.node)) }
+    if constexpr (requires {
+                      { packed_criterion_.holds(e.node, *indicator_, indicator_->look_up(e.node)) }
                           -> std::same_as<Mask>;
                   }) {
         const auto known = indicator_->look_up(e.node);
         result.bound = known.bound();
-        holds = criterion_->holds(e.node, *indicator_, known);
+        holds = packed_criterion_.holds(e.node, *indicator_, known);
     } else {
         const auto key = [&](auto i) NESTGRID_INLINE_LAMBDA {
             return std::span<const NodeKey>(e.node + i, 1);
@@ -97,12 +97,12 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
             return mask != 0 ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         });
     }
-    auto interest = Mask::all(0);
-    for (const Layer& layer : layers_) {
-        interest = interest | at_most(max(Reals::all(layer.least_inside) - e.hi,
-                                          e.lo - Reals::all(layer.greatest_outside)),
-                                      result.bound);
-    }
+    const auto of_interest = [&](const PackedLevel& level) NESTGRID_INLINE_LAMBDA {
+        return at_most(max(level.least_inside - e.hi, e.lo - level.greatest_outside), result.bound);
+    };
+    const std::span<const PackedLevel> levels(packed_levels_);
+    Mask interest = of_interest(levels[0]);
+    for (const PackedLevel& level : levels.subspan(1)) interest = interest | of_interest(level);
     result.descend = without(interest, holds);
     result.stop = interest & holds;
     return result;

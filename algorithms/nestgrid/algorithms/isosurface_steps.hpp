@@ -27,6 +27,8 @@ IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
 }
 
 NESTGRID_VISITOR::set_isovalues() -> void {
+    packed_criterion_ = packed_criterion(*criterion_);
+    packed_levels_.resize(layers_.size());
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Layer& layer = layers_[i];
         layer.isovalue = isovalues_[i];
@@ -37,6 +39,8 @@ NESTGRID_VISITOR::set_isovalues() -> void {
         layer.least_inside = least_inside;
         layer.greatest_outside =
             std::nextafter(least_inside, -std::numeric_limits<Real>::infinity());
+        packed_levels_[i] = {Pack<Real>::all(layer.least_inside),
+                             Pack<Real>::all(layer.greatest_outside)};
         layer.drawn_below = &layer.transitions;
     }
     finest_ = -1;
@@ -45,7 +49,8 @@ NESTGRID_VISITOR::set_isovalues() -> void {
     }
     enter_ = &later_below_;
     plainly_ = attribute_count == 0 && !options_->cap && !options_->normals && !options_->reference;
-    bisects_ = plainly_ && knows_bisections_of_grid() && !must_record();
+    bisects_ =
+        plainly_ && !layers_.empty() && knows_bisections_of_grid() && !must_record();
 }
 
 NESTGRID_VISITOR::begin_again(std::span<const double> isovalues, std::vector<Sink>& sinks) -> void {
