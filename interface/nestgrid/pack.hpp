@@ -55,8 +55,8 @@ class Pack {
 public:
     using Mask = Pack<MaskOf<T>, size>;
 
-    // Vector by vector: a copy of all of them goes through narrower ones, and who reads a vector then
-    // waits until these have reached the cache.
+    // Vector by vector: a copy of all of them goes through narrower ones, and whoever reads a vector
+    // then waits until these have reached the cache.
     Pack() = default;
     NESTGRID_INLINE Pack(const Pack& other) { *this = other; }
     NESTGRID_INLINE Pack& operator=(const Pack& other) {

@@ -69,7 +69,8 @@ void expect_packs_do_what_is_done_to_one() {
         expect(pa + pb, [](T x, T y) { return static_cast<T>(x + y); });
         expect(pa - pb, [](T x, T y) { return static_cast<T>(x - y); });
         expect(at_most(pa, pb), [&](T x, T y) { return x <= y ? all : MaskOf<T>{0}; });
-        const P copy = pa;
+        P copy = pb;
+        copy = pa;
         expect(copy, [](T x, T) { return x; });
         expect(P::all(a[0]), [&](T, T) { return a[0]; });
         // One of them known to the compiler.
