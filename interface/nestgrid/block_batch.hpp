@@ -21,10 +21,17 @@
 namespace nestgrid {
 
 /// The least and the greatest of an element's values.
+/// \tparam Number Real, or several at once
+template <class Number>
+NESTGRID_INLINE std::pair<Number, Number> range_of(const Number& a, const Number& b,
+                                                   const Number& c, const Number& d) {
+    using std::max;
+    using std::min;
+    return {min(min(a, b), min(c, d)), max(max(a, b), max(c, d))};
+}
 template <class Real>
 NESTGRID_INLINE std::pair<Real, Real> range_of(const std::array<Real, 4>& u) {
-    return {std::min(std::min(u[0], u[1]), std::min(u[2], u[3])),
-            std::max(std::max(u[0], u[1]), std::max(u[2], u[3]))};
+    return range_of(u[0], u[1], u[2], u[3]);
 }
 
 /// Elements that one rule splits, on one level, eight at once; some may be there several times.

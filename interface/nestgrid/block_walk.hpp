@@ -167,19 +167,14 @@ private:
         return block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |
                                                                batch.stops[b] << (ends_ - 2))];
     }
-    struct PackedRange {
-        Pack<Real> lo;
-        Pack<Real> hi;
-    };
     /// Of the values at the corners of a part of eight blocks.
     template <std::size_t part>
-    NESTGRID_INLINE static PackedRange range_within(const Batch& batch, std::size_t first) {
+    NESTGRID_INLINE static auto range_within(const Batch& batch, std::size_t first) {
         constexpr auto corner = pattern_.part[part].corner;
         const auto value = [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
             return Pack<Real>::load(batch.values[corner[i]] + first);
         };
-        const Pack<Real> u0 = value(0), u1 = value(1), u2 = value(2), u3 = value(3);
-        return {min(min(u0, u1), min(u2, u3)), max(max(u0, u1), max(u2, u3))};
+        return range_of(value(0), value(1), value(2), value(3));
     }
     /// \return whether there is no room for another
     static bool put(const Stopped& element, Queue& next);

@@ -221,7 +221,7 @@ template <std::size_t size>
 using PackedPoint = std::array<Pack<double, size>, 3>;
 
 template <std::size_t size>
-NESTGRID_INLINE PackedPoint<size> packed(const std::array<double, 3>& x) {
+NESTGRID_INLINE PackedPoint<size> packed_point(const std::array<double, 3>& x) {
     using Numbers = Pack<double, size>;
     return {Numbers::all(x[0]), Numbers::all(x[1]), Numbers::all(x[2])};
 }

@@ -92,7 +92,7 @@ private:
     /// Of each block and element which nodes have U >= C.
     NESTGRID_INLINE void set_signs() {
         using Bits = Pack<MaskOf<Real>>;
-        const auto least_inside = Pack<Real>::all(layer_->least_inside);
+        const Pack<Real> least_inside = layer_->packed_least_inside;
         const auto set = [&](auto rows, std::size_t first_row, std::size_t first, std::size_t end,
                              std::size_t to) NESTGRID_INLINE_LAMBDA {
             for (std::size_t b = first / pack * pack; b < end; b += pack) {

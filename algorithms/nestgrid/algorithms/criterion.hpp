@@ -116,4 +116,18 @@ Either<A, B> operator||(const A& a, const B& b) {
     return {a, b};
 }
 
+namespace detail {
+
+/// A criterion that is asked for eight nodes at once, where it can be.
+template <class S>
+auto packed_criterion(const S& criterion) {
+    if constexpr (requires { criterion.packed(); }) {
+        return criterion.packed();
+    } else {
+        return Nothing{};
+    }
+}
+
+}  // namespace detail
+
 }  // namespace nestgrid

@@ -4,7 +4,7 @@
 // Walks over bisections known at compile time; included by isosurface_steps.hpp.
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \
     template <class Grid, class Field, class S, class Indicator, class Sink> \
@@ -97,12 +97,14 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
             return mask != 0 ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         });
     }
-    const auto of_interest = [&](const PackedLevel& level) NESTGRID_INLINE_LAMBDA {
-        return at_most(max(level.least_inside - e.hi, e.lo - level.greatest_outside), result.bound);
+    const auto passes = [&](const Layer& layer) NESTGRID_INLINE_LAMBDA {
+        return at_most(
+            max(layer.packed_least_inside - e.hi, e.lo - layer.packed_greatest_outside),
+            result.bound);
     };
-    const std::span<const PackedLevel> levels(packed_levels_);
-    Mask interest = of_interest(levels[0]);
-    for (const PackedLevel& level : levels.subspan(1)) interest = interest | of_interest(level);
+    const std::span<const Layer> layers(layers_);
+    Mask interest = passes(layers[0]);
+    for (const Layer& layer : layers.subspan(1)) interest = interest | passes(layer);
     result.descend = without(interest, holds);
     result.stop = interest & holds;
     return result;

@@ -8,7 +8,7 @@
 // the other one adopts the vertices between: what is done for faces, one dimension lower.
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \
     template <class Grid, class Field, class S, class Indicator, class Sink> \

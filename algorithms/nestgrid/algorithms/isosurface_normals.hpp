@@ -4,7 +4,7 @@
 // Gradients at nodes, and the normals at vertices that follow; included by isosurface_steps.hpp.
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \
     template <class Grid, class Field, class S, class Indicator, class Sink> \

@@ -8,7 +8,7 @@
 // that, and what is drawn of them, and in which order, is what draw() draws, to the last bit.
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \
     template <class Grid, class Field, class S, class Indicator, class Sink> \

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of the extraction; included by isosurface.hpp.
+// The steps of the extraction; included by isosurface_visitor.hpp.
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \
     template <class Grid, class Field, class S, class Indicator, class Sink> \
@@ -28,7 +28,6 @@ IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::IsosurfaceVisitor(
 
 NESTGRID_VISITOR::set_isovalues() -> void {
     packed_criterion_ = packed_criterion(*criterion_);
-    packed_levels_.resize(layers_.size());
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Layer& layer = layers_[i];
         layer.isovalue = isovalues_[i];
@@ -39,8 +38,8 @@ NESTGRID_VISITOR::set_isovalues() -> void {
         layer.least_inside = least_inside;
         layer.greatest_outside =
             std::nextafter(least_inside, -std::numeric_limits<Real>::infinity());
-        packed_levels_[i] = {Pack<Real>::all(layer.least_inside),
-                             Pack<Real>::all(layer.greatest_outside)};
+        layer.packed_least_inside = Pack<Real>::all(layer.least_inside);
+        layer.packed_greatest_outside = Pack<Real>::all(layer.greatest_outside);
         layer.drawn_below = &layer.transitions;
     }
     finest_ = -1;

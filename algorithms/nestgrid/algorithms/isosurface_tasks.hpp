@@ -14,7 +14,7 @@
 #include <mutex>
 #include <numeric>
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \
     template <class Grid, class Field, class S, class Indicator, class Sink> \

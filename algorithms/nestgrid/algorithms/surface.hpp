@@ -100,6 +100,11 @@ struct ExtractedElement {
 
 namespace detail {
 
+template <class Sink>
+concept IndexedSink = !requires {
+    requires !Sink::indexed;
+};
+
 /// Whether to tell a sink of the elements its simplices come from.
 template <class Sink>
 bool keeps_elements(const Sink& sink) {

@@ -96,8 +96,8 @@ public:
     NESTGRID_INLINE void with_packed_positions(Function&& function) const {
         using Numbers = Pack<double, count>;
         using Places = Pack<Place, count>;
-        const PackedPoint<count> origin = packed<count>(geometry_.origin);
-        const PackedPoint<count> spacing = packed<count>(geometry_.spacing);
+        const PackedPoint<count> origin = packed_point<count>(geometry_.origin);
+        const PackedPoint<count> spacing = packed_point<count>(geometry_.spacing);
         const auto step = [&](const Places& p, auto d) NESTGRID_INLINE_LAMBDA -> Numbers {
             constexpr Place coordinate = (Place{1} << bits_) - 1;
             const auto from = d == 0 ? p : p >> static_cast<int>(bits_ * d);
@@ -111,8 +111,9 @@ public:
             });
         } else {
             const auto& row = geometry_.direction;
-            const std::array<PackedPoint<count>, 3> direction{
-                packed<count>(row[0]), packed<count>(row[1]), packed<count>(row[2])};
+            const std::array<PackedPoint<count>, 3> direction{packed_point<count>(row[0]),
+                                                              packed_point<count>(row[1]),
+                                                              packed_point<count>(row[2])};
             function([&](const Places& p) NESTGRID_INLINE_LAMBDA {
                 PackedPoint<count> x = origin;
                 unrolled<size_>([&](auto d) NESTGRID_INLINE_LAMBDA {

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What an extraction is asked for, and what is known beside the surface.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include <nestgrid/algorithms/surface.hpp>
+
+namespace nestgrid {
+
+/// How many elements a traversal met.
+struct TraversalCounts {
+    std::uint64_t calls = 0;      ///< calls of Inspect(): elements looked at
+    std::uint64_t visited = 0;    ///< elements that passed the test of interest
+    std::uint64_t extracted = 0;  ///< elements that contribute to the surface
+};
+
+struct IsosurfaceOptions {
+    /// epsilon, in the units of the data: offsets up to it are projected away.
+    double threshold = 0;
+    /// The largest number of triangles (segments), beside which `threshold` is not used: the least
+    /// threshold that keeps within it is found (triangle_budget.hpp). 0 asks for none.
+    std::uint64_t max_triangles = 0;
+    /// Unit normals from gradients: the field's own where it offers them, else the mean of the
+    /// gradients of the extracted elements around a node, weighted by volume.
+    bool normals = false;
+    /// Close the surface along the boundary of the domain, around the region U >= C.
+    bool cap = false;
+    /// Keep the extracted elements and which triangle comes from which.
+    bool elements = true;
+    /// Keep where the corners of each triangle lie in its element, in reference coordinates; not a
+    /// number for the few that fill a gap in a face between two directions of refinement.
+    bool reference = false;
+    /// Compute every shared vertex again from every element and throw a GridError where one bit
+    /// differs: finds keys and positions that do not belong together.
+    bool verify = false;
+    /// Called now and then with the counts so far; returning false ends the traversal.
+    std::function<bool(const TraversalCounts&)> progress{};
+};
+
+template <int dimension, class Element>
+struct Isosurface {
+    Surface<dimension, Element> surface;
+    TraversalCounts counts;
+    /// On every triangle U differs from C by at most this, U being the data interpolated on the
+    /// finest grid: what S projected away, and in shapes other than simplices what the flatness of
+    /// the triangles adds. Exact as far as triangles lie in their elements, which curved faces of
+    /// deformed elements do not quite allow.
+    double error_bound = 0;
+    bool cancelled = false;       ///< by options.progress; the surface is then a part
+    std::size_t table_bytes = 0;  ///< hash tables used while extracting
+    std::size_t stack_bytes = 0;  ///< depth of the traversal times the size of one state
+};
+
+}  // namespace nestgrid
