@@ -28,7 +28,7 @@ struct BisectionBlock {
     struct Part {
         std::array<std::uint8_t, 4> corner{};  ///< nodes; of a triangle the last is there twice
         std::uint8_t bisection = 0;
-        std::uint8_t middle = 0;  ///< the new node of one that is split
+        std::uint8_t middle = 0;  ///< the new node when it is split
         std::uint8_t depth = 0;
         bool mirrored = false;  ///< against part 1
 
@@ -52,8 +52,10 @@ struct BisectionBlock {
     /// The first end in each part of such a set, one bit each.
     std::array<std::uint8_t, part_sets> first_ends{};
     std::size_t nodes = corners;
+    /// With the new nodes of the ends, which come last.
+    std::size_t all_nodes = corners;
     /// Of every node but the corners of part 1, which come first.
-    std::array<std::array<std::uint8_t, 2>, most_nodes> parent{};
+    std::array<std::array<std::uint8_t, 2>, most_nodes + ends> parent{};
 
     /// \param of part 1
     template <std::size_t count>
@@ -62,11 +64,12 @@ struct BisectionBlock {
             part[1].corner[i] = static_cast<std::uint8_t>(std::min(i, corners - 1));
         }
         part[1].bisection = static_cast<std::uint8_t>(of);
-        for (std::size_t p = 1; p < ends; ++p) {
+        for (std::size_t p = 1; height > 0 && p < 2 * ends; ++p) {
             const KnownBisection& rule = bisections[part[p].bisection];
+            if (p == ends) nodes = all_nodes;
             part[p].middle = node_between(part[p].corner[rule.parent[0]],  //
                                           part[p].corner[rule.parent[1]]);
-            for (std::size_t c = 0; c < 2; ++c) {
+            for (std::size_t c = 0; p < ends && c < 2; ++c) {
                 const KnownBisection::Half& half = rule.child[c];
                 Part& child = part[2 * p + c];
                 for (std::size_t i = 0; i < 4; ++i) {
@@ -112,14 +115,14 @@ struct BisectionBlock {
 
 private:
     constexpr std::uint8_t node_between(std::uint8_t a, std::uint8_t b) {
-        for (std::size_t n = corners; n < nodes; ++n) {
+        for (std::size_t n = corners; n < all_nodes; ++n) {
             if ((parent[n][0] == a && parent[n][1] == b) ||
                 (parent[n][0] == b && parent[n][1] == a)) {
                 return static_cast<std::uint8_t>(n);
             }
         }
-        parent[nodes] = {a, b};
-        return static_cast<std::uint8_t>(nodes++);
+        parent[all_nodes] = {a, b};
+        return static_cast<std::uint8_t>(all_nodes++);
     }
 };
 
@@ -143,7 +146,7 @@ struct BlockOrder {
 };
 
 /// By the parts 2 ... ends - 1 that are entered, one bit each from bit 0, and, in the bits above,
-/// those that stop. Only such as are reached. Where none stops, the ends that are entered.
+/// those that stop. Only such as are reached.
 template <const auto& pattern>
 inline constexpr auto block_orders = [] {
     constexpr std::size_t ends = pattern.ends;
@@ -160,6 +163,33 @@ inline constexpr auto block_orders = [] {
             if (part < ends && (!is_set(part, bits) || end != pattern.first_end(part))) continue;
             result[i].part[result[i].count++] = static_cast<std::uint8_t>(part);
         }
+    }
+    return result;
+}();
+
+/// Some of the ends, by the set of them, one bit each.
+template <const auto& pattern>
+inline constexpr auto end_orders = [] {
+    constexpr std::size_t ends = pattern.ends;
+    std::array<BlockOrder<ends>, std::size_t{1} << ends> result{};
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        for (std::size_t end = 0; end < ends; ++end) {
+            if ((i >> end & 1U) == 0) continue;
+            result[i].part[result[i].count++] = static_cast<std::uint8_t>(ends + end);
+        }
+    }
+    return result;
+}();
+
+/// The parts that have a node for their new one.
+template <const auto& pattern, std::size_t node>
+inline constexpr auto parts_around = [] {
+    constexpr auto is_around = [](const auto& part) { return part.middle == node; };
+    constexpr auto& all = pattern.part;
+    std::array<std::uint8_t, std::size_t(std::count_if(all.begin() + 1, all.end(), is_around))>
+        result{};
+    for (std::size_t p = 1, count = 0; p < all.size(); ++p) {
+        if (is_around(all[p])) result[count++] = static_cast<std::uint8_t>(p);
     }
     return result;
 }();

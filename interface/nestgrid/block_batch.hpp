@@ -34,22 +34,26 @@ NESTGRID_INLINE std::pair<Real, Real> range_of(const std::array<Real, 4>& u) {
     return range_of(u[0], u[1], u[2], u[3]);
 }
 
-/// Elements that one rule splits, on one level, eight at once; some may be there several times.
+/// The least and the greatest value at the corners of elements.
 template <class Real>
+using PackedRange = std::pair<Pack<Real>, Pack<Real>>;
+
+/// Elements that one rule splits, on one level, eight at once; some may be there several times.
+/// 	param around  how many lie around each new node
+template <class Real, std::size_t around = 1>
 struct PackedElements {
     const Rule& rule;
     int level;
-    const NodeKey* node;  ///< the new node of each
-    Pack<Real> lo;
-    Pack<Real> hi;  ///< lo ... hi: values at the corners
+    const NodeKey* node;  ///< new nodes
+    std::array<PackedRange<Real>, around> range;
 };
 
 /// What a visitor makes of them.
-template <class Real>
+template <class Real, std::size_t around = 1>
 struct PackedGlance {
-    typename Pack<Real>::Mask descend;
-    typename Pack<Real>::Mask stop;  ///< not both
-    Pack<Real> bound;                ///< where it stops
+    std::array<typename Pack<Real>::Mask, around> descend;
+    std::array<typename Pack<Real>::Mask, around> stop;  ///< not both
+    Pack<Real> bound;                                    ///< where any of them stops
 };
 
 /// Where the nodes of a pattern's blocks, and the corners of the elements beside them, are kept in

@@ -67,17 +67,6 @@ private:
     static_assert(pattern_.part[1].middle == corners_);
     static_assert(std::ranges::all_of(pattern_.part.begin() + ends_, pattern_.part.end(),
                                       [](const auto& end) { return end.bisection == last_; }));
-    /// The nodes between which the new node of a part lies.
-    static constexpr auto parent_of_new_ = [] {
-        std::array<std::array<std::uint8_t, 2>, 2 * ends_> result{};
-        for (std::size_t p = 1; p < 2 * ends_; ++p) {
-            const auto& part = pattern_.part[p];
-            for (std::size_t i = 0; i < 2; ++i) {
-                result[p][i] = part.corner[Grid::bisections[part.bisection].parent[i]];
-            }
-        }
-        return result;
-    }();
     static constexpr bool in_subtrees_ = requires(Visitor & v) { v.begin_subtrees(1); };
     using InSubtree = SubtreeNodes<pattern_>;
     static constexpr std::size_t room_ = most_blocks;
@@ -107,61 +96,58 @@ private:
             return taken < stopped_count ? stopped[taken].before : ~std::size_t{0};
         }
     };
-    /// Parts of blocks.
-    struct Parts {
-        static constexpr std::size_t room = room_ * ends_;
-        std::size_t count = 0;
-        std::array<std::uint8_t, room + ends_> block;
-        std::array<std::uint8_t, room + ends_> part;
+    /// What is seen of some parts of eight blocks: bit i of each for the i-th of them.
+    struct Seen {
+        Pack<MaskOf<Real>> descend;
+        Pack<MaskOf<Real>> stop;
+        Pack<Real> greatest;  // bound where any stops
+    };
+    /// What there is to know of the ends of blocks, reached or not.
+    struct Ends {
+        std::array<Row<NodeKey>, pattern_.all_nodes - pattern_.nodes> keys;  // of new nodes
+        Row<MaskOf<Real>> descend;  // bit i: end i
+        Row<MaskOf<Real>> stop;
+        Row<Real> greatest;
+    };
+
+    /// The parts of a batch that the blocks of the next one are.
+    struct Origins {
+        std::array<std::uint8_t, room_ + ends_> block;
+        std::array<std::uint8_t, room_ + ends_> part;
+        std::size_t copied;  // blocks before this one are
 
         /// Those of block b. Nothing depends on how many they are.
-        NESTGRID_INLINE void append(const BlockOrder<ends_>& order, std::size_t b) {
+        NESTGRID_INLINE void append(const BlockOrder<ends_>& order, std::size_t b,
+                                    std::size_t& count) {
             std::memcpy(part.data() + count, order.part.data(), ends_);
             std::memset(block.data() + count, static_cast<int>(b), ends_);
             count += order.count;
         }
     };
-    /// In the order of the traversal: ends, which are split, and what stops.
-    struct Steps : Parts {
-        using Parts::room;
-        std::array<Row<Real>, ends_> least;  // of the values at the corners of each end
-        std::array<Row<Real>, ends_> greatest;
-        Parts end;  // the ends that are reached, and of those:
-        alignas(64) std::array<Real, room + 1> lo;
-        alignas(64) std::array<Real, room + 1> hi;
-        alignas(64) std::array<NodeKey, room + 1> node;
-        std::array<Node, AnswersInRows<Grid> ? room + 1 : 0> from;  // it lies between these
-        std::array<Node, AnswersInRows<Grid> ? room + 1 : 0> to;
-        alignas(64) std::array<MaskOf<Real>, room + 1> descend;
-        alignas(64) std::array<MaskOf<Real>, room + 1> stop;
-        alignas(64) std::array<Real, room + 1> bound;
-    };
-
-    /// The parts of a batch that the blocks of the next one are.
-    struct Origins {
-        std::array<std::uint8_t, room_ + 1> block;
-        std::array<std::uint8_t, room_ + 1> part;
-        std::size_t copied;  // blocks before this one are
-    };
 
     NESTGRID_NOINLINE void walk(Queue& batch);
     void begin_subtrees(Batch& batch);
     void number_nodes(Batch& batch) const;
-    template <class Rows, class Middle>
-    static void halve(Rows& rows, std::size_t at, std::size_t first, const Middle& middle);
+    template <class T, class Middle>
+    static void halve(const T* from, const T* to, T* middles, std::size_t first, std::size_t end,
+                      const Middle& middle);
+    void halve_keys(const Batch& batch, std::size_t node, std::size_t first, std::size_t end,
+                    NodeKey* middles) const;
     void make_nodes(Batch& batch) const;
     void ask_for_nodes(Batch& batch) const;
     NESTGRID_INLINE void expect(const NodeKey* keys) const {
         if constexpr (requires { visitor_->expect(keys); }) visitor_->expect(keys);
     }
+    template <std::size_t first_node, std::size_t last_node, class Keys>
+    Seen see(Batch& batch, std::size_t first, const Keys& keys) const;
     void look_within(Queue& batch) const;
     void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
     void extract_blocks(Queue& batch, std::size_t first, std::size_t end, bool are_leaves);
     void enter(Queue& batch, std::size_t first, std::size_t end, Queue& next);
-    void list(const Queue& batch, std::size_t first, std::size_t end, Steps& steps) const;
-    void look_at_ends(const Batch& batch, Steps& steps) const;
-    void find_new_nodes(Steps& steps) const;
-    static void note_stopped_ends(Queue& batch, const Steps& steps);
+    void look_at_ends(Queue& batch, std::size_t first, std::size_t end, Ends& ends) const;
+    void find_new_nodes(const Batch& batch, std::size_t first, std::size_t end, Ends& ends) const;
+    static void note_stopped_ends(Queue& batch, std::size_t first, std::size_t end,
+                                  const Ends& ends);
     static void copy_corners(const Batch& batch, Origins& which, Queue& next);
     static const auto& order_of(const Queue& batch, std::size_t b) {
         return block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |

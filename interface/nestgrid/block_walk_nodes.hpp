@@ -13,7 +13,7 @@ namespace nestgrid {
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_whether_split(
     const Batch& batch, std::array<bool, room_>& ends) const {
-    const auto& [from, to] = parent_of_new_[ends_];
+    const auto& [from, to] = pattern_.parent[pattern_.part[ends_].middle];
     if constexpr (AnswersInRows<Grid>) {
         std::array<Node, room_> between;
         grid_->perhaps_middles(std::span(batch.nodes[from], batch.count),
@@ -27,22 +27,35 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_whether_split(
     }
 }
 
-/// Eight of a row of rows: what lies in the middle of two others.
+/// Some of a row: what lies in the middle of two others.
+/// \param end in packs of eight, up to the next one
 template <class Grid, class Field, class Visitor>
-template <class Rows, class Middle>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve(Rows& rows, std::size_t at,
-                                                            std::size_t first,
+template <class T, class Middle>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve(const T* from, const T* to, T* middles,
+                                                            std::size_t first, std::size_t end,
                                                             const Middle& middle) {
-    using T = std::remove_cvref_t<decltype(rows[0][0])>;
-    const T* const from = rows[pattern_.parent[at][0]];
-    const T* const to = rows[pattern_.parent[at][1]];
     if constexpr (Packable<T>) {
         if constexpr (std::is_invocable_v<Middle, const Pack<T>&, const Pack<T>&>) {
-            return middle(Pack<T>::load(from + first), Pack<T>::load(to + first))
-                .store(rows[at] + first);
+            for (std::size_t b = first / pack * pack; b < end; b += pack) {
+                middle(Pack<T>::load(from + b), Pack<T>::load(to + b)).store(middles + b);
+            }
+            return;
         }
     }
-    for (std::size_t b = first; b < first + pack; ++b) rows[at][b] = middle(from[b], to[b]);
+    for (std::size_t b = first; b < end; ++b) middles[b] = middle(from[b], to[b]);
+}
+
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve_keys(const Batch& batch,
+                                                                 std::size_t node, std::size_t first,
+                                                                 std::size_t end,
+                                                                 NodeKey* middles) const {
+    const auto& [from, to] = pattern_.parent[node];
+    halve(batch.keys[from], batch.keys[to], middles, first, end,
+          [&](const auto& a, const auto& b)
+              NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
+                  return grid_->middle_key(a, b);
+              });
 }
 
 template <class Grid, class Field, class Visitor>
@@ -55,16 +68,13 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
         }
     };
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
-        halve(batch.nodes, at, first,
+        const auto& [from, to] = pattern_.parent[at];
+        halve(batch.nodes[from], batch.nodes[to], batch.nodes[at], first, first + pack,
               [&](const auto& a, const auto& b)
                   NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle(a, b)) {
                       return grid_->middle(a, b);
                   });
-        halve(batch.keys, at, first,
-              [&](const auto& a, const auto& b)
-                  NESTGRID_INLINE_LAMBDA -> decltype(grid_->middle_key(a, b)) {
-                      return grid_->middle_key(a, b);
-                  });
+        halve_keys(batch, at, first, first + pack, batch.keys[at]);
     });
     each_new_node([&](auto at, std::size_t first)
                       NESTGRID_INLINE_LAMBDA { expect(batch.keys[at] + first); });
@@ -110,12 +120,31 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::number_nodes(Batch& batc
     }
 }
 
-/// Of ends, in rows.
+/// Of ends.
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::find_new_nodes(Steps& steps) const {
-    const std::span<Node> from(steps.from.data(), steps.end.count);
-    grid_->middles(from, std::span(steps.to).first(from.size()), from);
-    grid_->keys(from, std::span(steps.node).first(from.size()));
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::find_new_nodes(const Batch& batch,
+                                                                     std::size_t first,
+                                                                     std::size_t end,
+                                                                     Ends& ends) const {
+    const std::size_t from = first / pack * pack;
+    const std::size_t to = packed(end);
+    for (std::size_t i = 0; i < ends.keys.size(); ++i) {
+        const std::size_t node = pattern_.nodes + i;
+        auto& keys = ends.keys[i];
+        if constexpr (AnswersInRows<Grid>) {
+            const auto& [a, b] = pattern_.parent[node];
+            std::array<Node, room_> middles;
+            const auto row = [&](auto* of) { return std::span(of + first, end - first); };
+            grid_->middles(row(batch.nodes[a]), row(batch.nodes[b]), row(middles.data()));
+            grid_->keys(row(middles.data()), row(keys.data()));
+        } else {
+            halve_keys(batch, node, first, end, keys.data());
+        }
+        // Others are not split.
+        std::fill(keys.begin() + from, keys.begin() + first, keys[first]);
+        std::fill(keys.begin() + end, keys.begin() + to, keys[first]);
+        for (std::size_t at = from; at < to; at += pack) expect(keys.data() + at);
+    }
 }
 
 }  // namespace nestgrid

@@ -99,30 +99,47 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& ba
     visitor_->begin_subtrees(InSubtree::edge_numbers(batch.count));
 }
 
+/// What the visitor makes of the parts around some nodes, of eight blocks.
+/// \param keys of a node, a row
+template <class Grid, class Field, class Visitor>
+template <std::size_t first_node, std::size_t last_node, class Keys>
+NESTGRID_INLINE auto BlockWalk<Grid, Field, Visitor>::see(Batch& batch, std::size_t first,
+                                                          const Keys& keys) const -> Seen {
+    using Bits = Pack<MaskOf<Real>>;
+    Seen seen{Bits::all(0), Bits::all(0), Pack<Real>::all(0)};
+    unrolled<last_node + 1 - first_node>([&](auto n) NESTGRID_INLINE_LAMBDA {
+        constexpr std::size_t node = first_node + n;
+        constexpr const auto& parts = parts_around<pattern_, node>;
+        constexpr auto one = pattern_.part[parts[0]];
+        PackedElements<Real, parts.size()> elements{
+            grid_->rule(one.bisection), batch.level + one.depth, keys(node) + first, {}};
+        unrolled<parts.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            static_assert(pattern_.part[parts[i]].depth == one.depth);
+            elements.range[i] = range_within<parts[i]>(batch, first);
+        });
+        const PackedGlance<Real, parts.size()> glance = visitor_->glance(elements);
+        unrolled<parts.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
+            constexpr std::size_t part = parts[i];
+            const auto bit = Bits::all(MaskOf<Real>{1} << (part < ends_ ? part - 2 : part - ends_));
+            seen.descend = seen.descend | (glance.descend[i] & bit);
+            seen.stop = seen.stop | (glance.stop[i] & bit);
+            seen.greatest =
+                max(seen.greatest,
+                    (glance.bound.template as<MaskOf<Real>>() & glance.stop[i]).template as<Real>());
+            glance.bound.store(batch.bounds[part].data() + first);
+        });
+    });
+    return seen;
+}
+
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
-    using Bits = Pack<MaskOf<Real>>;
     for (std::size_t first = 0; first < batch.count; first += pack) {
-        auto descend = Bits::all(0);
-        auto stop = Bits::all(0);
-        auto greatest = Pack<Real>::all(0);
-        unrolled<ends_ - 2>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            constexpr auto part = pattern_.part[i + 2];
-            const auto [lo, hi] = range_within<i + 2>(batch, first);
-            const PackedGlance<Real> glance = visitor_->glance(
-                PackedElements<Real>{grid_->rule(part.bisection), batch.level + part.depth,
-                                     batch.keys[part.middle] + first, lo, hi});
-            const auto bit = Bits::all(MaskOf<Real>{1} << i);
-            descend = descend | (glance.descend & bit);
-            stop = stop | (glance.stop & bit);
-            greatest =
-                max(greatest,
-                    (glance.bound.template as<MaskOf<Real>>() & glance.stop).template as<Real>());
-            glance.bound.store(batch.bounds[i + 2].data() + first);
-        });
-        descend.store(batch.entered.data() + first);
-        stop.store(batch.stops.data() + first);
-        greatest.store(batch.greatest_bounds.data() + first);
+        const Seen seen = see<corners_ + 1, pattern_.nodes - 1>(
+            batch, first, [&](std::size_t node) NESTGRID_INLINE_LAMBDA { return batch.keys[node]; });
+        seen.descend.store(batch.entered.data() + first);
+        seen.stop.store(batch.stops.data() + first);
+        seen.greatest.store(batch.greatest_bounds.data() + first);
     }
 }
 
@@ -173,122 +190,105 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_first_stopped(Qu
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::size_t first,
                                                             std::size_t end, Queue& next) {
-    Steps steps;
-    list(batch, first, end, steps);
-    look_at_ends(batch, steps);
-    MaskOf<Real> any_entered = 0;
-    for (std::size_t i = 0; i < steps.end.count; ++i) any_entered |= steps.descend[i];
-    if (any_entered == 0) {
+    Ends ends;
+    look_at_ends(batch, first, end, ends);
+    MaskOf<Real> any_descends = 0;
+    for (std::size_t b = first; b < end; ++b) {
+        ends.descend[b] &= batch.ends[b];
+        ends.stop[b] &= batch.ends[b];
+        any_descends |= ends.descend[b];
+    }
+    if (any_descends == 0) {
         finish(next);
-        note_stopped_ends(batch, steps);
+        note_stopped_ends(batch, first, end, ends);
         return extract_blocks(batch, first, end, false);
     }
     Origins which;
     which.copied = next.count;
     const auto finish_next = [&] {
+        const std::size_t more = next.count - std::min(next.count, room_);
+        next.count -= more;
         copy_corners(batch, which, next);
         finish(next);
+        std::copy_n(which.block.begin() + room_, more, which.block.begin());
+        std::copy_n(which.part.begin() + room_, more, which.part.begin());
+        next.count = more;
     };
     const auto put_stopped = [&](const Stopped& element) {
         if (put(element, next)) finish_next();
     };
-    std::size_t next_end = 0;
     std::size_t due = batch.stopped_before();
-    // No branch here depends on what was seen: both are written, and counted where they are so.
-    for (std::size_t i = 0; i < steps.count; ++i) {
-        const std::size_t b = steps.block[i];
-        const std::size_t part = steps.part[i];
-        if (due <= b) {
-            take_stopped(batch, b, put_stopped);
-            due = batch.stopped_before();
+    for (std::size_t b = first; b < end; ++b) {
+        const auto descends = static_cast<std::size_t>(ends.descend[b]);
+        if ((ends.stop[b] | batch.stops[b]) == 0 && due > b) {
+            which.append(end_orders<pattern_>[descends], b, next.count);
+            if (next.count > room_) finish_next();
+            continue;
         }
-        if (next.count == room_) finish_next();
-        const bool is_end = part >= ends_;
-        const MaskOf<Real> ended = is_end ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
-        const MaskOf<Real> descends = steps.descend[next_end] & ended;
-        const MaskOf<Real> stops = steps.stop[next_end] | ~ended;
-        const Real* const bound = is_end ? &steps.bound[next_end] : &batch.bounds[part][b];
-        next_end += is_end ? 1 : 0;
-        which.block[next.count] = static_cast<std::uint8_t>(b);
-        which.part[next.count] = static_cast<std::uint8_t>(part);
-        next.stopped[next.stopped_count] = {&batch, static_cast<std::uint8_t>(b),
-                                            static_cast<std::uint8_t>(part),
-                                            static_cast<std::uint8_t>(next.count), *bound};
-        next.count += descends & 1U;
-        next.stopped_count += stops & 1U;
-        if (next.stopped_count == stopped_room_) finish_next();
+        take_stopped(batch, b, put_stopped);
+        due = batch.stopped_before();
+        // No branch here depends on what was seen: both are written, and counted where they are so.
+        const std::size_t descend_by_part = descends << ends_;
+        const std::size_t stop_by_part = static_cast<std::size_t>(ends.stop[b]) << ends_ |
+                                         static_cast<std::size_t>(batch.stops[b]) << 2U;
+        const BlockOrder<ends_>& order = order_of(batch, b);
+        for (std::size_t i = 0; i < order.count; ++i) {
+            const std::size_t part = order.part[i];
+            if (next.count == room_) finish_next();
+            which.block[next.count] = static_cast<std::uint8_t>(b);
+            which.part[next.count] = static_cast<std::uint8_t>(part);
+            next.stopped[next.stopped_count] = {
+                &batch, static_cast<std::uint8_t>(b), static_cast<std::uint8_t>(part),
+                static_cast<std::uint8_t>(next.count), batch.bounds[part][b]};
+            next.count += descend_by_part >> part & 1U;
+            next.stopped_count += stop_by_part >> part & 1U;
+            if (next.stopped_count == stopped_room_) finish_next();
+        }
     }
     take_stopped(batch, end - 1, put_stopped);
     copy_corners(batch, which, next);
 }
 
-/// What comes next in these blocks, and what there is to know of the ends.
+/// Of eight blocks of which no end is reached nothing is asked.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::list(const Queue& batch, std::size_t first,
-                                                           std::size_t end, Steps& steps) const {
-    for (std::size_t b = first / pack * pack; b < end; b += pack) {
-        unrolled<ends_>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            const auto [lo, hi] = range_within<ends_ + i>(batch, b);
-            lo.store(steps.least[i].data() + b);
-            hi.store(steps.greatest[i].data() + b);
-        });
-    }
-    for (std::size_t b = first; b < end; ++b) {
-        steps.append(order_of(batch, b), b);
-        steps.end.append(block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b])], b);
-    }
-    for (std::size_t i = 0; i < steps.end.count; ++i) {
-        const std::size_t b = steps.end.block[i];
-        const std::size_t part = steps.end.part[i];
-        const auto& parent = parent_of_new_[part];
-        steps.lo[i] = steps.least[part - ends_][b];
-        steps.hi[i] = steps.greatest[part - ends_][b];
-        if constexpr (AnswersInRows<Grid>) {
-            steps.from[i] = batch.nodes[parent[0]][b];
-            steps.to[i] = batch.nodes[parent[1]][b];
-        } else {
-            steps.node[i] = grid_->middle_key(batch.keys[parent[0]][b], batch.keys[parent[1]][b]);
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch, std::size_t first,
+                                                                   std::size_t end,
+                                                                   Ends& ends) const {
+    const auto reached = [&](std::size_t b) {
+        return b < end && std::any_of(batch.ends.begin() + std::max(b, first),
+                                      batch.ends.begin() + std::min(b + pack, end),
+                                      [](std::uint8_t set) { return set != 0; });
+    };
+    for (std::size_t b = first / pack * pack; b < end;) {
+        if (!reached(b)) {
+            Pack<MaskOf<Real>>::all(0).store(ends.descend.data() + b);
+            Pack<MaskOf<Real>>::all(0).store(ends.stop.data() + b);
+            b += pack;
+            continue;
+        }
+        std::size_t next = b + pack;
+        while (reached(next)) next += pack;
+        find_new_nodes(batch, std::max(b, first), std::min(next, end), ends);
+        for (; b < next; b += pack) {
+            const Seen seen = see<pattern_.nodes, pattern_.all_nodes - 1>(
+                batch, b, [&](std::size_t node) NESTGRID_INLINE_LAMBDA {
+                    return ends.keys[node - pattern_.nodes].data();
+                });
+            seen.descend.store(ends.descend.data() + b);
+            seen.stop.store(ends.stop.data() + b);
+            seen.greatest.store(ends.greatest.data() + b);
         }
     }
-}
-
-template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(const Batch& batch,
-                                                                   Steps& steps) const {
-    const std::size_t count = packed(steps.end.count);
-    if (steps.end.count > 0) {
-        if constexpr (AnswersInRows<Grid>) find_new_nodes(steps);
-        const std::size_t last = steps.end.count - 1;
-        for (std::size_t i = steps.end.count; i < count; ++i) {
-            steps.lo[i] = steps.lo[last];
-            steps.hi[i] = steps.hi[last];
-            steps.node[i] = steps.node[last];
-        }
-        for (std::size_t i = 0; i < count; i += pack) {
-            const PackedGlance<Real> glance = visitor_->glance(PackedElements<Real>{
-                grid_->rule(last_), batch.level + static_cast<int>(pattern_.height),
-                steps.node.data() + i, Pack<Real>::load(steps.lo.data() + i),
-                Pack<Real>::load(steps.hi.data() + i)});
-            glance.descend.store(steps.descend.data() + i);
-            glance.stop.store(steps.stop.data() + i);
-            glance.bound.store(steps.bound.data() + i);
-        }
-    }
-    steps.descend[steps.end.count] = 0;
-    steps.stop[steps.end.count] = 0;
-    steps.bound[steps.end.count] = 0;
 }
 
 /// Of blocks whose ends all stop or are skipped.
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, const Steps& steps) {
-    for (std::size_t i = 0; i < steps.end.count; ++i) {
-        if (steps.stop[i] == 0) continue;
-        const std::size_t b = steps.end.block[i];
-        const std::size_t part = steps.end.part[i];
-        batch.stops[b] |= MaskOf<Real>{1} << (part - 2);
-        batch.bounds[part][b] = steps.bound[i];
-        batch.greatest_bounds[b] = std::max(batch.greatest_bounds[b], steps.bound[i]);
+void BlockWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, std::size_t first,
+                                                        std::size_t end, const Ends& ends) {
+    for (std::size_t b = first; b < end; ++b) {
+        if (ends.stop[b] == 0) continue;
+        batch.stops[b] |= ends.stop[b] << (ends_ - 2);
+        batch.greatest_bounds[b] = std::max(batch.greatest_bounds[b], ends.greatest[b]);
     }
 }
 

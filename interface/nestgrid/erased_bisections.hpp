@@ -79,7 +79,9 @@ public:
     virtual bool glance_at_leaf(Real lo, Real hi) = 0;
     virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
-    virtual PackedGlance<Real> glance(const PackedElements<Real>& e) = 0;
+    virtual PackedGlance<Real, 1> glance(const PackedElements<Real, 1>& e) = 0;
+    virtual PackedGlance<Real, 2> glance(const PackedElements<Real, 2>& e) = 0;
+    virtual PackedGlance<Real, 3> glance(const PackedElements<Real, 3>& e) = 0;
     virtual void expect(const NodeKey* nodes) const = 0;
     virtual bool names_edges() const = 0;
     virtual void begin_subtrees(std::uint32_t numbers) = 0;
@@ -114,7 +116,10 @@ public:
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
     bool names_edges() const { return to_->names_edges(); }
     void begin_subtrees(std::uint32_t numbers) { to_->begin_subtrees(numbers); }
-    PackedGlance<Real> glance(const PackedElements<Real>& e) { return to_->glance(e); }
+    template <std::size_t around>
+    PackedGlance<Real, around> glance(const PackedElements<Real, around>& e) {
+        return to_->glance(e);
+    }
     void expect(const NodeKey* nodes) const { to_->expect(nodes); }
     template <class Batch>
     unsigned extract(const Batch& batch, const BatchSelection& selection) {

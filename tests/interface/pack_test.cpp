@@ -149,13 +149,53 @@ void expect_order() {
             EXPECT_EQ(
                 std::vector<std::size_t>(known.part.begin(), known.part.begin() + known.count),
                 order);
-            std::erase_if(order, [](std::size_t part) { return part < pattern.ends; });
-            const auto& ends = block_orders<pattern>[entered];
-            EXPECT_EQ(std::vector<std::size_t>(ends.part.begin(), ends.part.begin() + ends.count),
-                      order);
         }
     }
     EXPECT_EQ(met, parts == 2 ? 9U : 121U);  // 3^2; (2 + 3^2)^2
+}
+
+/// Where the ends are split, and which parts a new node is of.
+template <int dim>
+void expect_new_nodes() {
+    static constexpr const auto& pattern = maubach_block<dim>;
+    constexpr auto bisections = maubach_bisections<dim>();
+    const auto sorted = [](std::size_t a, std::size_t b) {
+        return std::array{std::min(a, b), std::max(a, b)};
+    };
+    std::map<std::array<std::size_t, 2>, std::size_t> node_of;
+    std::array<std::size_t, 2 * pattern.ends> seen{};
+    unrolled<pattern.all_nodes - pattern.corners>([&](auto n) {
+        constexpr std::size_t node = pattern.corners + n;
+        node_of[sorted(pattern.parent[node][0], pattern.parent[node][1])] = node;
+        for (const std::size_t part : parts_around<pattern, node>) {
+            ++seen[part];
+            EXPECT_EQ(part >= pattern.ends, node >= pattern.nodes);
+        }
+    });
+    for (std::size_t part = 1; part < seen.size(); ++part) {
+        EXPECT_EQ(seen[part], 1U);
+        const auto& corner = pattern.part[part].corner;
+        const auto& between = bisections[pattern.part[part].bisection].parent;
+        EXPECT_EQ((node_of[sorted(corner[between[0]], corner[between[1]])]),
+                  pattern.part[part].middle);
+    }
+    EXPECT_EQ(node_of.size(), pattern.all_nodes - pattern.corners);
+    // Ends lie around the middle of one of the smaller cubes that a simplex of Kuhn's meets.
+    EXPECT_EQ(pattern.all_nodes - pattern.nodes, static_cast<std::size_t>(dim) + 1);
+    for (std::size_t set = 0; set < end_orders<pattern>.size(); ++set) {
+        const auto& order = end_orders<pattern>[set];
+        std::size_t met = 0;
+        for (std::size_t i = 0; i < order.count; ++i) {
+            EXPECT_TRUE(i == 0 || order.part[i] > order.part[i - 1]);
+            met |= std::size_t{1} << (order.part[i] - pattern.ends);
+        }
+        EXPECT_EQ(met, set);
+    }
+}
+
+TEST(Blocks, KnowTheirNewNodes) {
+    expect_new_nodes<2>();
+    expect_new_nodes<3>();
 }
 
 TEST(Blocks, KnowWhatComesNext) {

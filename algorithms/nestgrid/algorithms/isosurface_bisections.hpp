@@ -31,7 +31,13 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 return {visit, bound};
             }
             bool glance_at_leaf(Real lo, Real hi) override { return to->glance_at_leaf(lo, hi); }
-            PackedGlance<Real> glance(const PackedElements<Real>& e) override {
+            PackedGlance<Real, 1> glance(const PackedElements<Real, 1>& e) override {
+                return to->glance(e);
+            }
+            PackedGlance<Real, 2> glance(const PackedElements<Real, 2>& e) override {
+                return to->glance(e);
+            }
+            PackedGlance<Real, 3> glance(const PackedElements<Real, 3>& e) override {
                 return to->glance(e);
             }
             void expect(const NodeKey* nodes) const override { to->expect(nodes); }
@@ -73,11 +79,12 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
 
 /// The same of eight, without a branch.
 template <class Grid, class Field, class S, class Indicator, class Sink>
+template <std::size_t around>
 NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
-    const PackedElements<Real>& e) -> PackedGlance<Real> {
+    const PackedElements<Real, around>& e) -> PackedGlance<Real, around> {
     using Reals = Pack<Real>;
     using Mask = typename Reals::Mask;
-    PackedGlance<Real> result;
+    PackedGlance<Real, around> result;
     Mask holds;
     if constexpr (requires {
                       { packed_criterion_.holds(e.node, *indicator_, indicator_->look_up(e.node)) }
@@ -97,16 +104,19 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
             return mask != 0 ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         });
     }
-    const auto passes = [&](const Layer& layer) NESTGRID_INLINE_LAMBDA {
-        return at_most(
-            max(layer.packed_least_inside - e.hi, e.lo - layer.packed_greatest_outside),
-            result.bound);
-    };
     const std::span<const Layer> layers(layers_);
-    Mask interest = passes(layers[0]);
-    for (const Layer& layer : layers.subspan(1)) interest = interest | passes(layer);
-    result.descend = without(interest, holds);
-    result.stop = interest & holds;
+    unrolled<around>([&](auto i) NESTGRID_INLINE_LAMBDA {
+        const auto& [lo, hi] = e.range[i];
+        const auto passes = [&](const Layer& layer) NESTGRID_INLINE_LAMBDA {
+            return at_most(
+                max(layer.packed_least_inside - hi, lo - layer.packed_greatest_outside),
+                result.bound);
+        };
+        Mask interest = passes(layers[0]);
+        for (const Layer& layer : layers.subspan(1)) interest = interest | passes(layer);
+        result.descend[i] = without(interest, holds);
+        result.stop[i] = interest & holds;
+    });
     return result;
 }
 

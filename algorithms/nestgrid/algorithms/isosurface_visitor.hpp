@@ -113,7 +113,8 @@ public:
     };
     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside);
     bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
-    PackedGlance<Real> glance(const PackedElements<Real>& e);
+    template <std::size_t around>
+    PackedGlance<Real, around> glance(const PackedElements<Real, around>& e);
     NESTGRID_INLINE void expect(const NodeKey* nodes) const {
         const std::span<const NodeKey> eight(nodes, pack);
         if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
