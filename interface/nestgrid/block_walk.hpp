@@ -104,9 +104,9 @@ private:
     };
     /// What there is to know of the ends of blocks, reached or not.
     struct Ends {
-        std::array<Row<NodeKey>, pattern_.all_nodes - pattern_.nodes> keys;  // of new nodes
         Row<MaskOf<Real>> descend;  // bit i: end i
         Row<MaskOf<Real>> stop;
+        std::array<Row<NodeKey>, pattern_.all_nodes - pattern_.nodes> keys;  // of new nodes
         Row<Real> greatest;
     };
 

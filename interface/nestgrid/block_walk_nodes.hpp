@@ -47,8 +47,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve(const T* from, const
 
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve_keys(const Batch& batch,
-                                                                 std::size_t node, std::size_t first,
-                                                                 std::size_t end,
+                                                                 std::size_t node,
+                                                                 std::size_t first, std::size_t end,
                                                                  NodeKey* middles) const {
     const auto& [from, to] = pattern_.parent[node];
     halve(batch.keys[from], batch.keys[to], middles, first, end,

@@ -123,9 +123,9 @@ NESTGRID_INLINE auto BlockWalk<Grid, Field, Visitor>::see(Batch& batch, std::siz
             const auto bit = Bits::all(MaskOf<Real>{1} << (part < ends_ ? part - 2 : part - ends_));
             seen.descend = seen.descend | (glance.descend[i] & bit);
             seen.stop = seen.stop | (glance.stop[i] & bit);
-            seen.greatest =
-                max(seen.greatest,
-                    (glance.bound.template as<MaskOf<Real>>() & glance.stop[i]).template as<Real>());
+            seen.greatest = max(
+                seen.greatest,
+                (glance.bound.template as<MaskOf<Real>>() & glance.stop[i]).template as<Real>());
             glance.bound.store(batch.bounds[part].data() + first);
         });
     });
@@ -136,7 +136,8 @@ template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
     for (std::size_t first = 0; first < batch.count; first += pack) {
         const Seen seen = see<corners_ + 1, pattern_.nodes - 1>(
-            batch, first, [&](std::size_t node) NESTGRID_INLINE_LAMBDA { return batch.keys[node]; });
+            batch, first,
+            [&](std::size_t node) NESTGRID_INLINE_LAMBDA { return batch.keys[node]; });
         seen.descend.store(batch.entered.data() + first);
         seen.stop.store(batch.stops.data() + first);
         seen.greatest.store(batch.greatest_bounds.data() + first);

@@ -333,8 +333,9 @@ TEST(KnownBisections, DrawNoMoreThanIsEntered) {
         const LatticeField known_field(known, std::span<const float>(data.values));
         const LatticeField unknown_field(unknown, std::span<const float>(data.values));
         const HierarchicalIndicator indicator(known, known_field);
-        for (const TooSmall& bounds : {TooSmall{indicator, static_cast<float>(data.range), 1U << 31U},
-                                       TooSmall{indicator, 0, 8}}) {
+        for (const TooSmall& bounds :
+             {TooSmall{indicator, static_cast<float>(data.range), 1U << 31U},
+              TooSmall{indicator, 0, 8}}) {
             for (const double threshold : {0.0, 0.003, 0.02}) {
                 const Threshold<HierarchicalIndicator> criterion{&indicator,
                                                                  threshold * data.range};

@@ -106,7 +106,8 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::glance(
     }
     const std::span<const Layer> layers(layers_);
     unrolled<around>([&](auto i) NESTGRID_INLINE_LAMBDA {
-        const auto& [lo, hi] = e.range[i];
+        const Reals& lo = e.range[i].first;
+        const Reals& hi = e.range[i].second;
         const auto passes = [&](const Layer& layer) NESTGRID_INLINE_LAMBDA {
             return at_most(
                 max(layer.packed_least_inside - hi, lo - layer.packed_greatest_outside),
