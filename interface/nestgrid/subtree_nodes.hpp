@@ -27,8 +27,10 @@ inline constexpr std::size_t most_blocks = 32;
 /// element with which the walk of blocks began; from bit 8 its number.
 using SubtreeNode = std::uint32_t;
 
+inline constexpr SubtreeNode root_faces = 0xF0U;  ///< the latter
+
 /// Whether no element outside the root has the edge between two.
-constexpr bool is_within_root(SubtreeNode a, SubtreeNode b) { return (a & b & 0xF0U) == 0; }
+constexpr bool is_within_root(SubtreeNode a, SubtreeNode b) { return (a & b & root_faces) == 0; }
 
 /// \tparam pattern of the blocks
 template <const auto& pattern>
@@ -107,7 +109,7 @@ public:
         std::uint32_t step = extent_;
         for (std::size_t i = 1; i < corner; ++i) step *= per_direction_;
         if (corner > 0) number += step;
-        return number << number_at_ | (of & 0xF0U) | faces_at(corner);
+        return number << number_at_ | (of & root_faces) | faces_at(corner);
     }
     /// The node between two, in a subtree or above it; of a Pack, too.
     template <class Nodes>

@@ -86,9 +86,8 @@ double error(const Trilinear& u, vtkPolyData* surface) {
     return largest;
 }
 
-template <int n>
-void compare(std::size_t rounds) {
-    Bucky<n> bucky;
+void compare(int n, std::size_t rounds) {
+    BuckySamples bucky(n);
     const Trilinear u(bucky.samples, n);
     vtkNew<vtkImageData> image;
     image->SetDimensions(n, n, n);
@@ -145,6 +144,6 @@ void compare(std::size_t rounds) {
 
 int main(int argc, char** argv) {
     setenv("VTK_SMP_MAX_THREADS", "1", 1);  // read when VTK first looks for threads
-    at_either_size(argc, argv, 5, [](auto n, std::size_t rounds) { compare<n.value>(rounds); });
+    at_either_size(argc, argv, 5, [](auto n, std::size_t rounds) { compare(n.value, rounds); });
     return 0;
 }

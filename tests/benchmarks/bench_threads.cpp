@@ -15,8 +15,8 @@ namespace {
 
 using Soup = nestgrid::SimplexSoup<3, float>;
 
-template <int n, class Executor>
-void fill(Bucky<n>& bucky, float threshold, std::vector<Soup::Simplex>& soup,
+template <class Executor>
+void fill(BuckySamples& bucky, float threshold, std::vector<Soup::Simplex>& soup,
           const Executor& executor) {
     soup.clear();
     const double isovalue = bucky_isovalue;
@@ -28,8 +28,8 @@ void fill(Bucky<n>& bucky, float threshold, std::vector<Soup::Simplex>& soup,
                                   std::move(sinks), criterion, bucky.indicator, {}, executor);
 }
 
-template <int n>
-void compare_prerolls(const Bucky<n>& bucky, const nestgrid::TbbExecutor& two, std::size_t rounds) {
+void compare_prerolls(const BuckySamples& bucky, const nestgrid::TbbExecutor& two,
+                      std::size_t rounds) {
     const nestgrid::LatticeOctree<3> grid(bucky.grid.geometry());
     const nestgrid::LatticeField field(grid, std::span<const float>(bucky.samples));
     Contest contest(rounds);
@@ -41,9 +41,8 @@ void compare_prerolls(const Bucky<n>& bucky, const nestgrid::TbbExecutor& two, s
                           contest.time("one") / contest.time("two"));
 }
 
-template <int n>
-void compare(std::size_t rounds) {
-    Bucky<n> bucky;
+void compare(int n, std::size_t rounds) {
+    BuckySamples bucky(n);
     const nestgrid::TbbExecutor two(2);
     Contest::print_figure("threads", static_cast<double>(two.concurrency()));
     compare_prerolls(bucky, two, rounds);
@@ -74,6 +73,6 @@ void compare(std::size_t rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    at_either_size(argc, argv, 15, [](auto n, std::size_t rounds) { compare<n.value>(rounds); });
+    at_either_size(argc, argv, 15, [](auto n, std::size_t rounds) { compare(n.value, rounds); });
     return 0;
 }

@@ -22,32 +22,21 @@ using Tetrahedra = nestgrid::LatticeBisection<3>;
 using Samples = nestgrid::LatticeField<Tetrahedra, float>;
 using Triangle = std::array<float, 9>;
 
-/// n samples along each direction.
-template <int n>
-struct Bucky {
-    using Handwritten = HandwrittenBisection<static_cast<std::uint32_t>(n)>;
-
-    std::vector<float> samples = bucky_ball(n);
-    Tetrahedra grid{{.samples = {n, n, n}}};
+/// The samples of a cube, and the triangles drawn from them.
+struct BuckySamples {
+    std::vector<float> samples;
+    Tetrahedra grid;
     Samples field{grid, std::span<const float>(samples)};
     nestgrid::HierarchicalIndicator indicator{grid, field};
-    std::vector<typename Handwritten::Node> nodes = handwritten_nodes();
-    std::vector<Triangle> soup = std::vector<Triangle>(40 * std::size_t{n} * n + 1000);
+    std::vector<Triangle> soup;
 
-    std::vector<typename Handwritten::Node> handwritten_nodes() const {
-        std::vector<typename Handwritten::Node> result;
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            result.push_back({samples[i], nestgrid::bfloat16_above(indicator.stop(i)),
-                              nestgrid::bfloat16_above(indicator.bound(i))});
-        }
-        return result;
-    }
-
-    Handwritten handwritten(float threshold) {
-        Handwritten recursion(nodes.data(), bucky_isovalue, threshold, soup.data());
-        recursion.run();
-        return recursion;
-    }
+    /// \param n along each direction
+    explicit BuckySamples(int n)
+        : samples{bucky_ball(n)},
+          grid{{.samples = {n, n, n}}},
+          soup(40 * static_cast<std::size_t>(n) * static_cast<std::size_t>(n) + 1000) {}
+    BuckySamples(const BuckySamples&) = delete;  // the field refers to the rest
+    BuckySamples& operator=(const BuckySamples&) = delete;
 
     /// Writes the triangles of any grid and field into `soup`.
     /// \return how many
@@ -78,6 +67,31 @@ struct Bucky {
             criterion, by, {}, executor);
         if (counts != nullptr) *counts = result.front().counts;
         return static_cast<std::size_t>(to - soup.data());
+    }
+};
+
+/// The same with what a recursion by hand for n samples along each direction takes.
+template <int n>
+struct Bucky : BuckySamples {
+    using Handwritten = HandwrittenBisection<static_cast<std::uint32_t>(n)>;
+
+    std::vector<typename Handwritten::Node> nodes = handwritten_nodes();
+
+    Bucky() : BuckySamples(n) {}
+
+    std::vector<typename Handwritten::Node> handwritten_nodes() const {
+        std::vector<typename Handwritten::Node> result;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            result.push_back({samples[i], nestgrid::bfloat16_above(indicator.stop(i)),
+                              nestgrid::bfloat16_above(indicator.bound(i))});
+        }
+        return result;
+    }
+
+    Handwritten handwritten(float threshold) {
+        Handwritten recursion(nodes.data(), bucky_isovalue, threshold, soup.data());
+        recursion.run();
+        return recursion;
     }
 };
 

@@ -216,11 +216,25 @@ private:
         }
     }
 
+    /// Whether a face of a block or an element lies on one of the element with which the walk of
+    /// blocks began, as those on the boundary of the domain do.
+    NESTGRID_INLINE bool is_on_root_face(std::size_t id) const {
+        SubtreeNode faces = 0;
+        for (std::size_t across = 0; across < pattern_.corners; ++across) {
+            SubtreeNode of_all = root_faces;
+            for (std::size_t i = 0; i < pattern_.corners; ++i) {
+                if (i != across) of_all &= blocks_->in_subtree[0][Places::of(id, i)];
+            }
+            faces |= of_all;
+        }
+        return faces != 0;
+    }
+
     /// Sides of loops on the boundary of the domain.
     NESTGRID_INLINE void put_boundaries(std::span<const BatchEdge> cuts, const Number* v) {
         for (const Entry& entry : entries()) {
             const std::size_t id = entry.id;
-            if (blocks_->boundary(id, 1) == 0) continue;
+            if (!is_on_root_face(id) || blocks_->boundary(id, 1) == 0) continue;
             for_each_part(entry, [&](std::size_t part, unsigned bits) {
                 const auto& piece = contours_->piece(bits);
                 const auto place = [&](std::size_t corner) {
