@@ -39,7 +39,7 @@ template <class Real>
 using PackedRange = std::pair<Pack<Real>, Pack<Real>>;
 
 /// Elements that one rule splits, on one level, eight at once; some may be there several times.
-/// 	param around  how many lie around each new node
+/// \tparam around how many lie around each new node
 template <class Real, std::size_t around = 1>
 struct PackedElements {
     const Rule& rule;

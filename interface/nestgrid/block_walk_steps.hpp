@@ -114,7 +114,8 @@ NESTGRID_INLINE auto BlockWalk<Grid, Field, Visitor>::see(Batch& batch, std::siz
         PackedElements<Real, parts.size()> elements{
             grid_->rule(one.bisection), batch.level + one.depth, keys(node) + first, {}};
         unrolled<parts.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            static_assert(pattern_.part[parts[i]].depth == one.depth);
+            constexpr auto part = pattern_.part[parts[i]];
+            static_assert(part.depth == one.depth && part.bisection == one.bisection);
             elements.range[i] = range_within<parts[i]>(batch, first);
         });
         const PackedGlance<Real, parts.size()> glance = visitor_->glance(elements);
