@@ -64,13 +64,14 @@ struct BisectionBlock {
             part[1].corner[i] = static_cast<std::uint8_t>(std::min(i, corners - 1));
         }
         part[1].bisection = static_cast<std::uint8_t>(of);
-        for (std::size_t p = 1; height > 0 && p < 2 * ends; ++p) {
-            const KnownBisection& rule = bisections[part[p].bisection];
-            if (p == ends) nodes = all_nodes;
-            part[p].middle = node_between(part[p].corner[rule.parent[0]],  //
-                                          part[p].corner[rule.parent[1]]);
-            for (std::size_t c = 0; p < ends && c < 2; ++c) {
-                const KnownBisection::Half& half = rule.child[c];
+        const auto split = [&](Part& p) {
+            const KnownBisection& rule = bisections[p.bisection];
+            p.middle = node_between(p.corner[rule.parent[0]], p.corner[rule.parent[1]]);
+        };
+        for (std::size_t p = 1; p < ends; ++p) {
+            split(part[p]);
+            for (std::size_t c = 0; c < 2; ++c) {
+                const KnownBisection::Half& half = bisections[part[p].bisection].child[c];
                 Part& child = part[2 * p + c];
                 for (std::size_t i = 0; i < 4; ++i) {
                     const std::uint8_t from = half.corner[std::min(i, corners - 1)];
@@ -81,6 +82,8 @@ struct BisectionBlock {
                 child.mirrored = part[p].mirrored != (half.orientation < 0);
             }
         }
+        nodes = all_nodes;
+        for (std::size_t p = ends; height > 0 && p < part.size(); ++p) split(part[p]);
         for (unsigned entered = 0; height > 0 && entered < reached.size(); ++entered) {
             unsigned parts = 4U | 8U;  // by number
             for (std::size_t p = 2; p < ends; ++p) {

@@ -101,6 +101,14 @@ private:
         Pack<MaskOf<Real>> descend;
         Pack<MaskOf<Real>> stop;
         Pack<Real> greatest;  // bound where any stops
+
+        /// \param first of the eight
+        NESTGRID_INLINE void store(std::size_t first, Row<MaskOf<Real>>& descends,
+                                   Row<MaskOf<Real>>& stops, Real* bounds) const {
+            descend.store(descends.data() + first);
+            stop.store(stops.data() + first);
+            greatest.store(bounds + first);
+        }
     };
     /// What there is to know of the ends of blocks, reached or not.
     struct Ends {

@@ -76,8 +76,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
                   });
         halve_keys(batch, at, first, first + pack, batch.keys[at]);
     });
-    each_new_node([&](auto at, std::size_t first)
-                      NESTGRID_INLINE_LAMBDA { expect(batch.keys[at] + first); });
+    each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
+        if constexpr (at > corners_) expect(batch.keys[at] + first);  // the first one has been seen
+    });
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
         Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
             return field_->template value_at<!TellsWhereWhole<Grid>>(batch.nodes[at][first + b],
@@ -94,7 +95,7 @@ void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
         const auto& [from, to] = pattern_.parent[at];
         grid_->middles(row(batch.nodes[from]), row(batch.nodes[to]), row(batch.nodes[at]));
         grid_->keys(row(batch.nodes[at]), row(batch.keys[at]));
-        for (std::size_t first = 0; first < batch.count; first += pack) {
+        for (std::size_t first = 0; at > corners_ && first < batch.count; first += pack) {
             expect(batch.keys[at] + first);
         }
     }

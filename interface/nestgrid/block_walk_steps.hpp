@@ -136,12 +136,9 @@ NESTGRID_INLINE auto BlockWalk<Grid, Field, Visitor>::see(Batch& batch, std::siz
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
     for (std::size_t first = 0; first < batch.count; first += pack) {
-        const Seen seen = see<corners_ + 1, pattern_.nodes - 1>(
-            batch, first,
-            [&](std::size_t node) NESTGRID_INLINE_LAMBDA { return batch.keys[node]; });
-        seen.descend.store(batch.entered.data() + first);
-        seen.stop.store(batch.stops.data() + first);
-        seen.greatest.store(batch.greatest_bounds.data() + first);
+        const auto keys = [&](std::size_t node) NESTGRID_INLINE_LAMBDA { return batch.keys[node]; };
+        see<corners_ + 1, pattern_.nodes - 1>(batch, first, keys)
+            .store(first, batch.entered, batch.stops, batch.greatest_bounds.data());
     }
 }
 
@@ -261,6 +258,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch,
                                       batch.ends.begin() + std::min(b + pack, end),
                                       [](std::uint8_t set) { return set != 0; });
     };
+    const auto keys = [&](std::size_t node) NESTGRID_INLINE_LAMBDA {
+        return ends.keys[node - pattern_.nodes].data();
+    };
     for (std::size_t b = first / pack * pack; b < end;) {
         if (!reached(b)) {
             Pack<MaskOf<Real>>::all(0).store(ends.descend.data() + b);
@@ -272,13 +272,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch,
         while (reached(next)) next += pack;
         find_new_nodes(batch, std::max(b, first), std::min(next, end), ends);
         for (; b < next; b += pack) {
-            const Seen seen = see<pattern_.nodes, pattern_.all_nodes - 1>(
-                batch, b, [&](std::size_t node) NESTGRID_INLINE_LAMBDA {
-                    return ends.keys[node - pattern_.nodes].data();
-                });
-            seen.descend.store(ends.descend.data() + b);
-            seen.stop.store(ends.stop.data() + b);
-            seen.greatest.store(ends.greatest.data() + b);
+            see<pattern_.nodes, pattern_.all_nodes - 1>(batch, b, keys)
+                .store(b, ends.descend, ends.stop, ends.greatest.data());
         }
     }
 }
