@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <nestgrid/traversal.hpp>
+#include <nestgrid/traversal_nodes.hpp>
 
 namespace nestgrid {
 

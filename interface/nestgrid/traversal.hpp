@@ -122,6 +122,13 @@ struct ElementState {
 ///     bool passes_over_leaves() const;         optional: whether leaves around which nothing is
 ///                                              closed may be left out, unless coarse
 ///     NodeMask children_to_enter(const State&) optional: one bit each, where it said descend
+///     bool looks_ahead() const;                optional: whether leaves that are no coarse elements
+///                                              need no inspect(); then it has
+///     NodeMask leaves_of_interest(const Rule&, std::span<const Real> values) const;
+///                                              the children at which it would say stop if they are
+///                                              leaves, one bit each, by P_S U at the nodes
+///     void count_leaf(bool of_interest);       called for each of these leaves, if it is of
+///                                              interest right before extract()
 ///     bool sees_hidden() const;                optional: whether it looks at hidden elements
 ///     void walk_bisections(const State&)       optional: takes the element and all below it in a
 ///                                              walk of its own (known_bisection.hpp), where
@@ -176,7 +183,7 @@ public:
         if constexpr (requires { visitor.walk_bisections(s); }) {
             if (visitor.walks_bisections()) return visitor.walk_bisections(s);
         }
-        inspect(s, visitor);
+        inspect(s, detail::call_split(*grid_, *s.context, s.element), visitor);
     }
 
     /// Keys of the corners.
@@ -228,7 +235,7 @@ private:
     bool make_coarse(std::size_t i, State& s) const;
 
     template <class Visitor>
-    void inspect(const State& s, Visitor& visitor) const;
+    void inspect(const State& s, const Rule* rule, Visitor& visitor) const;
 
     template <class Visitor>
     void descend(const State& s, const Split& split, NodeMask interpolated, NodeKey* keys,

@@ -6,61 +6,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include <nestgrid/key_table.hpp>
 #include <nestgrid/traversal.hpp>
 
 namespace nestgrid {
-
-namespace detail {
-
-/// The first components of the weighted mean of the parents of a stencil; component c of node n is
-/// at value[n * stride + c].
-template <std::size_t count, class Real>
-std::array<Real, count> interpolate(const Stencil& s, const Real* value, std::size_t stride) {
-    std::array<Real, count> result;
-    const auto set = [&](auto&& mean) {
-        for (std::size_t c = 0; c < count; ++c) {
-            result[c] = mean([&](std::size_t i) { return value[s.parent[i] * stride + c]; });
-        }
-    };
-    if (s.mean == Mean::midpoint) {
-        set([](const auto& at) { return midpoint(at(0), at(1)); });
-    } else if (s.mean == Mean::face) {
-        set([](const auto& at) { return face_mean(at(0), at(1), at(2), at(3)); });
-    } else {
-        set([&](const auto& at) {
-            std::array<Real, max_corners> product;
-            Real lo = at(0);
-            Real hi = at(0);
-            for (std::size_t i = 0; i < s.count; ++i) {
-                product[i] = static_cast<Real>(s.weight[i] * at(i));
-                lo = std::min(lo, at(i));
-                hi = std::max(hi, at(i));
-            }
-            return ordered_sum(std::span<Real>(product.data(), s.count), lo, hi);
-        });
-    }
-    return result;
-}
-template <class Real>
-Real interpolate(const Stencil& s, const Real* value, std::size_t stride) {
-    return interpolate<1>(s, value, stride)[0];
-}
-inline Point interpolate(const Stencil& s, const Point* position) {
-    return interpolate<3>(s, position->data(), 3);
-}
-
-/// \throw GridError where one of these new nodes of an element has no value
-template <class State>
-void require_no_missing(NodeMask missing, const State& s) {
-    if (missing == 0) return;
-    throw GridError("the field has no value at new node " +
-                    std::to_string(std::countr_zero(missing)) + " of an element on level " +
-                    std::to_string(s.level) + " below coarse element " + std::to_string(s.coarse));
-}
-
-}  // namespace detail
 
 template <class Grid, class Field, Needs needs>
 std::vector<std::uint8_t> Traversal<Grid, Field, needs>::coarse_boundary(const Grid& grid) {
@@ -147,20 +98,21 @@ bool Traversal<Grid, Field, needs>::make_coarse(std::size_t i, State& s) const {
 
 template <class Grid, class Field, Needs needs>
 template <class Visitor>
-void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) const {
+void Traversal<Grid, Field, needs>::inspect(const State& s, const Rule* rule,
+                                            Visitor& visitor) const {
     std::array<NodeKey,
                needs.keys || !detail::by_heart<Grid>(Feature::constrained) ? node_capacity_ : 1>
         keys;
     const Hidden hidden = hidden_part(*grid_, *s.context, s.element);
     if (hidden == Hidden::wholly && !detail::sees_hidden(visitor)) return;
     Split split;
-    split.rule = detail::call_split(*grid_, *s.context, s.element);
-    if (split.rule == nullptr) {
+    split.rule = rule;
+    if (rule == nullptr) {
         if (visitor.inspect(s, split).visit != Visit::skip) visitor.extract(s);
         return;
     }
     const auto corners = static_cast<std::size_t>(s.corner_count());
-    const auto count = static_cast<std::size_t>(split.rule->new_node_count());
+    const auto count = static_cast<std::size_t>(rule->new_node_count());
     if constexpr (needs.keys) {
         if constexpr (State::carries_keys) std::copy_n(s.key.begin(), corners, keys.begin());
         bool own = false;
@@ -173,7 +125,7 @@ void Traversal<Grid, Field, needs>::inspect(const State& s, Visitor& visitor) co
         }
         if constexpr (State::carries_keys) {
             for (std::size_t n = 0; n < count && !own; ++n) {
-                keys[corners + n] = derived_key(split.rule->new_nodes[n], keys.data());
+                keys[corners + n] = derived_key(rule->new_nodes[n], keys.data());
             }
         }
         split.keys = std::span<const NodeKey>(keys.data() + corners, count);
@@ -238,25 +190,39 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
                                           Visitor& visitor) const {
     constexpr std::size_t c_count = State::components;
     const auto corners = static_cast<std::size_t>(s.corner_count());
+    const std::size_t children = rule.children.size();
     std::array<Element, detail::child_capacity<Grid>()> elements;
     detail::call_children(*grid_, *s.context, s.element,
-                          std::span<Element>(elements.data(), rule.children.size()));
+                          std::span<Element>(elements.data(), children));
     const bool any_interpolated = s.interpolated != 0 || nodes.interpolated != 0;
     bool passes_over_leaves = false;
     if constexpr (requires { visitor.passes_over_leaves(); }) {
         passes_over_leaves = parts == nullptr && visitor.passes_over_leaves();
     }
+    bool looks_ahead = false;
+    if constexpr (requires { visitor.looks_ahead(); }) looks_ahead = visitor.looks_ahead();
+    std::optional<NodeMask> of_interest;
     const NodeMask wanted = detail::children_to_enter(visitor, s);
-    for (std::size_t c = 0; c < rule.children.size(); ++c) {
+    for (std::size_t c = 0; c < children; ++c) {
         if ((wanted >> c & 1U) == 0) continue;
         const Child& child = rule.children[c];
-        if (passes_over_leaves && detail::call_split(*grid_, *s.context, elements[c]) == nullptr) {
-            continue;
-        }
         if constexpr (may_offer<Grid>(Feature::masked)) {
             if (offers(*grid_, Feature::masked) &&
                 detail::call_masked(*grid_, *s.context, elements[c])) {
                 continue;
+            }
+        }
+        const Rule* const split = detail::call_split(*grid_, *s.context, elements[c]);
+        if (passes_over_leaves && split == nullptr) continue;
+        const bool is_known = looks_ahead && split == nullptr;
+        if constexpr (requires { visitor.looks_ahead(); }) {
+            if (is_known) {
+                if (!of_interest) of_interest = visitor.leaves_of_interest(rule, nodes.value);
+                const bool is_shown =
+                    detail::sees_hidden(visitor) || !is_hidden(*grid_, *s.context, elements[c]);
+                const bool enters = (*of_interest >> c & 1U) != 0;
+                if (is_shown) visitor.count_leaf(enters);
+                if (!is_shown || !enters) continue;
             }
         }
         State k;
@@ -302,51 +268,10 @@ void Traversal<Grid, Field, needs>::enter(const State& s, const Rule& rule, cons
             k.closed.any = false;
             if (parts != nullptr) k.closed = parts->of(child);
         }
-        inspect(k, visitor);
-    }
-}
-
-template <class Grid, class Field, Needs needs>
-void Traversal<Grid, Field, needs>::project(const State& s, const Split& split,
-                                            NodeMask interpolated, Real* value) const {
-    constexpr std::size_t c_count = State::components;
-    const Rule& rule = *split.rule;
-    const auto corners = static_cast<std::size_t>(s.corner_count());
-    std::copy_n(s.value.begin(), corners * c_count, value);
-    const NodeMask mean = interpolated | split.constrained;
-    const NodeMask which = rule.all() & ~mean;
-    if (which != 0) {
-        const NodeMask missing = detail::call_new_values(
-            *field_, *s.context, s.element, which,
-            std::span<Real>(value + corners * c_count, rule.new_nodes.size() * c_count));
-        detail::require_no_missing(missing & which, s);
-    }
-    if ((mean & rule.all()) == 0) return;
-    for (NodeMask left = mean & rule.all(); left != 0; left &= left - 1) {
-        const auto n = static_cast<std::size_t>(std::countr_zero(left));
-        std::ranges::copy(detail::interpolate<c_count>(rule.new_nodes[n], value, c_count),
-                          value + (corners + n) * c_count);
-    }
-}
-
-template <class Grid, class Field, Needs needs>
-void Traversal<Grid, Field, needs>::project_positions(const State& s, const Split& split,
-                                                      NodeMask interpolated,
-                                                      Point* position) const {
-    const Rule& rule = *split.rule;
-    const auto corners = static_cast<std::size_t>(s.corner_count());
-    if constexpr (State::carries_positions) std::copy_n(s.position.begin(), corners, position);
-    NodeMask given = 0;
-    if constexpr (may_offer<Grid>(Feature::new_positions)) {
-        if (new_positions_) {
-            given = rule.all() & ~(interpolated | split.constrained);
-            detail::call_new_positions(*grid_, *s.context, s.element, given,
-                                       std::span<Point>(position + corners, rule.new_nodes.size()));
-        }
-    }
-    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-        if ((given >> n & 1U) == 0) {
-            position[corners + n] = detail::interpolate(rule.new_nodes[n], position);
+        if (is_known) {
+            visitor.extract(k);
+        } else {
+            inspect(k, split, visitor);
         }
     }
 }
@@ -354,3 +279,4 @@ void Traversal<Grid, Field, needs>::project_positions(const State& s, const Spli
 }  // namespace nestgrid
 
 #include <nestgrid/closed_steps.hpp>
+#include <nestgrid/traversal_nodes.hpp>

@@ -17,6 +17,41 @@ namespace {
 
 const std::vector<double> epsilons(six_thresholds.begin(), six_thresholds.end());
 
+/// Inspects every element that is met, leaves too, for the level 0.
+struct Inspection {
+    const HierarchicalIndicator* indicator;
+    double threshold;
+    TraversalCounts counts{};
+
+    template <class State>
+    Decision inspect(const State& s, const Split& split) {
+        const auto values = std::span(s.value).first(static_cast<std::size_t>(s.corner_count()));
+        const double bound =
+            split.rule == nullptr ? 0.0 : double{indicator->bound(*split.rule, split.keys)};
+        ++counts.calls;
+        if (-std::ranges::max(values) > bound) return {Visit::skip};
+        if (std::ranges::min(values) - std::nextafter(0.0, -1.0) > bound) return {Visit::skip};
+        ++counts.visited;
+        if (split.rule == nullptr) return {Visit::stop};
+        const NodeMask stops = Threshold<HierarchicalIndicator>{
+            indicator, threshold}({*split.rule, split.keys, s.level + 1, split.outside});
+        return {stops == split.rule->all() ? Visit::stop : Visit::descend, stops};
+    }
+    template <class State>
+    void extract(const State&) {}
+};
+
+/// Leaves are not inspected one by one, but counted as if they were.
+template <class Grid, class Field>
+void expect_counts_of_inspection(const TraversalCounts& counts, const Grid& grid,
+                                 const Field& field, const HierarchicalIndicator& indicator,
+                                 double threshold) {
+    Inspection inspection{&indicator, threshold};
+    Traversal<Grid, Field, Needs{.keys = true}>(grid, field, indicator.hanging()).run(inspection);
+    EXPECT_EQ(counts.calls, inspection.counts.calls);
+    EXPECT_EQ(counts.visited, inspection.counts.visited);
+}
+
 template <class Grid>
 void expect_closed_at(const Grid& grid, const NodalSamples& samples,
                       const std::vector<double>& thresholds) {
@@ -29,6 +64,9 @@ void expect_closed_at(const Grid& grid, const NodalSamples& samples,
             const auto result = isosurface(grid, field, 0.0, indicator,
                                            {.threshold = threshold, .cap = cap, .verify = true});
             expect_closed(result.surface, cap);
+            if (!cap) {
+                expect_counts_of_inspection(result.counts, grid, field, indicator, threshold);
+            }
             if constexpr (Grid::dimension == 3) {
                 if (samples.generic && !cap) {
                     EXPECT_EQ(surface_report(result.surface).degenerate_triangles, 0U);

@@ -22,6 +22,7 @@
 #include <span>
 
 #include <nestgrid/algorithms/contour_table.hpp>
+#include <nestgrid/pack.hpp>
 
 namespace nestgrid {
 
@@ -37,35 +38,51 @@ namespace detail {
 /// bit, as those of boxes along the axes are.
 template <std::size_t n>
 bool is_parallelepiped(std::span<const Point, n> x) {
-    bool same = true;  // no branch on each: nobody could predict where they end
-    for (std::size_t i = 3; i < n; ++i) {
-        if (std::has_single_bit(i)) continue;
-        const std::size_t first = i & (~i + 1);
-        for (std::size_t d = 0; d < 3; ++d) {
-            same &= x[i][d] - x[0][d] == (x[first][d] - x[0][d]) + (x[i - first][d] - x[0][d]);
-        }
+    // How far a corner is from the sum of two edges: 0, all of its bits, or something else.
+    const auto off = [](const auto& corner, const auto& a, const auto& b, const auto& first) {
+        return ((corner - first) - ((a - first) + (b - first))).template as<std::uint64_t>();
+    };
+    const auto xy = [&](std::size_t i) { return Pack<double, 2>::load(x[i].data()); };
+    const auto z = [&](const std::array<std::size_t, 4>& of) {
+        return Pack<double, 4>::make([&](auto i) NESTGRID_INLINE_LAMBDA { return x[of[i]][2]; });
+    };
+    auto xy_off = off(xy(3), xy(1), xy(2), xy(0));
+    constexpr std::size_t last = n - 1;
+    constexpr bool solid = n == 8;
+    if constexpr (solid) {
+        xy_off = xy_off | off(xy(5), xy(1), xy(4), xy(0)) | off(xy(6), xy(2), xy(4), xy(0)) |
+                 off(xy(7), xy(1), xy(6), xy(0));
     }
-    return same;
+    const auto z_off =
+        off(z({3, solid ? 5 : last, solid ? 6 : last, last}), z({1, 1, solid ? 2 : 1, 1}),
+            z({2, solid ? 4 : 2, solid ? 4 : 2, solid ? 6 : 2}), z({0, 0, 0, 0}));
+    const auto all = xy_off.numbers();
+    const auto z_all = z_off.numbers();
+    return (all[0] | all[1] | z_all[0] | z_all[1] | z_all[2] | z_all[3]) == 0;
 }
 
-/// The same residual: there the fit is the mean and half the mean difference in each direction.
+/// The same residual: there the fit leaves nothing but the twists, products of two or three
+/// coordinates, which are 1 or -1 at the corners.
 template <std::size_t n>
 double affine_residual_of_parallelepiped(std::span<const double, n> u) {
-    constexpr std::size_t directions = n == 4 ? 2 : 3;
-    double mean = 0;
-    std::array<double, directions> slope{};
-    for (std::size_t i = 0; i < n; ++i) {
-        mean += u[i];
-        for (std::size_t d = 0; d < directions; ++d) slope[d] += (i >> d & 1U) != 0 ? u[i] : -u[i];
+    if constexpr (n == 4) {
+        return std::abs((u[0] - u[1]) - (u[2] - u[3])) / 4;
+    } else {
+        std::array<double, 4> sum;
+        std::array<double, 4> rise;
+        for (std::size_t i = 0; i < 4; ++i) {
+            sum[i] = u[i] + u[i + 4];
+            rise[i] = u[i + 4] - u[i];
+        }
+        const double xy = (sum[0] - sum[1]) - (sum[2] - sum[3]);
+        const double xz = (rise[1] - rise[0]) + (rise[3] - rise[2]);
+        const double yz = (rise[2] - rise[0]) + (rise[3] - rise[1]);
+        const double xyz = (rise[0] - rise[1]) - (rise[2] - rise[3]);
+        // The signs of the first three multiply to 1, that of the last one is any.
+        const double even = std::max(std::abs(xy + xz + yz), std::abs(xy - xz - yz));
+        const double odd = std::max(std::abs(xz - xy - yz), std::abs(yz - xy - xz));
+        return (std::max(even, odd) + std::abs(xyz)) / 8;
     }
-    double greatest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        double fit = mean;
-        for (std::size_t d = 0; d < directions; ++d)
-            fit += (i >> d & 1U) != 0 ? slope[d] : -slope[d];
-        greatest = std::max(greatest, std::abs(u[i] - fit / n));
-    }
-    return greatest;
 }
 
 /// Whether the edges of a prism between its two triangles are equal, to the last bit.

@@ -44,6 +44,9 @@ struct Threshold {
                 return nodes.rule.all() & ~nodes.outside;
             }
         }
+        if constexpr (requires { indicator->stops_at_most(nodes.keys, epsilon); }) {
+            return indicator->stops_at_most(nodes.keys, epsilon) & ~nodes.outside;
+        }
         NodeMask mask = 0;
         for (std::size_t i = 0; i < nodes.keys.size(); ++i) {
             if (indicator->stop(nodes.keys[i]) <= epsilon) mask |= NodeMask{1} << i;

@@ -65,6 +65,18 @@ public:
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
     NESTGRID_INLINE float stop(NodeKey node) const { return bfloat16_value(entry(node).stop); }
 
+    /// Of some nodes, those whose stop is at most `limit`, one bit each.
+    NESTGRID_INLINE NodeMask stops_at_most(std::span<const NodeKey> nodes, double limit) const {
+        if (!(limit >= 0)) return 0;
+        const auto most = static_cast<std::uint16_t>(
+            std::bit_cast<std::uint32_t>(float_below(limit)) >> 16U);  // in the order of numbers
+        NodeMask mask = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            mask |= NodeMask{entry(nodes[i]).stop <= most} << i;
+        }
+        return mask;
+    }
+
     /// U and P_S U differ by at most this at a node of the finest level that is interpolated.
     double offset_bound(NodeKey node) const { return own_errors_ ? bound(node) : stop(node); }
 

@@ -143,6 +143,34 @@ NESTGRID_VISITOR::inspect(const State& s, const Split& split) -> Decision {
     return decision;
 }
 
+/// Those with corners on both sides of a level.
+template <class Grid, class Field, class S, class Indicator, class Sink>
+NESTGRID_INLINE NodeMask IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::leaves_of_interest(
+    const Rule& rule, std::span<const Real> values) const {
+    constexpr Shape only = only_shape<Grid>();
+    const std::span<const Child> children(rule.children);
+    NodeMask of_interest = 0;
+    for (const Layer& layer : layers_) {
+        for (std::size_t c = 0; c < children.size(); ++c) {
+            const Topology& t = topology(only == Shape::point ? children[c].shape : only);
+            unsigned inside = 0;
+            for (std::size_t i = 0; i < t.corners; ++i) {
+                const std::size_t node = children[c].corner[i];
+                inside += values[node * State::components] >= layer.least_inside;
+            }
+            of_interest |= NodeMask{inside != 0 && inside != t.corners} << c;
+        }
+    }
+    return of_interest;
+}
+
+NESTGRID_VISITOR::count_leaf(bool of_interest) -> void {
+    ++counts_.calls;
+    if ((counts_.calls & 0xFFFFU) == 0) tick(0, 0);
+    counts_.visited += of_interest;
+    element_bound_ = 0;
+}
+
 NESTGRID_VISITOR::count(std::uint64_t calls, std::uint64_t visited) -> void {
     counts_.calls += calls;
     counts_.visited += visited;

@@ -101,6 +101,10 @@ public:
         const NodeMask* children = enter_->find(s.path);
         return children == nullptr ? 0 : *children;
     }
+    /// Caps also lie in leaves no level passes through.
+    bool looks_ahead() const { return !options_->cap; }
+    NodeMask leaves_of_interest(const Rule& rule, std::span<const Real> values) const;
+    void count_leaf(bool of_interest);
     /// What hidden elements would draw on faces around them is recorded all the same.
     bool sees_hidden() const { return recording_; }
 

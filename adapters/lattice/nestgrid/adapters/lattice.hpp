@@ -137,14 +137,12 @@ public:
                 out[k] = position(corner_of_box(low, level, k));
             return;
         }
-        out[0] = position(low);
+        std::array<std::array<double, 2>, 3> along{{{}, {}, {geometry_.origin[2], 0}}};
         for (std::size_t d = 0; d < size_; ++d) {
-            const double beyond = along_[d][at(low, d) + (1U << level)];
-            for (std::size_t k = 0; k < std::size_t{1} << d; ++k) {
-                Point& x = out[k + (std::size_t{1} << d)];
-                x = out[k];
-                x[d] = beyond;
-            }
+            along[d] = {along_[d][at(low, d)], along_[d][at(low, d) + (1U << level)]};
+        }
+        for (std::size_t k = 0; k < corners; ++k) {
+            out[k] = {along[0][k & 1U], along[1][k >> 1U & 1U], along[2][k >> 2U & 1U]};
         }
     }
     Point node_position(NodeKey node) const { return position(place(node)); }
