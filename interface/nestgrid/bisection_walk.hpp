@@ -50,7 +50,10 @@ private:
     static constexpr std::size_t last_ = Grid::bisections.size() - 1;
     static constexpr bool in_blocks_ = [] {
         if constexpr ((whole || TellsWhereWhole<Grid>)&&KnowsBlocks<Grid> && Packable<Real>) {
-            return requires(Visitor & v, const PackedElements<Real>& e) { v.glance(e); };
+            return requires(Visitor & v, const PackedElements<Real>& e) { v.glance(e); }
+            || requires(Visitor & v, const PackedBlocks<Real>& b) {
+                v.template see<BlockParts::ends>(b);
+            };
         }
         return false;
     }();

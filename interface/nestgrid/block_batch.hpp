@@ -10,51 +10,15 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <utility>
 
 #include <nestgrid/batch_cuts.hpp>
 #include <nestgrid/bisection_block.hpp>
+#include <nestgrid/block_glance.hpp>
 #include <nestgrid/pack.hpp>
 #include <nestgrid/subtree_nodes.hpp>
 #include <nestgrid/wide_point.hpp>
 
 namespace nestgrid {
-
-/// The least and the greatest of an element's values.
-/// \tparam Number Real, or several at once
-template <class Number>
-NESTGRID_INLINE std::pair<Number, Number> range_of(const Number& a, const Number& b,
-                                                   const Number& c, const Number& d) {
-    using std::max;
-    using std::min;
-    return {min(min(a, b), min(c, d)), max(max(a, b), max(c, d))};
-}
-template <class Real>
-NESTGRID_INLINE std::pair<Real, Real> range_of(const std::array<Real, 4>& u) {
-    return range_of(u[0], u[1], u[2], u[3]);
-}
-
-/// The least and the greatest value at the corners of elements.
-template <class Real>
-using PackedRange = std::pair<Pack<Real>, Pack<Real>>;
-
-/// Elements that one rule splits, on one level, eight at once; some may be there several times.
-/// \tparam around how many lie around each new node
-template <class Real, std::size_t around = 1>
-struct PackedElements {
-    const Rule& rule;
-    int level;
-    const NodeKey* node;  ///< new nodes
-    std::array<PackedRange<Real>, around> range;
-};
-
-/// What a visitor makes of them.
-template <class Real, std::size_t around = 1>
-struct PackedGlance {
-    std::array<typename Pack<Real>::Mask, around> descend;
-    std::array<typename Pack<Real>::Mask, around> stop;  ///< not both
-    Pack<Real> bound;                                    ///< where any of them stops
-};
 
 /// Where the nodes of a pattern's blocks, and the corners of the elements beside them, are kept in
 /// the rows of a batch. What is in a batch has a number: blocks have 0 ... most_blocks - 1, and the

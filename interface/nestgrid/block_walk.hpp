@@ -37,8 +37,12 @@ private:
 };
 
 /// Walks down from an element that starts a block and in which all is whole. A visitor has
-///     PackedGlance glance(const PackedElements&) what to do with each of them
-///     void expect(const NodeKey* nodes)          optional: eight that will be glanced at
+///     PackedGlance glance(const PackedElements&) what to do with each of them; or instead
+///     PackedSight see<BlockParts>(const PackedBlocks&)
+///                                                of many elements at once
+///     void expect(const NodeKey* nodes, std::size_t rows)
+///                                                optional: eight nodes in each of some rows,
+///                                                most_blocks apart, that will be glanced at
 ///     unsigned extract(const BlockBatch&, const BatchSelection&)
 ///             what is selected, and in how many of the leaves there was anything to extract
 ///     bool names_edges() const                   optional, with the next one: whether batches are
@@ -53,7 +57,9 @@ public:
     using Node = typename Grid::Node;
 
     BlockWalk(const Grid& grid, const Field& field, Visitor& visitor, WalkCounts& count)
-        : grid_{&grid}, field_{&field}, visitor_{&visitor}, count_{&count} {}
+        : grid_{&grid}, field_{&field}, visitor_{&visitor}, count_{&count} {
+        for (std::size_t i = 0; i < rules_.size(); ++i) rules_[i] = &grid.rule(i);
+    }
 
     /// \param path twice the level, plus 1 where the orientation is negative
     NESTGRID_NOINLINE void run(const std::array<Node, 4>& n, const std::array<Real, 4>& u,
@@ -96,20 +102,6 @@ private:
             return taken < stopped_count ? stopped[taken].before : ~std::size_t{0};
         }
     };
-    /// What is seen of some parts of eight blocks: bit i of each for the i-th of them.
-    struct Seen {
-        Pack<MaskOf<Real>> descend;
-        Pack<MaskOf<Real>> stop;
-        Pack<Real> greatest;  // bound where any stops
-
-        /// \param first of the eight
-        NESTGRID_INLINE void store(std::size_t first, Row<MaskOf<Real>>& descends,
-                                   Row<MaskOf<Real>>& stops, Real* bounds) const {
-            descend.store(descends.data() + first);
-            stop.store(stops.data() + first);
-            greatest.store(bounds + first);
-        }
-    };
     /// What there is to know of the ends of blocks, reached or not.
     struct Ends {
         Row<MaskOf<Real>> descend;  // bit i: end i
@@ -143,11 +135,12 @@ private:
                     NodeKey* middles) const;
     void make_nodes(Batch& batch) const;
     void ask_for_nodes(Batch& batch) const;
-    NESTGRID_INLINE void expect(const NodeKey* keys) const {
-        if constexpr (requires { visitor_->expect(keys); }) visitor_->expect(keys);
+    NESTGRID_INLINE void expect(const NodeKey* keys, std::size_t rows = 1) const {
+        if constexpr (requires { visitor_->expect(keys, rows); }) visitor_->expect(keys, rows);
     }
-    template <std::size_t first_node, std::size_t last_node, class Keys>
-    Seen see(Batch& batch, std::size_t first, const Keys& keys) const;
+    template <BlockParts which>
+    void look_at(Batch& batch, std::size_t first, const NodeKey* keys, Row<MaskOf<Real>>& descend,
+                 Row<MaskOf<Real>>& stop, Real* greatest) const;
     void look_within(Queue& batch) const;
     void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
     void extract_blocks(Queue& batch, std::size_t first, std::size_t end, bool are_leaves);
@@ -160,15 +153,6 @@ private:
     static const auto& order_of(const Queue& batch, std::size_t b) {
         return block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |
                                                                batch.stops[b] << (ends_ - 2))];
-    }
-    /// Of the values at the corners of a part of eight blocks.
-    template <std::size_t part>
-    NESTGRID_INLINE static auto range_within(const Batch& batch, std::size_t first) {
-        constexpr auto corner = pattern_.part[part].corner;
-        const auto value = [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
-            return Pack<Real>::load(batch.values[corner[i]] + first);
-        };
-        return range_of(value(0), value(1), value(2), value(3));
     }
     /// \return whether there is no room for another
     static bool put(const Stopped& element, Queue& next);
@@ -194,6 +178,7 @@ private:
     const Field* field_;
     Visitor* visitor_;
     WalkCounts* count_;
+    std::array<const Rule*, last_ + 1> rules_;
     int subtree_level_ = 0;  // on which subtrees start
 };
 

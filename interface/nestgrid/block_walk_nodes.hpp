@@ -76,9 +76,10 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
                   });
         halve_keys(batch, at, first, first + pack, batch.keys[at]);
     });
-    each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
-        if constexpr (at > corners_) expect(batch.keys[at] + first);  // the first one has been seen
-    });
+    for (std::size_t first = 0; first < batch.count; first += pack) {
+        constexpr std::size_t unseen = corners_ + 1;
+        expect(batch.keys[unseen] + first, pattern_.nodes - unseen);
+    }
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
         Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
             return field_->template value_at<!TellsWhereWhole<Grid>>(batch.nodes[at][first + b],
@@ -144,7 +145,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::find_new_nodes(const Batch
         // Others are not split.
         std::fill(keys.begin() + from, keys.begin() + first, keys[first]);
         std::fill(keys.begin() + end, keys.begin() + to, keys[first]);
-        for (std::size_t at = from; at < to; at += pack) expect(keys.data() + at);
+    }
+    for (std::size_t at = from; at < to; at += pack) {
+        expect(ends.keys[0].data() + at, ends.keys.size());
     }
 }
 

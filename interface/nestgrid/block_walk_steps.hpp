@@ -99,46 +99,33 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& ba
     visitor_->begin_subtrees(InSubtree::edge_numbers(batch.count));
 }
 
-/// What the visitor makes of the parts around some nodes, of eight blocks.
-/// \param keys of a node, a row
+/// \param keys of the nodes that are new in these parts
 template <class Grid, class Field, class Visitor>
-template <std::size_t first_node, std::size_t last_node, class Keys>
-NESTGRID_INLINE auto BlockWalk<Grid, Field, Visitor>::see(Batch& batch, std::size_t first,
-                                                          const Keys& keys) const -> Seen {
-    using Bits = Pack<MaskOf<Real>>;
-    Seen seen{Bits::all(0), Bits::all(0), Pack<Real>::all(0)};
-    unrolled<last_node + 1 - first_node>([&](auto n) NESTGRID_INLINE_LAMBDA {
-        constexpr std::size_t node = first_node + n;
-        constexpr const auto& parts = parts_around<pattern_, node>;
-        constexpr auto one = pattern_.part[parts[0]];
-        PackedElements<Real, parts.size()> elements{
-            grid_->rule(one.bisection), batch.level + one.depth, keys(node) + first, {}};
-        unrolled<parts.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            constexpr auto part = pattern_.part[parts[i]];
-            static_assert(part.depth == one.depth && part.bisection == one.bisection);
-            elements.range[i] = range_within<parts[i]>(batch, first);
-        });
-        const PackedGlance<Real, parts.size()> glance = visitor_->glance(elements);
-        unrolled<parts.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
-            constexpr std::size_t part = parts[i];
-            const auto bit = Bits::all(MaskOf<Real>{1} << (part < ends_ ? part - 2 : part - ends_));
-            seen.descend = seen.descend | (glance.descend[i] & bit);
-            seen.stop = seen.stop | (glance.stop[i] & bit);
-            seen.greatest = max(
-                seen.greatest,
-                (glance.bound.template as<MaskOf<Real>>() & glance.stop[i]).template as<Real>());
-            glance.bound.store(batch.bounds[part].data() + first);
-        });
-    });
-    return seen;
+template <BlockParts which>
+NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at(Batch& batch, std::size_t first,
+                                                              const NodeKey* keys,
+                                                              Row<MaskOf<Real>>& descend,
+                                                              Row<MaskOf<Real>>& stop,
+                                                              Real* greatest) const {
+    const PackedBlocks<Real> blocks{rules_.data(), batch.level, batch.values[0] + first,
+                                    keys + first, batch.bounds[0].data() + first};
+    const PackedSight<Real> seen = [&]() NESTGRID_INLINE_LAMBDA {
+        if constexpr (requires { visitor_->template see<which>(blocks); }) {
+            return visitor_->template see<which>(blocks);
+        } else {
+            return nestgrid::see<pattern_, which>(blocks, *visitor_);
+        }
+    }();
+    seen.descend.store(descend.data() + first);
+    seen.stop.store(stop.data() + first);
+    seen.greatest.store(greatest + first);
 }
 
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
     for (std::size_t first = 0; first < batch.count; first += pack) {
-        const auto keys = [&](std::size_t node) NESTGRID_INLINE_LAMBDA { return batch.keys[node]; };
-        see<corners_ + 1, pattern_.nodes - 1>(batch, first, keys)
-            .store(first, batch.entered, batch.stops, batch.greatest_bounds.data());
+        look_at<BlockParts::inner>(batch, first, batch.keys[corners_ + 1], batch.entered,
+                                   batch.stops, batch.greatest_bounds.data());
     }
 }
 
@@ -258,9 +245,6 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch,
                                       batch.ends.begin() + std::min(b + pack, end),
                                       [](std::uint8_t set) { return set != 0; });
     };
-    const auto keys = [&](std::size_t node) NESTGRID_INLINE_LAMBDA {
-        return ends.keys[node - pattern_.nodes].data();
-    };
     for (std::size_t b = first / pack * pack; b < end;) {
         if (!reached(b)) {
             Pack<MaskOf<Real>>::all(0).store(ends.descend.data() + b);
@@ -272,8 +256,8 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch,
         while (reached(next)) next += pack;
         find_new_nodes(batch, std::max(b, first), std::min(next, end), ends);
         for (; b < next; b += pack) {
-            see<pattern_.nodes, pattern_.all_nodes - 1>(batch, b, keys)
-                .store(b, ends.descend, ends.stop, ends.greatest.data());
+            look_at<BlockParts::ends>(batch, b, ends.keys[0].data(), ends.descend, ends.stop,
+                                      ends.greatest.data());
         }
     }
 }

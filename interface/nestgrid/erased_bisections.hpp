@@ -79,10 +79,10 @@ public:
     virtual bool glance_at_leaf(Real lo, Real hi) = 0;
     virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
-    virtual PackedGlance<Real, 1> glance(const PackedElements<Real, 1>& e) = 0;
-    virtual PackedGlance<Real, 2> glance(const PackedElements<Real, 2>& e) = 0;
-    virtual PackedGlance<Real, 3> glance(const PackedElements<Real, 3>& e) = 0;
-    virtual void expect(const NodeKey* nodes) const = 0;
+    // Of blocks of maubach_block.
+    virtual PackedSight<Real> see_within(const PackedBlocks<Real>& blocks) = 0;
+    virtual PackedSight<Real> see_ends(const PackedBlocks<Real>& blocks) = 0;
+    virtual void expect(const NodeKey* nodes, std::size_t rows) const = 0;
     virtual bool names_edges() const = 0;
     virtual void begin_subtrees(std::uint32_t numbers) = 0;
     virtual unsigned extract(const ErasedBlocks<dim, Real>& blocks,
@@ -116,11 +116,11 @@ public:
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
     bool names_edges() const { return to_->names_edges(); }
     void begin_subtrees(std::uint32_t numbers) { to_->begin_subtrees(numbers); }
-    template <std::size_t around>
-    PackedGlance<Real, around> glance(const PackedElements<Real, around>& e) {
-        return to_->glance(e);
+    template <BlockParts which>
+    PackedSight<Real> see(const PackedBlocks<Real>& blocks) {
+        return which == BlockParts::ends ? to_->see_ends(blocks) : to_->see_within(blocks);
     }
-    void expect(const NodeKey* nodes) const { to_->expect(nodes); }
+    void expect(const NodeKey* nodes, std::size_t rows) const { to_->expect(nodes, rows); }
     template <class Batch>
     unsigned extract(const Batch& batch, const BatchSelection& selection) {
         return to_->extract(Blocks<Batch>(batch), selection);
@@ -132,8 +132,7 @@ private:
         explicit Blocks(const Batch& batch) : ErasedBlocks<dim, Real>(batch), of{&batch} {}
 
         Point position(std::size_t place) const override { return of->position(place); }
-        void cuts(std::span<const BatchEdge> edges, double isovalue,
-                  WidePoint* to) const override {
+        void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const override {
             of->cuts(edges, isovalue, to);
         }
         nestgrid_element element(std::size_t id, std::size_t part) const override {

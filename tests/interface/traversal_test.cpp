@@ -207,7 +207,8 @@ TEST(Weights, OfAThirdAreClampedAndKeyedApart) {
 }
 
 /// The star sweep of the lattice and the level sweep of the same elements find the same numbers.
-TEST(Indicator, OfStarsIsThatOfLevels) {
+template <class Real>
+void expect_stars_like_levels() {
     struct Plain : LatticeBisection<3> {
         using LatticeBisection<3>::LatticeBisection;
         void for_each_star_row() const = delete;
@@ -215,11 +216,11 @@ TEST(Indicator, OfStarsIsThatOfLevels) {
     for (const std::array<int, 3>& n :
          {std::array{9, 9, 9}, std::array{17, 17, 17}, std::array{11, 6, 20}}) {
         std::mt19937 random(7);
-        std::vector<float> values(static_cast<std::size_t>(n[0] * n[1] * n[2]));
-        for (float& v : values) v = static_cast<float>(random() % 1000) / 7;
+        std::vector<Real> values(static_cast<std::size_t>(n[0] * n[1] * n[2]));
+        for (Real& v : values) v = static_cast<Real>(random() % 1000) / 7;
         const LatticeBisection<3> grid({.samples = n, .block_levels = 3});
         const Plain plain({.samples = n, .block_levels = 3});
-        const LatticeField field(grid, std::span<const float>(values));
+        const LatticeField field(grid, std::span<const Real>(values));
         const HierarchicalIndicator stars(grid, field);
         const HierarchicalIndicator levels(plain, field);
         const auto inside = [&](const Point& x) { return x[0] < 3 && x[2] > 4; };
@@ -238,6 +239,10 @@ TEST(Indicator, OfStarsIsThatOfLevels) {
             });
         EXPECT_GT(compared, 1000U);
     }
+}
+TEST(Indicator, OfStarsIsThatOfLevels) {
+    expect_stars_like_levels<float>();
+    expect_stars_like_levels<double>();
 }
 
 }  // namespace

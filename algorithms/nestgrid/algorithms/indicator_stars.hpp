@@ -5,14 +5,135 @@
 // comes out is what the sweep of levels gives, to the last bit.
 #pragma once
 
+#include <bit>
+#include <cstring>
+
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
 
 namespace detail {
-using FullEntry [[gnu::vector_size(8)]] = float;  // stop and bound, not rounded
+
 template <class T>
 using Many = std::array<T, 64>;  // for short loops, which become vector instructions
+
+/// Stop and bound of nodes, four at once where a row is long enough.
+template <class Field, class Entry>
+class StarRows {
+public:
+    using Real = typename Field::value_type;
+    struct Full {  // not rounded
+        float stop;
+        float bound;
+    };
+
+    StarRows(const Field& field, Entry* entries, Full* full)
+        : field_{&field}, entries_{entries}, full_{full} {}
+
+    void operator()(const StarRow& row) const {
+        const std::size_t inside = row.count - row.outside;
+        std::size_t i = 0;
+        while (i + width_ <= inside) {
+            make_some(row, i);
+            // Some are made twice rather than alone.
+            i = i + width_ == inside ? inside : std::min(i + width_, inside - width_);
+        }
+        for (; i < row.count; ++i) make_one(row, i);
+    }
+
+private:
+    static constexpr std::size_t width_ = 4;
+    using Floats = Pack<float, width_>;
+    using Pair [[gnu::vector_size(16)]] = float;  // two nodes
+
+    NESTGRID_INLINE Real value(std::size_t node) const {
+        return static_cast<Real>(field_->value(static_cast<NodeKey>(node)));
+    }
+    NESTGRID_INLINE static std::size_t at(std::size_t node, std::ptrdiff_t offset) {
+        return node + static_cast<std::size_t>(offset);
+    }
+
+    void make_one(const StarRow& row, std::size_t i) const {
+        const std::size_t node = row.first + i * row.stride;
+        Full all{0, 0};
+        for (const std::ptrdiff_t offset : row.finer) {
+            const Full& there = full_[at(node, offset)];
+            all = {std::max(all.stop, there.stop), std::max(all.bound, there.bound)};
+        }
+        if (row.has_parents) {
+            const Real mean =
+                midpoint(value(at(node, row.parent[0])), value(at(node, row.parent[1])));
+            const float own = offset_above(value(node), mean);
+            all = {std::max(all.stop, own), sum_above(own, all.bound)};
+        }
+        if (i + row.outside >= row.count) all.stop = std::numeric_limits<float>::infinity();
+        full_[node] = all;
+        entries_[node] = {bfloat16_above(all.stop), bfloat16_above(all.bound)};
+    }
+
+    NESTGRID_INLINE void make_some(const StarRow& row, std::size_t i) const {
+        std::array<std::size_t, width_> node;
+        for (std::size_t k = 0; k < width_; ++k) node[k] = row.first + (i + k) * row.stride;
+        Pair low{};
+        Pair high{};
+        for (const std::ptrdiff_t offset : row.finer) {
+            const Pair a = pair(at(node[0], offset), at(node[1], offset));
+            const Pair b = pair(at(node[2], offset), at(node[3], offset));
+            low = low > a ? low : a;
+            high = high > b ? high : b;
+        }
+        Floats stop = as_floats(__builtin_shufflevector(low, high, 0, 2, 4, 6));
+        Floats bound = as_floats(__builtin_shufflevector(low, high, 1, 3, 5, 7));
+        if (row.has_parents) {
+            const Floats own = own_offsets(row, node);
+            stop = max(stop, own);
+            bound = sum_above(own, bound);
+        }
+        const auto stops = stop.numbers();
+        const auto bounds = bound.numbers();
+        const auto bits = (bfloat16_above(stop) >> 16 | bfloat16_above(bound)).numbers();
+        for (std::size_t k = 0; k < width_; ++k) {
+            full_[node[k]] = {stops[k], bounds[k]};
+            entries_[node[k]] = {static_cast<std::uint16_t>(bits[k]),
+                                 static_cast<std::uint16_t>(bits[k] >> 16U)};
+        }
+    }
+
+    NESTGRID_INLINE Pair pair(std::size_t node, std::size_t next) const {
+        const auto both = [&](std::size_t n)
+                              NESTGRID_INLINE_LAMBDA { return std::bit_cast<double>(full_[n]); };
+        using Two [[gnu::vector_size(16)]] = double;
+        return std::bit_cast<Pair>(Two{both(node), both(next)});
+    }
+    NESTGRID_INLINE static Floats as_floats(const Pair& four) {
+        std::array<float, width_> numbers;
+        std::memcpy(&numbers, &four, sizeof four);
+        return Floats::load(numbers.data());
+    }
+
+    NESTGRID_INLINE Floats own_offsets(const StarRow& row,
+                                       const std::array<std::size_t, width_>& node) const {
+        using Reals = Pack<Real, width_>;
+        const auto values = [&](std::ptrdiff_t offset) NESTGRID_INLINE_LAMBDA {
+            return Reals::make([&](auto k)
+                                   NESTGRID_INLINE_LAMBDA { return value(at(node[k], offset)); });
+        };
+        const Reals own = values(0);
+        const Reals mean = (values(row.parent[0]) + values(row.parent[1])) * Reals::all(0.5);
+        if constexpr (std::is_same_v<Real, float>) {
+            return distance_above(own, mean);
+        } else {
+            return Floats::make([&](auto k) NESTGRID_INLINE_LAMBDA {
+                return offset_above(own.template number<k>(), mean.template number<k>());
+            });
+        }
+    }
+
+    const Field* field_;
+    Entry* entries_;
+    Full* full_;
+};
+
 }  // namespace detail
 
 /// The same as add_value() of every node.
@@ -49,7 +170,6 @@ void HierarchicalIndicator::add_values(const Field& field) {
 
 template <class Grid, class Field>
 void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
-    using Real = typename Field::value_type;
     node_count_ = grid.node_count();
     facts_.all_divided = false;
     facts_.largest_split = 1;  // a star is the midpoint of two nodes, the only one in its elements
@@ -57,35 +177,13 @@ void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     // Nodes of no element are in no row, and count as 0; a whole grid has none.
     bool in_rows = false;
     if constexpr (requires { grid.whole(); }) in_rows = grid.whole();
-    using Full = detail::FullEntry[];
+    using Rows = detail::StarRows<Field, Entry>;
+    using Full = typename Rows::Full;
     dense_ = in_rows ? std::make_unique_for_overwrite<Entry[]>(node_count_)
                      : std::make_unique<Entry[]>(node_count_);
-    const auto full = in_rows ? std::make_unique_for_overwrite<Full>(node_count_)
-                              : std::make_unique<Full>(node_count_);
-    grid.for_each_star_row([&, entries = dense_.get(), full = full.get()](const StarRow& row) {
-        const auto value = [&](std::size_t node) {
-            return static_cast<Real>(field.value(static_cast<NodeKey>(node)));
-        };
-        for (std::size_t i = 0; i < row.count; ++i) {
-            const std::size_t node = row.first + i * row.stride;
-            const auto at = [&](std::ptrdiff_t offset) {
-                return node + static_cast<std::size_t>(offset);
-            };
-            detail::FullEntry finer{};
-            for (const std::ptrdiff_t offset : row.finer) {
-                const detail::FullEntry there = full[at(offset)];
-                finer = finer > there ? finer : there;
-            }
-            if (row.has_parents) {
-                const Real mean = midpoint(value(at(row.parent[0])), value(at(row.parent[1])));
-                const float own = detail::offset_above(value(node), mean);
-                finer = detail::FullEntry{std::max(finer[0], own), sum_above(own, finer[1])};
-            }
-            if (i + row.outside >= row.count) finer[0] = std::numeric_limits<float>::infinity();
-            full[node] = finer;
-            entries[node] = {bfloat16_above(finer[0]), bfloat16_above(finer[1])};
-        }
-    });
+    const auto full = in_rows ? std::make_unique_for_overwrite<Full[]>(node_count_)
+                              : std::make_unique<Full[]>(node_count_);
+    grid.for_each_star_row(Rows(field, dense_.get(), full.get()));
 }
 
 }  // namespace nestgrid

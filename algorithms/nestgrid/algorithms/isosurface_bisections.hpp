@@ -31,16 +31,15 @@ void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk_bisections(const S
                 return {visit, bound};
             }
             bool glance_at_leaf(Real lo, Real hi) override { return to->glance_at_leaf(lo, hi); }
-            PackedGlance<Real, 1> glance(const PackedElements<Real, 1>& e) override {
-                return to->glance(e);
+            PackedSight<Real> see_within(const PackedBlocks<Real>& blocks) override {
+                return see<maubach_block<dimension>, BlockParts::inner>(blocks, *to);
             }
-            PackedGlance<Real, 2> glance(const PackedElements<Real, 2>& e) override {
-                return to->glance(e);
+            PackedSight<Real> see_ends(const PackedBlocks<Real>& blocks) override {
+                return see<maubach_block<dimension>, BlockParts::ends>(blocks, *to);
             }
-            PackedGlance<Real, 3> glance(const PackedElements<Real, 3>& e) override {
-                return to->glance(e);
+            void expect(const NodeKey* nodes, std::size_t rows) const override {
+                to->expect(nodes, rows);
             }
-            void expect(const NodeKey* nodes) const override { to->expect(nodes); }
             bool names_edges() const override { return indexed; }
             void begin_subtrees(std::uint32_t numbers) override {
                 if constexpr (indexed) to->begin_subtrees(numbers);

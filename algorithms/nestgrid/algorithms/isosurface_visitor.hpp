@@ -119,9 +119,11 @@ public:
     bool glance_at_leaf(Real lo, Real hi) { return of_interest(lo, hi, Real(0), false); }
     template <std::size_t around>
     PackedGlance<Real, around> glance(const PackedElements<Real, around>& e);
-    NESTGRID_INLINE void expect(const NodeKey* nodes) const {
-        const std::span<const NodeKey> eight(nodes, pack);
-        if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
+    NESTGRID_INLINE void expect(const NodeKey* nodes, std::size_t rows) const {
+        for (std::size_t row = 0; row < rows; ++row) {
+            const std::span<const NodeKey> eight(nodes + row * most_blocks, pack);
+            if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
+        }
     }
     static constexpr bool names_edges() { return indexed; }
     void begin_subtrees(std::uint32_t numbers)

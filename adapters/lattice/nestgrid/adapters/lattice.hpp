@@ -224,7 +224,7 @@ public:
     NESTGRID_INLINE value_type value_at(typename Grid::Place p, NodeKey node) const {
         return whole || grid_->whole() ? sample(node) : at(p);
     }
-    value_type value(NodeKey node) const {
+    NESTGRID_INLINE value_type value(NodeKey node) const {
         return grid_->whole() ? sample(node) : at(grid_->place(node));
     }
 

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Arithmetic that never rounds down gives the least number that is not below.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <nestgrid/algorithms/round_up.hpp>
+
+using namespace nestgrid;
+
+namespace {
+
+using Floats = Pack<float, 4>;
+
+/// Differences and sums of these are exact with double precision.
+float number(std::mt19937& random) {
+    const auto digits = static_cast<double>(static_cast<std::int32_t>(random()) >> 7);
+    return static_cast<float>(std::ldexp(digits, -static_cast<int>(random() % 28)));
+}
+
+void expect_least_above(float found, double exact) {
+    EXPECT_GE(static_cast<double>(found), exact);
+    if (found > 0) {
+        EXPECT_LT(static_cast<double>(std::nextafter(found, 0.0F)), exact);
+    }
+}
+
+TEST(RoundUp, GivesTheLeastNumberNotBelow) {
+    std::mt19937 random(1);
+    int rounded = 0;
+    for (int round = 0; round < 100000; ++round) {
+        const float a = number(random);
+        const float b = round % 7 == 0 ? a : number(random);
+        const double distance = std::abs(double{a} - double{b});
+        expect_least_above(distance_above(a, b), distance);
+        expect_least_above(distance_above(b, a), distance);
+        const double sum = std::abs(double{a}) + std::abs(double{b});
+        expect_least_above(sum_above(std::abs(a), std::abs(b)), sum);
+        expect_least_above(float_above(sum), sum);
+        const float coarse = bfloat16_value(bfloat16_above(std::abs(a)));
+        EXPECT_GE(coarse, std::abs(a));
+        EXPECT_LE(coarse, std::abs(a) * (1 + 0x1p-7F));
+        rounded += static_cast<double>(distance_above(a, b)) != distance;
+    }
+    EXPECT_GT(rounded, 10000);
+}
+
+TEST(RoundUp, GivesTheSameOfSeveralAtOnce) {
+    std::mt19937 random(2);
+    for (int round = 0; round < 100000; ++round) {
+        std::array<float, 4> a;
+        std::array<float, 4> b;
+        for (std::size_t i = 0; i < 4; ++i) {
+            a[i] = number(random);
+            b[i] = (random() & 7U) == 0 ? a[i] : number(random);
+        }
+        const auto distances =
+            distance_above(Floats::load(a.data()), Floats::load(b.data())).numbers();
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(distances[i], distance_above(a[i], b[i]));
+        for (std::size_t i = 0; i < 4; ++i) {
+            a[i] = std::abs(a[i]);
+            b[i] = std::abs(b[i]);
+        }
+        if (round == 0) a[1] = std::numeric_limits<float>::infinity();
+        if (round == 0) a[2] = b[2] = std::numeric_limits<float>::max();
+        const auto sums = sum_above(Floats::load(a.data()), Floats::load(b.data())).numbers();
+        const auto coarse = bfloat16_above(Floats::load(a.data())).numbers();
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_EQ(sums[i], sum_above(a[i], b[i]));
+            EXPECT_EQ(coarse[i], std::uint32_t{bfloat16_above(a[i])} << 16U);
+        }
+    }
+}
+
+}  // namespace
