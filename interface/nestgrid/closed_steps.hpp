@@ -8,8 +8,8 @@
 #include <bit>
 #include <utility>
 
+#include <nestgrid/interpolate.hpp>
 #include <nestgrid/traversal.hpp>
-#include <nestgrid/traversal_nodes.hpp>
 
 namespace nestgrid {
 
