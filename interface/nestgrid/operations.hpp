@@ -30,7 +30,8 @@
 //         faces on the boundary of the domain, one bit each, any of them for an element that
 //         reaches across it; default: derived from coarse ids
 //     void for_each_star_row(f)
-//         calls f(StarRow) fine to coarse, each node of any element in one row; default: sweeps
+//         calls f(StarRow) fine to coarse, each node of any element in one row that does not
+//         gather. All coarse elements are split alike, and all of their children; default: sweeps
 //     bool knows_stars()
 //         whether it does, where that is decided at run time; of a field, whether it has value()
 //     Point node_position(NodeKey)
@@ -53,17 +54,20 @@
 
 namespace nestgrid {
 
-/// Nodes first, first + stride, ... of a grid with dense keys, each the midpoint of two parents and
+/// Nodes first, first + stride, ... of a grid with dense keys, each a plain mean of its parents and
 /// with finer nodes around it, at the same distances in key from each. A maximum over those and, of
 /// each of them, over its own, is one over all nodes that are made in elements with this corner.
 struct StarRow {
     std::size_t first = 0;
     std::size_t stride = 1;
     std::size_t count = 0;
-    bool has_parents = true;  ///< false on the coarse grid
-    std::array<std::ptrdiff_t, 2> parent{};
+    /// None on the coarse grid, 2, 4 around a face in tensor order, or 8.
+    std::span<const std::ptrdiff_t> parents;
     std::span<const std::ptrdiff_t> finer;  ///< nodes of earlier rows
     std::size_t outside = 0;  ///< of the last ones: how many are as the operation `outside` says
+    /// Nodes inside elements (Rule::inside) that were in earlier rows; `finer` are now all new
+    /// nodes of such an element, and these stand for all of them from here on.
+    bool gathers = false;
 };
 
 enum class Feature : unsigned {

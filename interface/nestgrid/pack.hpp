@@ -53,6 +53,7 @@ class Pack {
     static constexpr bool pairs_ = std::is_same_v<T, double> && width_ == 2;
 
 public:
+    using value_type = T;
     using Mask = Pack<MaskOf<T>, size>;
 
     // Vector by vector: a copy of all of them goes through narrower ones, and whoever reads a vector

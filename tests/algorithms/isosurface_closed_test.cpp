@@ -116,13 +116,13 @@ public:
                 const HierarchicalIndicator& good)
         : good_{&good}, offset_(grid.node_count(), 0.0) {
         grid.for_each_star_row([&](const StarRow& row) {
-            for (std::size_t i = 0; row.has_parents && i < row.count; ++i) {
+            for (std::size_t i = 0; !row.parents.empty() && i < row.count; ++i) {
                 const std::size_t node = row.first + i * row.stride;
                 const auto value = [&](std::ptrdiff_t offset) {
                     return double(field.value(node + static_cast<std::size_t>(offset)));
                 };
                 offset_[node] =
-                    std::abs(value(0) - (value(row.parent[0]) + value(row.parent[1])) / 2);
+                    std::abs(value(0) - (value(row.parents[0]) + value(row.parents[1])) / 2);
             }
         });
     }

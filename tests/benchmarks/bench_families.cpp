@@ -22,6 +22,11 @@ void measure_octree(std::size_t rounds) {
     const Hexahedra grid({.samples = {n, n, n}});
     const LatticeField field(grid, std::span<const float>(bucky.samples));
     bucky.indicator = HierarchicalIndicator(grid, field);
+    Contest before(rounds);
+    before.add("preroll", [&] { HierarchicalIndicator(grid, field); });
+    before.run();
+    Contest::print_figure("implicit_octree_preroll_ns_per_node",
+                          before.time("preroll") * 1e6 / static_cast<double>(grid.node_count()));
     const auto nodes = bucky.handwritten_nodes();
     for (const float threshold : bucky_thresholds) {
         HandwrittenOctree<n> recursion(nodes.data(), bucky_isovalue, threshold, bucky.soup.data());

@@ -193,6 +193,8 @@ private:
     void sweep(const Grid& grid, const Field& field, const LeafError& leaf_error,
                const E& executor);
     // indicator_stars.hpp
+    template <class Grid>
+    void add_splits(const Grid& grid);
     template <class Field>
     void add_values(const Field& field);
     template <class Grid, class Field>

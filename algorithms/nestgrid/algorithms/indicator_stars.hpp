@@ -17,6 +17,72 @@ namespace detail {
 template <class T>
 using Many = std::array<T, 64>;  // for short loops, which become vector instructions
 
+/// Ascending.
+template <class Number>
+NESTGRID_INLINE void sort_eight(std::array<Number, 8>& x) {
+    // Batcher's network: each pair is put in order.
+    constexpr std::array<std::array<std::uint8_t, 2>, 19> pairs{{{0, 1},
+                                                                 {2, 3},
+                                                                 {4, 5},
+                                                                 {6, 7},
+                                                                 {0, 2},
+                                                                 {1, 3},
+                                                                 {4, 6},
+                                                                 {5, 7},
+                                                                 {1, 2},
+                                                                 {5, 6},
+                                                                 {0, 4},
+                                                                 {3, 7},
+                                                                 {1, 5},
+                                                                 {2, 6},
+                                                                 {1, 4},
+                                                                 {3, 6},
+                                                                 {2, 4},
+                                                                 {3, 5},
+                                                                 {3, 4}}};
+    unrolled<pairs.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
+        using std::max;
+        using std::min;
+        Number& a = x[pairs[i][0]];
+        Number& b = x[pairs[i][1]];
+        const Number less = min(a, b);
+        b = max(a, b);
+        a = less;
+    });
+}
+
+/// As the traversal interpolates, mean.hpp, to the last bit.
+/// \tparam Number Real, or several at once
+/// \param value at a distance in key
+template <class Number, class Value>
+NESTGRID_INLINE Number mean_of_parents(const StarRow& row, const Value& value) {
+    using std::max;
+    using std::min;
+    const auto at = [&](std::size_t i)
+                        NESTGRID_INLINE_LAMBDA -> Number { return value(row.parents[i]); };
+    const auto times = [](const Number& x, double weight) NESTGRID_INLINE_LAMBDA -> Number {
+        if constexpr (std::is_floating_point_v<Number>) {
+            return x * static_cast<Number>(weight);
+        } else {
+            return x * Number::all(static_cast<typename Number::value_type>(weight));
+        }
+    };
+    if (row.parents.size() == 2) return times(at(0) + at(1), 0.5);
+    if (row.parents.size() == 4) {
+        const Number a = at(0);
+        const Number b = at(1);
+        const Number c = at(2);
+        const Number d = at(3);
+        return times(min((a + b) + (c + d), (a + c) + (b + d)), 0.25);
+    }
+    std::array<Number, 8> x;
+    unrolled<8>([&](auto i) NESTGRID_INLINE_LAMBDA { x[i] = at(i); });
+    sort_eight(x);
+    Number sum = times(x[0], 0.125);
+    for (std::size_t i = 1; i < 8; ++i) sum = sum + times(x[i], 0.125);
+    return min(max(sum, x[0]), x[7]);
+}
+
 /// Stop and bound of nodes, four at once where a row is long enough.
 template <class Field, class Entry>
 class StarRows {
@@ -60,9 +126,9 @@ private:
             const Full& there = full_[at(node, offset)];
             all = {std::max(all.stop, there.stop), std::max(all.bound, there.bound)};
         }
-        if (row.has_parents) {
-            const Real mean =
-                midpoint(value(at(node, row.parent[0])), value(at(node, row.parent[1])));
+        if (!row.parents.empty()) {
+            const Real mean = mean_of_parents<Real>(
+                row, [&](std::ptrdiff_t offset) { return value(at(node, offset)); });
             const float own = offset_above(value(node), mean);
             all = {std::max(all.stop, own), sum_above(own, all.bound)};
         }
@@ -84,7 +150,7 @@ private:
         }
         Floats stop = as_floats(__builtin_shufflevector(low, high, 0, 2, 4, 6));
         Floats bound = as_floats(__builtin_shufflevector(low, high, 1, 3, 5, 7));
-        if (row.has_parents) {
+        if (!row.parents.empty()) {
             const Floats own = own_offsets(row, node);
             stop = max(stop, own);
             bound = sum_above(own, bound);
@@ -119,7 +185,7 @@ private:
                                    NESTGRID_INLINE_LAMBDA { return value(at(node[k], offset)); });
         };
         const Reals own = values(0);
-        const Reals mean = (values(row.parent[0]) + values(row.parent[1])) * Reals::all(0.5);
+        const Reals mean = mean_of_parents<Reals>(row, values);
         if constexpr (std::is_same_v<Real, float>) {
             return distance_above(own, mean);
         } else {
@@ -168,11 +234,26 @@ void HierarchicalIndicator::add_values(const Field& field) {
     facts_.greatest = static_cast<double>(std::ranges::max(hi));
 }
 
+/// From one element of each level, for all are split alike.
+template <class Grid>
+void HierarchicalIndicator::add_splits(const Grid& grid) {
+    Context<Grid> context = make_context(grid);
+    ElementOf<Grid> element = detail::call_coarse(grid, context, 0).element;
+    while (const Rule* rule = detail::call_split(grid, context, element)) {
+        facts_.largest_split = std::max(facts_.largest_split, rule->new_nodes.size());
+        facts_.all_divided = facts_.all_divided && rule->divides_all;
+        ++facts_.finest_level;
+        std::array<ElementOf<Grid>, detail::child_capacity<Grid>()> children;
+        detail::call_children(grid, context, element,
+                              std::span(children).first(rule->children.size()));
+        element = children[0];
+    }
+}
+
 template <class Grid, class Field>
 void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     node_count_ = grid.node_count();
-    facts_.all_divided = false;
-    facts_.largest_split = 1;  // a star is the midpoint of two nodes, the only one in its elements
+    add_splits(grid);
     add_values(field);
     // Nodes of no element are in no row, and count as 0; a whole grid has none.
     bool in_rows = false;

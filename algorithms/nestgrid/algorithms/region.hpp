@@ -59,18 +59,23 @@ private:
 
     template <class Grid, class Inside>
     void sweep_stars(const Grid& grid, Inside&& inside) {
-        for (std::size_t i = 0; i < grid.node_count(); ++i) {
-            const auto node = static_cast<NodeKey>(i);
-            if (inside(grid.node_position(node))) dense_[i] = 1;
-        }
+        constexpr std::uint8_t gathered = 2;  // of nodes that stand for others
         grid.for_each_star_row([&](const StarRow& row) {
             for (std::size_t i = 0; i < row.count; ++i) {
                 const std::size_t node = row.first + i * row.stride;
+                std::uint8_t finer = 0;
                 for (const std::ptrdiff_t offset : row.finer) {
-                    dense_[node] |= dense_[node + static_cast<std::size_t>(offset)];
+                    finer |= dense_[node + static_cast<std::size_t>(offset)];
+                }
+                if (row.gathers) {
+                    if (finer != 0) dense_[node] |= gathered;
+                } else {
+                    const bool is_inside = inside(grid.node_position(static_cast<NodeKey>(node)));
+                    dense_[node] = is_inside || finer != 0 ? 1 : 0;
                 }
             }
         });
+        for (std::uint8_t& mark : dense_) mark &= 1U;
     }
 
     template <class Grid, class Inside>

@@ -55,96 +55,37 @@ auto LatticeBisection<dim>::coarse(std::size_t i) const -> CoarseElement<Element
     return result;
 }
 
-/// Nodes whose coordinates are odd multiples of `step` in the directions `odd`, even ones in the
-/// others: centres of edges, faces or cells of the lattice with twice that step. Where no direction
-/// is odd, all multiples: the nodes of the coarse grid. Around a node lie: centres of finer cells,
-/// half a step away in every direction; where two directions are odd or three, the centres of its
-/// edges or faces, a step away in one of those. Those of the edges of a cell are covered through
-/// its faces', all in a cell through its centre.
-/// \param plane those of them with this last coordinate, if any
+/// Around a node lie: centres of finer cells, half a step away in every direction; where two
+/// directions are odd or three, the centres of its edges or faces, a step away in one of those.
+/// Those of the edges of a cell are covered through its faces', all in a cell through its centre.
 template <int dim>
 template <class Function>
 void LatticeBisection<dim>::star_rows_of_plane(std::uint32_t step, unsigned odd,
                                                std::uint32_t plane, Function& function) const {
-    const auto is_odd = [&](std::size_t d) { return (odd >> d & 1U) != 0; };
-    if (odd != 0 && is_odd(size_ - 1) != (plane % (2 * step) != 0)) return;
-    const auto key_step = [&](std::size_t d, std::uint32_t steps) {
-        return static_cast<std::ptrdiff_t>(node_stride_[d] * steps);
-    };
-    const std::uint32_t spacing = odd == 0 ? step : 2 * step;
-    std::array<std::uint32_t, 3> x{};
-    std::array<std::ptrdiff_t, 14> finer;
-    // Rows are cut so that all nodes of one have around them what there is around x: where x[0] is
-    // odd by its remainder modulo four steps, and else at the first and at the last.
-    const auto give_row = [&](std::uint32_t apart, std::size_t count, std::size_t outside) {
-        StarRow row;
-        row.stride = node_stride_[0] * apart;
-        row.count = count;
-        row.outside = outside;
-        row.has_parents = odd != 0;
-        std::size_t found = 0;
-        for (unsigned up = 0; step > 1 && up < 1U << size_; ++up) {
-            std::ptrdiff_t offset = 0;
-            bool within = true;
-            for (std::size_t d = 0; d < size_; ++d) {
-                const bool upwards = (up >> d & 1U) != 0;
-                offset += (upwards ? 1 : -1) * key_step(d, step / 2);
-                within = within && x[d] != (upwards ? padded_cells_[d] : 0U);
-            }
-            if (within) finer[found++] = offset;
-        }
+    // Elements reach one step to each side. Where x[0] is odd, parents depend on its remainder
+    // modulo four steps.
+    const typename Lattice<dim>::PlaneOfNodes nodes{step, odd, plane, 1, 2};
+    this->for_each_row(nodes, [&](const std::array<std::uint32_t, 3>& x, std::size_t stride,
+                                  std::size_t count, std::size_t outside) {
+        std::array<std::ptrdiff_t, 14> finer;
+        std::size_t found = this->centres_around(x, step, finer.data());
         std::ptrdiff_t half = 0;  // from a node to the end of its refinement edge
         for (std::size_t d = 0; d < size_; ++d) {
-            row.first += x[d] * node_stride_[d];
-            if (!is_odd(d)) continue;
+            if (!nodes.is_odd(d)) continue;
             // The diagonal starts at the multiple of four steps.
-            half += (x[d] % (4 * step) == step ? 1 : -1) * key_step(d, step);
+            half += (x[d] % (4 * step) == step ? 1 : -1) * this->key_step(d, step);
             if (std::popcount(odd) < 2) continue;
-            finer[found++] = -key_step(d, step);
-            finer[found++] = key_step(d, step);
+            finer[found++] = -this->key_step(d, step);
+            finer[found++] = this->key_step(d, step);
         }
-        row.parent = {-half, half};
-        row.finer = std::span<const std::ptrdiff_t>(finer.data(), found);
-        function(static_cast<const StarRow&>(row));
-    };
-    // Elements reach one step to each side; where all lie beyond, all are masked.
-    const auto beyond_all = [&](std::size_t d, std::uint32_t c) { return c >= cells_[d] + step; };
-    const auto across = [&](std::size_t d, std::uint32_t c) {
-        return padded_ && c + (is_odd(d) ? step : 0U) > cells_[d];
-    };
-    const auto line = [&] {
-        bool all_across = false;
-        for (std::size_t d = 1; d < size_; ++d) {
-            if (odd != 0 && beyond_all(d, x[d])) return;
-            all_across = all_across || across(d, x[d]);
-        }
-        const std::uint32_t last = padded_cells_[0];
-        const auto run = [&](std::uint32_t first, std::uint32_t end, std::uint32_t by) {
-            std::size_t count = !padded_ && first < end ? (end - first - 1) / by + 1 : 0;
-            std::size_t outside = 0;
-            for (std::uint32_t c = first; padded_ && c < end && (odd == 0 || !beyond_all(0, c));
-                 c += by) {
-                ++count;
-                outside += odd != 0 && (all_across || across(0, c)) ? 1U : 0U;
-            }
-            x[0] = first;
-            if (count > 0) give_row(by, count, outside);
-        };
-        if (is_odd(0)) {
-            run(step, last, 4 * step);
-            run(3 * step, last, 4 * step);
-        } else {
-            run(0, 1, spacing);
-            run(spacing, last, spacing);
-            run(last, last + 1, spacing);
-        }
-    };
-    x[size_ - 1] = plane;
-    if constexpr (dim == 2) {
-        line();
-    } else {
-        for (x[1] = is_odd(1) ? step : 0U; x[1] <= padded_cells_[1]; x[1] += spacing) line();
-    }
+        const std::array<std::ptrdiff_t, 2> parents{-half, half};
+        function(StarRow{.first = this->node_at(x),
+                         .stride = stride,
+                         .count = count,
+                         .parents = std::span(parents).first(odd != 0 ? 2 : 0),
+                         .finer = std::span(finer).first(found),
+                         .outside = outside});
+    });
 }
 
 template <int dim>

@@ -166,6 +166,21 @@ protected:
         return false;
     }
 
+    // lattice_rows.hpp
+    struct PlaneOfNodes;
+    template <class Function>
+    void for_each_row(const PlaneOfNodes& of, Function&& function) const;
+    std::size_t centres_around(const std::array<std::uint32_t, 3>& x, std::uint32_t step,
+                               std::ptrdiff_t* to) const;
+    std::ptrdiff_t key_step(std::size_t d, std::uint32_t steps) const {
+        return static_cast<std::ptrdiff_t>(node_stride_[d] * steps);
+    }
+    std::size_t node_at(const std::array<std::uint32_t, 3>& x) const {
+        std::size_t node = 0;
+        for (std::size_t d = 0; d < size_; ++d) node += x[d] * node_stride_[d];
+        return node;
+    }
+
     LatticeGeometry<dim> geometry_;
     std::array<std::uint32_t, size_> cells_{};  // of the domain
     std::array<std::uint32_t, size_> padded_cells_{};
@@ -342,3 +357,5 @@ Point LatticeField<Grid, Sample>::gradient(typename Grid::Place p) const {
 }
 
 }  // namespace nestgrid
+
+#include <nestgrid/adapters/lattice_rows.hpp>

@@ -126,6 +126,9 @@ public:
         return faces;
     }
 
+    template <class Function>
+    void for_each_star_row(Function&& function) const;
+
     // What fields need.
     Place corner_place(const Element& e, std::size_t k) const {
         return this->corner_of_box(e.low, e.level, k);
@@ -135,10 +138,94 @@ public:
     }
 
 private:
+    template <class Function>
+    void star_rows_of_plane(std::uint32_t step, unsigned odd, std::uint32_t plane,
+                            Function& function) const;
+    template <class Function>
+    void gather_cells_of_plane(std::uint32_t step, std::uint32_t plane, Function& function) const;
+
     const Rule* rule_;
     std::array<Place, static_cast<std::size_t>(max_new_nodes)> half_steps_{};
     std::array<NodeKey, static_cast<std::size_t>(max_new_nodes)> half_key_steps_{};
     std::array<NodeKey, static_cast<std::size_t>(max_corners)> key_steps_{};
 };
+
+/// Around a node lie the centres of finer cells, half a step away in every direction.
+template <int dim>
+template <class Function>
+void LatticeOctree<dim>::star_rows_of_plane(std::uint32_t step, unsigned odd, std::uint32_t plane,
+                                            Function& function) const {
+    const typename Lattice<dim>::PlaneOfNodes nodes{step, odd, plane, 2};
+    std::array<std::ptrdiff_t, max_corners> parents{};  // in tensor order
+    std::size_t parent_count = odd == 0 ? 0 : 1;
+    for (std::size_t d = 0; d < size_; ++d) {
+        if (!nodes.is_odd(d)) continue;
+        for (std::size_t i = 0; i < parent_count; ++i) {
+            parents[parent_count + i] = parents[i] + this->key_step(d, step);
+            parents[i] -= this->key_step(d, step);
+        }
+        parent_count *= 2;
+    }
+    this->for_each_row(nodes, [&](const std::array<std::uint32_t, 3>& x, std::size_t stride,
+                                  std::size_t count, std::size_t outside) {
+        std::array<std::ptrdiff_t, max_corners> finer;
+        const std::size_t found = this->centres_around(x, step, finer.data());
+        function(StarRow{.first = this->node_at(x),
+                         .stride = stride,
+                         .count = count,
+                         .parents = std::span(parents).first(parent_count),
+                         .finer = std::span(finer).first(found),
+                         .outside = outside});
+    });
+}
+
+/// All new nodes of a cell lie at most a step from its centre.
+/// \param plane of the centres
+template <int dim>
+template <class Function>
+void LatticeOctree<dim>::gather_cells_of_plane(std::uint32_t step, std::uint32_t plane,
+                                               Function& function) const {
+    constexpr unsigned all_odd = (1U << size_) - 1;
+    std::array<std::ptrdiff_t, max_new_nodes> made;
+    std::size_t found = 0;
+    for (unsigned n = 0; n < (dim == 2 ? 9U : 27U); ++n) {
+        const std::array<unsigned, 3> steps{n % 3, n / 3 % 3, n / 9};
+        std::ptrdiff_t offset = 0;
+        bool is_new = false;
+        for (std::size_t d = 0; d < size_; ++d) {
+            offset += (static_cast<std::ptrdiff_t>(steps[d]) - 1) * this->key_step(d, step);
+            is_new = is_new || steps[d] == 1;
+        }
+        if (is_new) made[found++] = offset;
+    }
+    this->for_each_row({step, all_odd, plane, 2},
+                       [&](const std::array<std::uint32_t, 3>& x, std::size_t stride,
+                           std::size_t count, std::size_t) {
+                           function(StarRow{.first = this->node_at(x),
+                                            .stride = stride,
+                                            .count = count,
+                                            .parents = {},
+                                            .finer = made,
+                                            .gathers = true});
+                       });
+}
+
+template <int dim>
+template <class Function>
+void LatticeOctree<dim>::for_each_star_row(Function&& function) const {
+    const std::uint32_t last = this->padded_cells_[size_ - 1];
+    std::uint32_t step = 1;
+    for (int level = 0; level < levels_; ++level, step *= 2) {
+        for (std::uint32_t plane = 0; plane <= last; plane += step) {
+            for (unsigned odd = 1; odd < 1U << size_; ++odd) {
+                star_rows_of_plane(step, odd, plane, function);
+            }
+            if (plane >= 2 * step) gather_cells_of_plane(step, plane - step, function);
+        }
+    }
+    for (std::uint32_t plane = 0; plane <= last; plane += step) {
+        star_rows_of_plane(step, 0, plane, function);
+    }
+}
 
 }  // namespace nestgrid
