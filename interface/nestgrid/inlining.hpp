@@ -22,7 +22,7 @@ namespace nestgrid {
 
 /// function(std::integral_constant<std::size_t, i>) for i = 0 ... count - 1, without a loop.
 template <std::size_t count, class Function>
-NESTGRID_INLINE void unrolled(Function&& function) {
+NESTGRID_INLINE constexpr void unrolled(Function&& function) {
     [&]<std::size_t... i>(std::index_sequence<i...>) NESTGRID_INLINE_LAMBDA {
         (function(std::integral_constant<std::size_t, i>{}), ...);
     }

@@ -190,6 +190,16 @@ TEST(Copies, AreLookedThrough) {
     EXPECT_EQ(count(copied, 1e9).first, 2U);
 }
 
+/// What sorts all sequences of zeros and ones sorts all others.
+TEST(Means, AreSummedInOrder) {
+    for (unsigned bits = 0; bits < 256; ++bits) {
+        std::array<double, 8> x;
+        for (std::size_t i = 0; i < 8; ++i) x[i] = bits >> i & 1U;
+        sort_eight(x);
+        EXPECT_TRUE(std::ranges::is_sorted(x)) << bits;
+    }
+}
+
 TEST(Weights, OfAThirdAreClampedAndKeyedApart) {
     static const Rule thirds = make_rule("thirds", Shape::segment,
                                          {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),

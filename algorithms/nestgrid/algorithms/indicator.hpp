@@ -21,7 +21,7 @@
 // come from the data. Both are kept rounded up to bfloat16, 4 bytes a node. Rounding up is
 // monotone, so the first invariant survives it exactly, and the second stays on the safe side.
 // Memory: O(nodes), 4 bytes (plus 16 to 48 for a hash table where node keys are not dense); while
-// it is built 13 bytes more, and 4 for each node of each split.
+// it is built 8 bytes more where the grid knows stars, else 13, and 4 for each node of each split.
 #pragma once
 
 #include <bit>

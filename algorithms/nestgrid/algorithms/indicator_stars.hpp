@@ -17,40 +17,6 @@ namespace detail {
 template <class T>
 using Many = std::array<T, 64>;  // for short loops, which become vector instructions
 
-/// Ascending.
-template <class Number>
-NESTGRID_INLINE void sort_eight(std::array<Number, 8>& x) {
-    // Batcher's network: each pair is put in order.
-    constexpr std::array<std::array<std::uint8_t, 2>, 19> pairs{{{0, 1},
-                                                                 {2, 3},
-                                                                 {4, 5},
-                                                                 {6, 7},
-                                                                 {0, 2},
-                                                                 {1, 3},
-                                                                 {4, 6},
-                                                                 {5, 7},
-                                                                 {1, 2},
-                                                                 {5, 6},
-                                                                 {0, 4},
-                                                                 {3, 7},
-                                                                 {1, 5},
-                                                                 {2, 6},
-                                                                 {1, 4},
-                                                                 {3, 6},
-                                                                 {2, 4},
-                                                                 {3, 5},
-                                                                 {3, 4}}};
-    unrolled<pairs.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
-        using std::max;
-        using std::min;
-        Number& a = x[pairs[i][0]];
-        Number& b = x[pairs[i][1]];
-        const Number less = min(a, b);
-        b = max(a, b);
-        a = less;
-    });
-}
-
 /// As the traversal interpolates, mean.hpp, to the last bit.
 /// \tparam Number Real, or several at once
 /// \param value at a distance in key
@@ -185,7 +151,7 @@ private:
                                    NESTGRID_INLINE_LAMBDA { return value(at(node[k], offset)); });
         };
         const Reals own = values(0);
-        const Reals mean = mean_of_parents<Reals>(row, values);
+        const auto mean = mean_of_parents<Reals>(row, values);
         if constexpr (std::is_same_v<Real, float>) {
             return distance_above(own, mean);
         } else {
