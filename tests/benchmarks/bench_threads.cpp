@@ -3,13 +3,13 @@
 //
 // What a second thread brings (oneTBB), on the bucky ball: triangles into a buffer that may be
 // filled in parts, triangles handed to a function one by one, and an indexed surface, which is the
-// same to the last bit; and the preroll of the octree over the same samples. One "name value" line
-// per figure; --quick takes 33^3 samples instead of 129^3.
-#include <nestgrid/adapters/lattice_octree.hpp>
+// same to the last bit; and the preroll of a stored octree. One "name value" line per figure;
+// --quick takes 33^3 samples instead of 129^3, and two levels less.
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
 
 #include "bucky_samples.hpp"
+#include "sample_grids.hpp"
 
 namespace {
 
@@ -28,24 +28,28 @@ void fill(BuckySamples& bucky, float threshold, std::vector<Soup::Simplex>& soup
                                   std::move(sinks), criterion, bucky.indicator, {}, executor);
 }
 
-void compare_prerolls(const BuckySamples& bucky, const nestgrid::TbbExecutor& two,
-                      std::size_t rounds) {
-    const nestgrid::LatticeOctree<3> grid(bucky.grid.geometry());
-    const nestgrid::LatticeField field(grid, std::span<const float>(bucky.samples));
+/// Of an octree refined at a sphere.
+void compare_prerolls(int levels, const nestgrid::TbbExecutor& two, std::size_t rounds) {
+    using Grid = nestgrid::OctreeGrid<3>;
+    Grid grid(nestgrid_test::hexahedra(1));
+    nestgrid_test::refine_at_sphere(grid, levels);
+    const std::vector<double> values = nestgrid_test::sample_nodes(
+        grid, [](const nestgrid::Point& x) { return nestgrid_test::to_sphere(x, 3); });
+    const nestgrid::NodeField<Grid, double> field(grid, values);
     Contest contest(rounds);
     contest.add("one", [&] { nestgrid::HierarchicalIndicator(grid, field); });
     contest.add("two", [&] { nestgrid::HierarchicalIndicator(grid, field, two); });
     contest.run();
-    Contest::print_figure("octree_preroll_one_ms", contest.time("one"));
-    Contest::print_figure("octree_preroll_two_threads_speedup",
+    Contest::print_figure("stored_octree_preroll_one_ms", contest.time("one"));
+    Contest::print_figure("stored_octree_preroll_two_threads_speedup",
                           contest.time("one") / contest.time("two"));
 }
 
-void compare(int n, std::size_t rounds) {
+void compare(int n, int levels, std::size_t rounds) {
     BuckySamples bucky(n);
     const nestgrid::TbbExecutor two(2);
     Contest::print_figure("threads", static_cast<double>(two.concurrency()));
-    compare_prerolls(bucky, two, rounds);
+    compare_prerolls(levels, two, rounds);
     std::vector<Soup::Simplex> soup;
     nestgrid::IsosurfaceSeries one_series(bucky.grid, bucky.field);
     nestgrid::IsosurfaceSeries two_series(bucky.grid, bucky.field);
@@ -73,6 +77,8 @@ void compare(int n, std::size_t rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    at_either_size(argc, argv, 15, [](auto n, std::size_t rounds) { compare(n.value, rounds); });
+    const int levels = is_quick(argc, argv) ? 5 : 7;
+    at_either_size(argc, argv, 15,
+                   [levels](auto n, std::size_t rounds) { compare(n.value, levels, rounds); });
     return 0;
 }
