@@ -29,10 +29,16 @@ public:
         if (level >= levels_.size()) levels_.resize(level + 1);
         Level& to = levels_[level];
         to.rules.push_back(&rule);
-        for (const std::size_t node : nodes) {
-            if (node >= narrow && !wide_) throw GridError("the grid has more than 2^32 nodes");
-            to.low.push_back(static_cast<std::uint32_t>(node));
-            if (wide_) to.high.push_back(static_cast<std::uint8_t>(node >> 32U));
+        std::array<std::uint32_t, max_corners + max_new_nodes> low;
+        std::size_t all = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            low[i] = static_cast<std::uint32_t>(nodes[i]);
+            all |= nodes[i];
+        }
+        if (all >= narrow && !wide_) throw GridError("the grid has more than 2^32 nodes");
+        to.low.insert(to.low.end(), low.begin(), low.begin() + nodes.size());
+        for (std::size_t i = 0; wide_ && i < nodes.size(); ++i) {
+            to.high.push_back(static_cast<std::uint8_t>(nodes[i] >> 32U));
         }
     }
 
