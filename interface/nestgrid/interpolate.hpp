@@ -27,6 +27,10 @@ std::array<Real, count> interpolate(const Stencil& s, const Real* value, std::si
         set([](const auto& at) { return midpoint(at(0), at(1)); });
     } else if (s.mean == Mean::face) {
         set([](const auto& at) { return face_mean(at(0), at(1), at(2), at(3)); });
+    } else if (s.mean == Mean::cell) {
+        set([](const auto& at) {
+            return cell_mean(std::array{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)});
+        });
     } else {
         set([&](const auto& at) {
             std::array<Real, max_corners> product;

@@ -16,26 +16,38 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include <nestgrid/inlining.hpp>
 
 namespace nestgrid {
 
-template <class Real>
-constexpr Real midpoint(Real a, Real b) {
-    return (a + b) * Real(0.5);
+/// \tparam Number float, double, or several at once (pack.hpp)
+template <class Number>
+NESTGRID_INLINE constexpr Number scaled(const Number& x, double by) {
+    if constexpr (std::is_floating_point_v<Number>) {
+        return x * static_cast<Number>(by);
+    } else {
+        return x * Number::all(static_cast<typename Number::value_type>(by));
+    }
+}
+
+template <class Number>
+NESTGRID_INLINE constexpr Number midpoint(const Number& a, const Number& b) {
+    return scaled(a + b, 0.5);
 }
 
 /// Mean of the corners of a quadrilateral face in tensor order: a mean of two opposite edge sums,
 /// of the two pairings the smaller one. The sum of two numbers on one side of a threshold stays on
 /// that side, so the mean has the sign of one of the two edge midpoints it averages.
-template <class Real>
-constexpr Real face_mean(Real a, Real b, Real c, Real d) {
-    return std::min((a + b) + (c + d), (a + c) + (b + d)) * Real(0.25);
+template <class Number>
+NESTGRID_INLINE constexpr Number face_mean(const Number& a, const Number& b, const Number& c,
+                                           const Number& d) {
+    using std::min;
+    return scaled(min((a + b) + (c + d), (a + c) + (b + d)), 0.25);
 }
 
 /// Ascending, without a branch.
-/// \tparam Number Real, or several at once
 template <class Number>
 NESTGRID_INLINE constexpr void sort_eight(std::array<Number, 8>& x) {
     // Batcher's network: the two of each pair are put in order.
@@ -53,20 +65,25 @@ NESTGRID_INLINE constexpr void sort_eight(std::array<Number, 8>& x) {
     });
 }
 
+/// Mean of the corners of a hexahedron, in any order: as ordered_sum(), whose order nobody could
+/// predict.
+template <class Number>
+NESTGRID_INLINE constexpr Number cell_mean(std::array<Number, 8> x) {
+    using std::max;
+    using std::min;
+    sort_eight(x);
+    Number sum = scaled(x[0], 0.125);
+    for (std::size_t i = 1; i < 8; ++i) sum = sum + scaled(x[i], 0.125);
+    return min(max(sum, x[0]), x[7]);
+}
+
 /// Weighted sum, products added in ascending order and clamped to the range of the values.
 /// `product` holds weight times value and is destroyed; lo and hi bound the values.
 template <class Real>
 constexpr Real ordered_sum(std::span<Real> product, Real lo, Real hi) {
+    std::sort(product.begin(), product.end());
     Real sum = 0;
-    if (product.size() == 8) {  // of a hexahedron: nobody can predict their order
-        std::array<Real, 8> eight;
-        std::copy_n(product.begin(), 8, eight.begin());
-        sort_eight(eight);
-        for (const Real p : eight) sum += p;
-    } else {
-        std::sort(product.begin(), product.end());
-        for (const Real p : product) sum += p;
-    }
+    for (const Real p : product) sum += p;
     return std::clamp(sum, lo, hi);
 }
 

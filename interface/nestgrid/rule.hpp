@@ -39,6 +39,7 @@ inline constexpr int max_rule_faces = 24;
 enum class Mean : std::uint8_t {
     midpoint,  ///< plain mean of two nodes
     face,      ///< plain mean of the corners of a quadrilateral, parents in tensor order
+    cell,      ///< plain mean of eight nodes
     weighted,  ///< anything else
 };
 

@@ -106,6 +106,7 @@ inline void complete_stencil(const Rule& rule, Stencil& s) {
     s.mean = Mean::weighted;
     if (distinct.size() != 1) return;
     if (s.count == 2) s.mean = Mean::midpoint;
+    if (s.count == 8) s.mean = Mean::cell;
     if (order_as_face(rule, s)) s.mean = Mean::face;
 }
 

@@ -38,27 +38,26 @@ namespace detail {
 /// bit, as those of boxes along the axes are.
 template <std::size_t n>
 bool is_parallelepiped(std::span<const Point, n> x) {
-    // How far a corner is from the sum of two edges: 0, all of its bits, or something else.
+    using Indices = std::array<std::size_t, 3>;  // a corner, and two of which it is the sum
+    constexpr std::array<Indices, 4> sums{{{3, 1, 2}, {5, 1, 4}, {6, 2, 4}, {7, 1, 6}}};
+    constexpr std::size_t count = n == 4 ? 1 : sums.size();
+    // 0, all of its bits, where it is.
     const auto off = [](const auto& corner, const auto& a, const auto& b, const auto& first) {
         return ((corner - first) - ((a - first) + (b - first))).template as<std::uint64_t>();
     };
     const auto xy = [&](std::size_t i) { return Pack<double, 2>::load(x[i].data()); };
-    const auto z = [&](const std::array<std::size_t, 4>& of) {
-        return Pack<double, 4>::make([&](auto i) NESTGRID_INLINE_LAMBDA { return x[of[i]][2]; });
-    };
-    auto xy_off = off(xy(3), xy(1), xy(2), xy(0));
-    constexpr std::size_t last = n - 1;
-    constexpr bool solid = n == 8;
-    if constexpr (solid) {
-        xy_off = xy_off | off(xy(5), xy(1), xy(4), xy(0)) | off(xy(6), xy(2), xy(4), xy(0)) |
-                 off(xy(7), xy(1), xy(6), xy(0));
+    auto xy_off = Pack<std::uint64_t, 2>::all(0);
+    for (const auto& [corner, a, b] : std::span(sums).first(count)) {
+        xy_off = xy_off | off(xy(corner), xy(a), xy(b), xy(0));
     }
-    const auto z_off =
-        off(z({3, solid ? 5 : last, solid ? 6 : last, last}), z({1, 1, solid ? 2 : 1, 1}),
-            z({2, solid ? 4 : 2, solid ? 4 : 2, solid ? 6 : 2}), z({0, 0, 0, 0}));
-    const auto all = xy_off.numbers();
-    const auto z_all = z_off.numbers();
-    return (all[0] | all[1] | z_all[0] | z_all[1] | z_all[2] | z_all[3]) == 0;
+    using All = Pack<double, 4>;
+    const auto z = [&](std::size_t which) {
+        return All::make([&](auto i)
+                             NESTGRID_INLINE_LAMBDA { return x[sums[i % count][which]][2]; });
+    };
+    const auto any_xy = xy_off.numbers();
+    const auto any_z = off(z(0), z(1), z(2), All::all(x[0][2])).numbers();
+    return (any_xy[0] | any_xy[1] | any_z[0] | any_z[1] | any_z[2] | any_z[3]) == 0;
 }
 
 /// The same residual: there the fit leaves nothing but the twists, products of two or three

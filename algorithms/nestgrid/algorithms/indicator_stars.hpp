@@ -17,39 +17,17 @@ namespace detail {
 template <class T>
 using Many = std::array<T, 64>;  // for short loops, which become vector instructions
 
-/// As the traversal interpolates, mean.hpp, to the last bit.
-/// \tparam Number Real, or several at once
-/// \param value at a distance in key
-template <class Number, class Value>
-NESTGRID_INLINE Number mean_of_parents(const StarRow& row, const Value& value) {
-    using std::max;
-    using std::min;
-    const auto at = [&](std::size_t i)
-                        NESTGRID_INLINE_LAMBDA -> Number { return value(row.parents[i]); };
-    const auto times = [](const Number& x, double weight) NESTGRID_INLINE_LAMBDA -> Number {
-        if constexpr (std::is_floating_point_v<Number>) {
-            return x * static_cast<Number>(weight);
-        } else {
-            return x * Number::all(static_cast<typename Number::value_type>(weight));
-        }
-    };
-    if (row.parents.size() == 2) return times(at(0) + at(1), 0.5);
-    if (row.parents.size() == 4) {
-        const Number a = at(0);
-        const Number b = at(1);
-        const Number c = at(2);
-        const Number d = at(3);
-        return times(min((a + b) + (c + d), (a + c) + (b + d)), 0.25);
-    }
-    std::array<Number, 8> x;
-    unrolled<8>([&](auto i) NESTGRID_INLINE_LAMBDA { x[i] = at(i); });
-    sort_eight(x);
-    Number sum = times(x[0], 0.125);
-    for (std::size_t i = 1; i < 8; ++i) sum = sum + times(x[i], 0.125);
-    return min(max(sum, x[0]), x[7]);
+/// As the traversal interpolates, to the last bit.
+/// \tparam Number several at once
+/// \param at gives them at parent i
+template <class Number, class At>
+NESTGRID_INLINE Number mean_of_parents(std::size_t parents, const At& at) {
+    if (parents == 2) return midpoint<Number>(at(0), at(1));
+    if (parents == 4) return face_mean<Number>(at(0), at(1), at(2), at(3));
+    return cell_mean(std::array<Number, 8>{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)});
 }
 
-/// Stop and bound of nodes, four at once where a row is long enough.
+/// Stop and bound of nodes, four at once.
 template <class Field, class Entry>
 class StarRows {
 public:
@@ -63,14 +41,7 @@ public:
         : field_{&field}, entries_{entries}, full_{full} {}
 
     void operator()(const StarRow& row) const {
-        const std::size_t inside = row.count - row.outside;
-        std::size_t i = 0;
-        while (i + width_ <= inside) {
-            make_some(row, i);
-            // Some are made twice rather than alone.
-            i = i + width_ == inside ? inside : std::min(i + width_, inside - width_);
-        }
-        for (; i < row.count; ++i) make_one(row, i);
+        for (std::size_t i = 0; i < row.count; i += width_) make(row, i);
     }
 
 private:
@@ -85,27 +56,12 @@ private:
         return node + static_cast<std::size_t>(offset);
     }
 
-    void make_one(const StarRow& row, std::size_t i) const {
-        const std::size_t node = row.first + i * row.stride;
-        Full all{0, 0};
-        for (const std::ptrdiff_t offset : row.finer) {
-            const Full& there = full_[at(node, offset)];
-            all = {std::max(all.stop, there.stop), std::max(all.bound, there.bound)};
-        }
-        if (!row.parents.empty()) {
-            const Real mean = mean_of_parents<Real>(
-                row, [&](std::ptrdiff_t offset) { return value(at(node, offset)); });
-            const float own = offset_above(value(node), mean);
-            all = {std::max(all.stop, own), sum_above(own, all.bound)};
-        }
-        if (i + row.outside >= row.count) all.stop = std::numeric_limits<float>::infinity();
-        full_[node] = all;
-        entries_[node] = {bfloat16_above(all.stop), bfloat16_above(all.bound)};
-    }
-
-    NESTGRID_INLINE void make_some(const StarRow& row, std::size_t i) const {
+    /// Of nodes i and so on; the last one of the row is made several times where there are less.
+    NESTGRID_INLINE void make(const StarRow& row, std::size_t i) const {
         std::array<std::size_t, width_> node;
-        for (std::size_t k = 0; k < width_; ++k) node[k] = row.first + (i + k) * row.stride;
+        for (std::size_t k = 0; k < width_; ++k) {
+            node[k] = row.first + std::min(i + k, row.count - 1) * row.stride;
+        }
         Pair low{};
         Pair high{};
         for (const std::ptrdiff_t offset : row.finer) {
@@ -120,6 +76,12 @@ private:
             const Floats own = own_offsets(row, node);
             stop = max(stop, own);
             bound = sum_above(own, bound);
+        }
+        if (i + width_ + row.outside > row.count) {
+            stop = Floats::make([&](auto k) {
+                const bool outside = std::min(i + k, row.count - 1) + row.outside >= row.count;
+                return outside ? std::numeric_limits<float>::infinity() : stop.template number<k>();
+            });
         }
         const auto stops = stop.numbers();
         const auto bounds = bound.numbers();
@@ -146,12 +108,14 @@ private:
     NESTGRID_INLINE Floats own_offsets(const StarRow& row,
                                        const std::array<std::size_t, width_>& node) const {
         using Reals = Pack<Real, width_>;
-        const auto values = [&](std::ptrdiff_t offset) NESTGRID_INLINE_LAMBDA {
+        const auto values = [&](std::ptrdiff_t offset) NESTGRID_INLINE_LAMBDA -> Reals {
             return Reals::make([&](auto k)
                                    NESTGRID_INLINE_LAMBDA { return value(at(node[k], offset)); });
         };
         const Reals own = values(0);
-        const auto mean = mean_of_parents<Reals>(row, values);
+        const auto mean = mean_of_parents<Reals>(
+            row.parents.size(),
+            [&](std::size_t parent) NESTGRID_INLINE_LAMBDA { return values(row.parents[parent]); });
         if constexpr (std::is_same_v<Real, float>) {
             return distance_above(own, mean);
         } else {

@@ -179,24 +179,17 @@ void LatticeOctree<dim>::star_rows_of_plane(std::uint32_t step, unsigned odd, st
     });
 }
 
-/// All new nodes of a cell lie at most a step from its centre.
-/// \param plane of the centres
+/// Cells of two steps.
+/// \param plane of their centres
 template <int dim>
 template <class Function>
 void LatticeOctree<dim>::gather_cells_of_plane(std::uint32_t step, std::uint32_t plane,
                                                Function& function) const {
     constexpr unsigned all_odd = (1U << size_) - 1;
     std::array<std::ptrdiff_t, max_new_nodes> made;
-    std::size_t found = 0;
-    for (unsigned n = 0; n < (dim == 2 ? 9U : 27U); ++n) {
-        const std::array<unsigned, 3> steps{n % 3, n / 3 % 3, n / 9};
-        std::ptrdiff_t offset = 0;
-        bool is_new = false;
-        for (std::size_t d = 0; d < size_; ++d) {
-            offset += (static_cast<std::ptrdiff_t>(steps[d]) - 1) * this->key_step(d, step);
-            is_new = is_new || steps[d] == 1;
-        }
-        if (is_new) made[found++] = offset;
+    for (std::size_t k = 0; k < made.size(); ++k) {
+        const NodeKey from_centre = half_key_steps_[k] - half_key_steps_[rule_->inside];
+        made[k] = static_cast<std::ptrdiff_t>(from_centre) * static_cast<std::ptrdiff_t>(step);
     }
     this->for_each_row({step, all_odd, plane, 2},
                        [&](const std::array<std::uint32_t, 3>& x, std::size_t stride,
