@@ -192,6 +192,14 @@ private:
     }
     bool limited() const { return limit_ != std::numeric_limits<std::uint64_t>::max(); }
     unsigned pattern(const Real* value, std::size_t corners, const Layer& layer) const;
+    bool joined(const State& s, const FaceTopology& face) const;
+    static FaceTopology loop_of(const State& s, std::size_t face);
+    void load(const State& s, bool draws);
+    void add_error(const State& s, Layer& layer) const;
+    void begin_drawing();
+    void draw(const State& s, unsigned pattern, unsigned joins);
+
+    // isosurface_inspection.hpp
     bool of_interest(Real lo, Real hi, Real bound, bool also_below) const;
     template <class Number>
     static Real as_real(Number bound) {
@@ -200,12 +208,6 @@ private:
     }
     Real bound_of(std::span<const NodeKey> nodes) const;
     Real bound_of(const Split& split) const;
-    bool joined(const State& s, const FaceTopology& face) const;
-    static FaceTopology loop_of(const State& s, std::size_t face);
-    void load(const State& s, bool draws);
-    void add_error(const State& s, Layer& layer) const;
-    void begin_drawing();
-    void draw(const State& s, unsigned pattern, unsigned joins);
 
     // isosurface_transitions.hpp
     void record(const State& s, Layer& layer, unsigned pattern);

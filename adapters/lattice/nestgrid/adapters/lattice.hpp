@@ -199,70 +199,6 @@ private:
     void choose_blocks();
 };
 
-/// Samples of any arithmetic type, borrowed, x fastest. Values are float for types that float holds
-/// exactly (float, and integers of at most 16 bits), double for all others.
-template <class Grid, class Sample>
-class LatticeField {
-public:
-    using value_type = std::conditional_t<std::is_same_v<Sample, float> ||
-                                              (std::is_integral_v<Sample> && sizeof(Sample) <= 2),
-                                          float, double>;
-    using Element = typename Grid::Element;
-
-    /// \throw InvalidInput where the number of samples is not that of the lattice
-    LatticeField(const Grid& grid, std::span<const Sample> samples)
-        : grid_{&grid}, samples_{samples} {
-        if (samples.size() != grid.sample_count()) {
-            throw InvalidInput("the field has " + std::to_string(samples.size()) +
-                               " samples, but the lattice " + std::to_string(grid.sample_count()));
-        }
-    }
-
-    NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
-        const Element e = grid_->coarse(i).element;
-        for (std::size_t k = 0; k < corners_; ++k) out[k] = at(grid_->corner_place(e, k));
-        return 0;
-    }
-    NodeMask new_values(const Element& e, NodeMask which, std::span<value_type> out) const {
-        if (grid_->whole()) {
-            std::array<NodeKey, static_cast<std::size_t>(Grid::max_new_nodes)> node;
-            grid_->new_keys(e, node);
-            for (std::size_t k = 0; which >> k != 0; ++k) out[k] = sample(node[k]);
-            return 0;
-        }
-        for (std::size_t k = 0; which >> k != 0; ++k) {
-            if ((which >> k & 1U) != 0) out[k] = at(grid_->new_place(e, k));
-        }
-        return 0;
-    }
-    template <bool whole>
-    NESTGRID_INLINE value_type value_at(typename Grid::Place p, NodeKey node) const {
-        return whole || grid_->whole() ? sample(node) : at(p);
-    }
-    NESTGRID_INLINE value_type value(NodeKey node) const {
-        return grid_->whole() ? sample(node) : at(grid_->place(node));
-    }
-
-    /// Central differences of the samples, one-sided at the boundary.
-    void corner_gradients(const Element& e, std::span<Point> out) const {
-        for (std::size_t k = 0; k < corners_; ++k) out[k] = gradient(grid_->corner_place(e, k));
-    }
-
-private:
-    static constexpr std::size_t corners_ = static_cast<std::size_t>(Grid::max_corners);
-
-    NESTGRID_INLINE value_type sample(NodeKey node) const {
-        return static_cast<value_type>(samples_[static_cast<std::size_t>(node)]);
-    }
-    NESTGRID_INLINE value_type at(typename Grid::Place p) const {
-        return static_cast<value_type>(samples_[grid_->sample(p)]);
-    }
-    Point gradient(typename Grid::Place p) const;
-
-    const Grid* grid_;
-    std::span<const Sample> samples_;
-};
-
 template <int dim>
 Lattice<dim>::Lattice(const LatticeGeometry<dim>& geometry) : geometry_{geometry} {
     std::size_t stride = 1;
@@ -330,32 +266,7 @@ void Lattice<dim>::choose_blocks() {
     }
 }
 
-template <class Grid, class Sample>
-Point LatticeField<Grid, Sample>::gradient(typename Grid::Place p) const {
-    constexpr int dim = Grid::dimension;
-    const LatticeGeometry<dim>& g = grid_->geometry();
-    const std::size_t centre = grid_->sample(p);
-    Point along{0, 0, 0};  // per unit length along the axes
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
-        const std::size_t x = std::min<std::size_t>(grid_->at(p, d), grid_->samples(d) - 1);
-        const std::size_t up = x + 1 < grid_->samples(d) ? 1 : 0;
-        const std::size_t down = x > 0 ? 1 : 0;
-        const double rise = static_cast<double>(samples_[centre + up * grid_->sample_stride(d)]) -
-                            static_cast<double>(samples_[centre - down * grid_->sample_stride(d)]);
-        along[d] = rise / (static_cast<double>(up + down) * g.spacing[d]);
-    }
-    // The gradient is the inverse transpose of the direction matrix times `along`.
-    std::array<Point, 3> axis{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
-        for (std::size_t r = 0; r < 3; ++r) axis[d][r] = g.direction[r][d];
-    }
-    if (dim == 2) axis[2] = cross(axis[0], axis[1]);
-    const double volume = dot(axis[0], cross(axis[1], axis[2]));
-    return (along[0] / volume) * cross(axis[1], axis[2]) +
-           (along[1] / volume) * cross(axis[2], axis[0]) +
-           (along[2] / volume) * cross(axis[0], axis[1]);
-}
-
 }  // namespace nestgrid
 
+#include <nestgrid/adapters/lattice_field.hpp>
 #include <nestgrid/adapters/lattice_rows.hpp>
