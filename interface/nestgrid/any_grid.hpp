@@ -176,11 +176,10 @@ public:
               "corner_gradients");
     }
 
-    bool knows_stars() const { return table_.library_value != nullptr; }
-    Real value(NodeKey node) const {
-        Real value{};
-        table_.library_value(table_.self, static_cast<std::uint64_t>(node), &value);
-        return value;
+    bool knows_stars() const { return table_.library_row_values != nullptr; }
+    void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const {
+        table_.library_row_values(table_.self, static_cast<std::uint64_t>(first), stride,
+                                  out.size(), out.data());
     }
     /// Whether bisections below elements of this grid can be walked on the other side of the
     /// tables: of the library's own, or of such as tell theirs.

@@ -154,7 +154,8 @@ typedef struct nestgrid_field {
     /* Of the library's own tables, NULL in all others: C++ on both sides. */
     int (*library_bisect)(const void* self, const nestgrid_grid* grid, const nestgrid_element* e,
                           const void* values, int level, int orientation, void* visitor);
-    int (*library_value)(const void* self, uint64_t node, void* out);
+    int (*library_row_values)(const void* self, uint64_t first, size_t stride, size_t count,
+                              void* out);
 
     /* Optional, with the `middles` of the grid. */
     int (*node_values)(const void* self, size_t count, const uint64_t* nodes, const uint64_t* keys,

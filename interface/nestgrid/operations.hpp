@@ -33,7 +33,8 @@
 //         calls f(StarRow) fine to coarse, each node of any element in one row that does not
 //         gather. All coarse elements are split alike, and all of their children; default: sweeps
 //     bool knows_stars()
-//         whether it does, where that is decided at run time; of a field, whether it has value()
+//         whether it does, where that is decided at run time; of a field, whether it has
+//         row_values()
 //     Point node_position(NodeKey)
 //         random access, with for_each_star_row
 //     std::uint64_t epoch()
@@ -45,7 +46,9 @@
 //         of all elements; default: simplices where there are no more corners, else any
 // and a field
 //     void corner_gradients(e, std::span<Point> out)   gradients at the corners, per unit length
-//     value_type value(NodeKey)                        random access, with for_each_star_row
+//     void row_values(NodeKey first, std::size_t stride, std::span<value_type> out)
+//         at the nodes first, first + stride, ... of a star row or of their parents in one place;
+//         random access, with for_each_star_row
 #pragma once
 
 #include <nestgrid/grid.hpp>
@@ -259,6 +262,11 @@ std::size_t dense_key_count(const Grid& grid) {
         return 0;
     }
 }
+
+template <class Field>
+concept KnowsRows = requires(const Field& field, std::span<typename Field::value_type> out) {
+    field.row_values(NodeKey{}, std::size_t{1}, out);
+};
 
 /// Whether a grid or field that has the operations on stars can be asked for them.
 template <class Model>

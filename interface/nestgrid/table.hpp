@@ -247,8 +247,9 @@ struct FieldTable {
         });
     }
 
-    static int library_value(const void* self, std::uint64_t node, void* out) {
-        *static_cast<Real*>(out) = field(self).value(NodeKey{node});
+    static int library_row_values(const void* self, std::uint64_t first, std::size_t stride,
+                                  std::size_t count, void* out) {
+        field(self).row_values(NodeKey{first}, stride, std::span(static_cast<Real*>(out), count));
         return 0;
     }
 
@@ -346,8 +347,8 @@ nestgrid_field make_table(const Grid&, const Field& field) {
                   detail::components_of<Field>() == 1) {
         t.library_bisect = Table::library_bisect;
     }
-    if constexpr (requires { field.value(NodeKey{}); }) {
-        if (knows_stars(field)) t.library_value = Table::library_value;
+    if constexpr (KnowsRows<Field>) {
+        if (knows_stars(field)) t.library_row_values = Table::library_row_values;
     }
     return t;
 }

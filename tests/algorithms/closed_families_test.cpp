@@ -52,11 +52,62 @@ void expect_counts_of_inspection(const TraversalCounts& counts, const Grid& grid
     EXPECT_EQ(counts.visited, inspection.counts.visited);
 }
 
+/// Below an element no value lies further from those at its corners than the bound.
+struct Bounded {
+    struct Above {
+        NodeKey path;
+        double least;
+        double greatest;
+        double bound;
+    };
+    const HierarchicalIndicator* indicator;
+    std::vector<Above> above{};
+    std::size_t split = 0;
+    std::size_t compared = 0;
+
+    template <class State>
+    static bool lies_below(const State& s, const Above& element) {
+        for (const State* at = s.father; at != nullptr; at = at->father) {
+            if (at->path == element.path) return true;
+        }
+        return false;
+    }
+    template <class State>
+    Decision inspect(const State& s, const Split& of) {
+        while (!above.empty() && !lies_below(s, above.back())) above.pop_back();
+        const auto values = std::span(s.value).first(static_cast<std::size_t>(s.corner_count()));
+        const auto [least, greatest] = std::ranges::minmax(values);
+        for (const Above& element : above) {
+            EXPECT_LE(greatest - element.greatest, element.bound);
+            EXPECT_LE(element.least - least, element.bound);
+            ++compared;
+        }
+        if (of.rule != nullptr) {
+            const double bound{indicator->bound(*of.rule, of.keys)};
+            above.push_back({s.path, least, greatest, bound});
+            ++split;
+        }
+        return {};
+    }
+    template <class State>
+    void extract(const State&) {}
+};
+
+template <class Grid, class Field>
+void expect_bounds_hold(const Grid& grid, const Field& field,
+                        const HierarchicalIndicator& indicator) {
+    Bounded bounded{&indicator};
+    constexpr Needs all{.keys = true, .positions = true, .closed = true};  // for the paths
+    Traversal<Grid, Field, all>(grid, field, indicator.hanging()).run(bounded);
+    EXPECT_EQ(bounded.compared > 0, bounded.split > 0);
+}
+
 template <class Grid>
 void expect_closed_at(const Grid& grid, const NodalSamples& samples,
                       const std::vector<double>& thresholds) {
     const NodeField<Grid, double> field(grid, samples.values);
     const HierarchicalIndicator indicator(grid, field);
+    expect_bounds_hold(grid, field, indicator);
     for (const double threshold : thresholds) {
         for (const bool cap : {false, true}) {
             SCOPED_TRACE(samples.name + " at threshold " + std::to_string(threshold) +
@@ -162,6 +213,7 @@ TEST(ClosedLevelSetsOfSamples, OnTheImplicitOctree) {
         for (const SampledField& data : sampled_fields(n)) {
             const LatticeField field(grid, std::span<const float>(data.values));
             const HierarchicalIndicator indicator(grid, field);
+            expect_bounds_hold(grid, field, indicator);
             for (const double threshold : thresholds) {
                 for (const bool cap : {false, true}) {
                     SCOPED_TRACE(data.name + " at " + std::to_string(threshold));

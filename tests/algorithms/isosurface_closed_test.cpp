@@ -119,7 +119,9 @@ public:
             for (std::size_t i = 0; !row.parents.empty() && i < row.count; ++i) {
                 const std::size_t node = row.first + i * row.stride;
                 const auto value = [&](std::ptrdiff_t offset) {
-                    return double(field.value(node + static_cast<std::size_t>(offset)));
+                    std::array<float, 1> at{};
+                    field.row_values(node + static_cast<std::size_t>(offset), row.stride, at);
+                    return double{at[0]};
                 };
                 offset_[node] =
                     std::abs(value(0) - (value(row.parents[0]) + value(row.parents[1])) / 2);

@@ -143,6 +143,7 @@ void compare(std::size_t rounds) {
     nestgrid::IsosurfaceSeries series(bucky.grid, bucky.field);
     on_image.add("indexed_again", [&] { series.draw(double{bucky_isovalue}, indexed); });
     BuckySamples padded(n - 1);
+    on_image.add("padded_preroll", [&] { HierarchicalIndicator(padded.grid, padded.field); });
     on_image.add("padded_soup", [&] { padded.draw_soup(padded.grid, padded.field, 0); });
     on_image.add("padded_indexed", [&] {
         isosurface(padded.grid, padded.field, double{bucky_isovalue}, padded.indicator, indexed);

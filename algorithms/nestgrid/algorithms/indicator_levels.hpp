@@ -20,7 +20,6 @@ public:
     Sweeps(std::size_t dense, bool of_leaves)
         : number_of_{dense},
           nodes_(number_of_.count()),
-          made_on_(nodes_.size(), 0),
           splits_{nodes_.size()},
           of_leaves_{of_leaves} {}
 
@@ -39,22 +38,25 @@ public:
 
 private:
     struct Node {
-        Entry entry{};
         float offset = 0;  // |U_delta|, rounded up
-        float finer = 0;   // largest bound of finer nodes
+        Entry entry{};
+        std::uint16_t finer = 0;   // largest bound of finer nodes
+        std::uint8_t made_on = 0;  // 1 + level, modulo 255; 0: not known yet
+
+        std::uint16_t bound() const {
+            return bfloat16_above(sum_above(offset, bfloat16_value(finer)));
+        }
     };
 
     std::span<const std::size_t> numbers(std::span<const NodeKey> keys) {
         number_of_.find(keys, numbers_);
         nodes_.resize(number_of_.count());
-        made_on_.resize(number_of_.count());
         return std::span(numbers_).first(keys.size());
     }
     bool sweep(std::size_t level);
 
     NodeNumbers number_of_;
     std::vector<Node> nodes_;
-    std::vector<std::uint8_t> made_on_;  // 1 + level, modulo 255; 0: not known yet
     SplitsByLevel splits_;
     bool of_leaves_;
     bool one_sweep_ = true;  // is enough
@@ -69,11 +71,10 @@ void HierarchicalIndicator::Sweeps::split(const detail::MetSplit& s, Offset&& of
     one_sweep_ = one_sweep_ && rule.steps == 1;
     const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-        const std::size_t at = number[corners + n];
-        Node& node = nodes_[at];
-        const bool is_new = made_on_[at] == 0;
-        one_sweep_ = one_sweep_ && (is_new || made_on_[at] == level);
-        made_on_[at] = level;
+        Node& node = nodes_[number[corners + n]];
+        const bool is_new = node.made_on == 0;
+        one_sweep_ = one_sweep_ && (is_new || node.made_on == level);
+        node.made_on = level;
         if (is_new) node.offset = offset(n);  // every element that makes it has the same parents
         const std::uint16_t own = (s.outside >> n & 1U) != 0 ? bfloat16_infinity
                                   : of_leaves_               ? std::uint16_t{0}
@@ -98,17 +99,14 @@ inline void HierarchicalIndicator::Sweeps::saturate() {
         for (std::size_t level = splits_.levels(); level-- > 0;) changed |= sweep(level);
         changed = changed && !one_sweep_;
     }
-    for (Node& node : nodes_) {
-        node.entry.bound =
-            std::max(node.entry.bound, bfloat16_above(sum_above(node.offset, node.finer)));
-    }
+    for (Node& node : nodes_) node.entry.bound = std::max(node.entry.bound, node.bound());
 }
 
 /// \return whether anything has changed
 inline bool HierarchicalIndicator::Sweeps::sweep(std::size_t level) {
     bool changed = false;
     splits_.for_each(level, [&](const Rule& rule, std::span<const std::size_t> of) {
-        const auto raise = [&](std::size_t at, std::uint16_t stop, float bound) {
+        const auto raise = [&](std::size_t at, std::uint16_t stop, std::uint16_t bound) {
             Node& node = nodes_[at];
             if (node.entry.stop < stop || node.finer < bound) changed = true;
             node.entry.stop = std::max(node.entry.stop, stop);
@@ -117,10 +115,10 @@ inline bool HierarchicalIndicator::Sweeps::sweep(std::size_t level) {
         const auto corners = static_cast<std::size_t>(rule.corner_count());
         const std::span<const std::size_t> made = of.subspan(corners);
         std::uint16_t stop = 0;
-        float bound = 0;
+        std::uint16_t bound = 0;
         for (std::size_t n = made.size(); n-- > 0;) {
             const Node node = nodes_[made[n]];
-            const float below = sum_above(node.offset, node.finer);
+            const std::uint16_t below = node.bound();
             stop = std::max(stop, node.entry.stop);
             bound = std::max(bound, below);
             if (rule.steps == 1) continue;
@@ -134,7 +132,7 @@ inline bool HierarchicalIndicator::Sweeps::sweep(std::size_t level) {
         if (rule.inside != no_new_node) {
             Entry& within = nodes_[made[rule.inside]].entry;
             within.stop = std::max(within.stop, stop);
-            within.bound = std::max(within.bound, bfloat16_above(bound));
+            within.bound = std::max(within.bound, bound);
         }
         for (const std::size_t corner : of.first(corners)) raise(corner, stop, bound);
     });

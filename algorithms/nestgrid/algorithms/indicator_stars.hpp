@@ -5,17 +5,16 @@
 // comes out is what the sweep of levels gives, to the last bit.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
-#include <cstring>
+#include <span>
 
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
 
 namespace detail {
-
-template <class T>
-using Many = std::array<T, 64>;  // for short loops, which become vector instructions
 
 /// As the traversal interpolates, to the last bit.
 /// \tparam Number several at once
@@ -27,95 +26,108 @@ NESTGRID_INLINE Number mean_of_parents(std::size_t parents, const At& at) {
     return cell_mean(std::array<Number, 8>{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)});
 }
 
-/// Stop and bound of nodes, four at once.
+/// Stop and bound of nodes, four at once, and the range of values.
+/// \tparam Entry both: bits() has the stop in its lower half
 template <class Field, class Entry>
 class StarRows {
 public:
     using Real = typename Field::value_type;
-    struct Full {  // not rounded
-        float stop;
-        float bound;
-    };
 
-    StarRows(const Field& field, Entry* entries, Full* full)
-        : field_{&field}, entries_{entries}, full_{full} {}
+    StarRows(const Field& field, Entry* entries) : field_{&field}, entries_{entries} {}
 
-    void operator()(const StarRow& row) const {
-        for (std::size_t i = 0; i < row.count; i += width_) make(row, i);
+    void operator()(const StarRow& row) {
+        for (std::size_t i = 0; i < row.count; i += run_) make_run(row, i);
+        for (std::size_t i = row.count - row.outside; i < row.count; ++i) {
+            entries_[row.first + i * row.stride].stop = bfloat16_infinity;
+        }
+    }
+
+    /// \throw InvalidInput where one of the values is not usable
+    void add_values(PrerollFacts& facts) const {
+        constexpr Real limit = std::numeric_limits<Real>::max() / 8;
+        for (const Real nan_or_zero : unusable_.numbers()) {
+            if (nan_or_zero != 0) facts.add_value(static_cast<double>(nan_or_zero), limit);
+        }
+        for (const Real v : least_.numbers()) facts.add_value(static_cast<double>(v), limit);
+        for (const Real v : greatest_.numbers()) facts.add_value(static_cast<double>(v), limit);
     }
 
 private:
+    static constexpr std::size_t run_ = 64;  // nodes whose values are fetched at once
     static constexpr std::size_t width_ = 4;
+    using Run = std::array<Real, run_>;
+    using Steps = std::array<std::size_t, width_>;
+    using Reals = Pack<Real, width_>;
     using Floats = Pack<float, width_>;
-    using Pair [[gnu::vector_size(16)]] = float;  // two nodes
+    using Entries = Pack<std::uint32_t, width_>;
 
-    NESTGRID_INLINE Real value(std::size_t node) const {
-        return static_cast<Real>(field_->value(static_cast<NodeKey>(node)));
-    }
-    NESTGRID_INLINE static std::size_t at(std::size_t node, std::ptrdiff_t offset) {
-        return node + static_cast<std::size_t>(offset);
-    }
-
-    /// Of nodes i and so on; the last one of the row is made several times where there are less.
-    NESTGRID_INLINE void make(const StarRow& row, std::size_t i) const {
-        std::array<std::size_t, width_> node;
-        for (std::size_t k = 0; k < width_; ++k) {
-            node[k] = row.first + std::min(i + k, row.count - 1) * row.stride;
-        }
-        Pair low{};
-        Pair high{};
-        for (const std::ptrdiff_t offset : row.finer) {
-            const Pair a = pair(at(node[0], offset), at(node[1], offset));
-            const Pair b = pair(at(node[2], offset), at(node[3], offset));
-            low = low > a ? low : a;
-            high = high > b ? high : b;
-        }
-        Floats stop = as_floats(__builtin_shufflevector(low, high, 0, 2, 4, 6));
-        Floats bound = as_floats(__builtin_shufflevector(low, high, 1, 3, 5, 7));
-        if (!row.parents.empty()) {
-            const Floats own = own_offsets(row, node);
-            stop = max(stop, own);
-            bound = sum_above(own, bound);
-        }
-        if (i + width_ + row.outside > row.count) {
-            stop = Floats::make([&](auto k) {
-                const bool outside = std::min(i + k, row.count - 1) + row.outside >= row.count;
-                return outside ? std::numeric_limits<float>::infinity() : stop.template number<k>();
-            });
-        }
-        const auto stops = stop.numbers();
-        const auto bounds = bound.numbers();
-        const auto bits = (bfloat16_above(stop) >> 16 | bfloat16_above(bound)).numbers();
-        for (std::size_t k = 0; k < width_; ++k) {
-            full_[node[k]] = {stops[k], bounds[k]};
-            entries_[node[k]] = {static_cast<std::uint16_t>(bits[k]),
-                                 static_cast<std::uint16_t>(bits[k] >> 16U)};
-        }
-    }
-
-    NESTGRID_INLINE Pair pair(std::size_t node, std::size_t next) const {
-        const auto both = [&](std::size_t n)
-                              NESTGRID_INLINE_LAMBDA { return std::bit_cast<double>(full_[n]); };
-        using Two [[gnu::vector_size(16)]] = double;
-        return std::bit_cast<Pair>(Two{both(node), both(next)});
-    }
-    NESTGRID_INLINE static Floats as_floats(const Pair& four) {
-        std::array<float, width_> numbers;
-        std::memcpy(&numbers, &four, sizeof four);
-        return Floats::load(numbers.data());
-    }
-
-    NESTGRID_INLINE Floats own_offsets(const StarRow& row,
-                                       const std::array<std::size_t, width_>& node) const {
-        using Reals = Pack<Real, width_>;
-        const auto values = [&](std::ptrdiff_t offset) NESTGRID_INLINE_LAMBDA -> Reals {
-            return Reals::make([&](auto k)
-                                   NESTGRID_INLINE_LAMBDA { return value(at(node[k], offset)); });
+    void make_run(const StarRow& row, std::size_t first) {
+        const std::size_t count = std::min(run_, row.count - first);
+        const std::size_t node = row.first + first * row.stride;
+        const auto fetch = [&](std::ptrdiff_t offset, Run& to) {
+            field_->row_values(static_cast<NodeKey>(node + static_cast<std::size_t>(offset)),
+                               row.stride, std::span(to).first(count));
+            for (std::size_t i = count; i % width_ != 0; ++i) to[i] = to[count - 1];
         };
-        const Reals own = values(0);
-        const auto mean = mean_of_parents<Reals>(
-            row.parents.size(),
-            [&](std::size_t parent) NESTGRID_INLINE_LAMBDA { return values(row.parents[parent]); });
+        if (!row.gathers) {
+            fetch(0, own_);
+            for (std::size_t p = 0; p < row.parents.size(); ++p) fetch(row.parents[p], parent_[p]);
+        }
+        // Where less than four are left, the last one is made several times.
+        Steps whole;
+        Steps rest;
+        for (std::size_t k = 0; k < width_; ++k) {
+            whole[k] = k * row.stride;
+            rest[k] = std::min(k, (count - 1) % width_) * row.stride;
+        }
+        Entry* to = entries_ + node;
+        for (std::size_t i = 0; i < count; i += width_, to += width_ * row.stride) {
+            make(row, i, to, i + width_ <= count ? whole : rest);
+        }
+    }
+
+    /// \param i of the run
+    /// \param step from one node to those made with it
+    NESTGRID_INLINE void make(const StarRow& row, std::size_t i, Entry* to, const Steps& step) {
+        Entries made = Entries::all(0);
+        for (const std::ptrdiff_t offset : row.finer) {
+            const Entry* const finer = to + offset;
+            made = greater_halves(made, Entries::make([&](auto k) NESTGRID_INLINE_LAMBDA {
+                                      return finer[step[k]].bits();
+                                  }));
+        }
+        if (!row.gathers) add_range(Reals::load(own_.data() + i));
+        if (!row.parents.empty()) {
+            const Floats own = own_offsets(row.parents.size(), i);
+            const auto finer = (made & Entries::all(0xFFFF0000U)).template as<float>();
+            made = greater_halves(
+                made, bfloat16_above(own) >> 16 | bfloat16_above(sum_above(own, finer)));
+        }
+        const auto bits = made.numbers();
+        for (std::size_t k = 0; k < width_; ++k) to[step[k]] = Entry::of(bits[k]);
+    }
+
+    NESTGRID_INLINE void add_range(const Reals& v) {
+        least_ = min(least_, v);
+        greatest_ = max(greatest_, v);
+        unusable_ = unusable_ + v * Reals::all(0);
+    }
+
+    /// Of upper and lower halves, none of which is negative.
+    NESTGRID_INLINE static Entries greater_halves(const Entries& a, const Entries& b) {
+        using Halves [[gnu::vector_size(2 * width_ * sizeof(std::int16_t))]] = std::int16_t;
+        const auto x = std::bit_cast<Halves>(a.numbers());
+        const auto y = std::bit_cast<Halves>(b.numbers());
+        const Halves greater = x < y ? y : x;
+        return Entries::load(std::bit_cast<std::array<std::uint32_t, width_>>(greater).data());
+    }
+
+    NESTGRID_INLINE Floats own_offsets(std::size_t parents, std::size_t i) const {
+        const Reals own = Reals::load(own_.data() + i);
+        const auto mean =
+            mean_of_parents<Reals>(parents, [&](std::size_t p) NESTGRID_INLINE_LAMBDA {
+                return Reals::load(parent_[p].data() + i);
+            });
         if constexpr (std::is_same_v<Real, float>) {
             return distance_above(own, mean);
         } else {
@@ -127,42 +139,14 @@ private:
 
     const Field* field_;
     Entry* entries_;
-    Full* full_;
+    Run own_;
+    std::array<Run, 8> parent_;
+    Reals least_ = Reals::all(std::numeric_limits<Real>::infinity());
+    Reals greatest_ = Reals::all(-std::numeric_limits<Real>::infinity());
+    Reals unusable_ = Reals::all(0);  // NaN where one is infinite or not a number
 };
 
 }  // namespace detail
-
-/// The same as add_value() of every node.
-template <class Field>
-void HierarchicalIndicator::add_values(const Field& field) {
-    using Real = typename Field::value_type;
-    constexpr Real limit = std::numeric_limits<Real>::max() / 8;
-    detail::Many<Real> v;
-    detail::Many<Real> lo;
-    detail::Many<Real> hi;
-    detail::Many<std::uint32_t> unusable{};
-    lo.fill(std::numeric_limits<Real>::infinity());
-    hi.fill(-std::numeric_limits<Real>::infinity());
-    for (std::size_t first = 0; first < node_count_; first += v.size()) {
-        const std::size_t count = std::min(v.size(), node_count_ - first);
-        for (std::size_t k = 0; k < count; ++k) {
-            v[k] = static_cast<Real>(field.value(static_cast<NodeKey>(first + k)));
-        }
-        for (std::size_t k = count; k < v.size(); ++k) v[k] = v[0];
-        for (std::size_t k = 0; k < v.size(); ++k) {
-            lo[k] = v[k] < lo[k] ? v[k] : lo[k];
-            hi[k] = v[k] > hi[k] ? v[k] : hi[k];
-            unusable[k] |= std::abs(v[k]) <= limit ? 0U : 1U;
-        }
-    }
-    if (std::ranges::any_of(unusable, [](std::uint32_t u) { return u != 0; })) {
-        for (std::size_t i = 0; i < node_count_; ++i) {
-            facts_.add_value(static_cast<double>(field.value(static_cast<NodeKey>(i))), limit);
-        }
-    }
-    facts_.least = static_cast<double>(std::ranges::min(lo));
-    facts_.greatest = static_cast<double>(std::ranges::max(hi));
-}
 
 /// From one element of each level, for all are split alike.
 template <class Grid>
@@ -184,17 +168,14 @@ template <class Grid, class Field>
 void HierarchicalIndicator::sweep_stars(const Grid& grid, const Field& field) {
     node_count_ = grid.node_count();
     add_splits(grid);
-    add_values(field);
     // Nodes of no element are in no row, and count as 0; a whole grid has none.
     bool in_rows = false;
     if constexpr (requires { grid.whole(); }) in_rows = grid.whole();
-    using Rows = detail::StarRows<Field, Entry>;
-    using Full = typename Rows::Full;
     dense_ = in_rows ? std::make_unique_for_overwrite<Entry[]>(node_count_)
                      : std::make_unique<Entry[]>(node_count_);
-    const auto full = in_rows ? std::make_unique_for_overwrite<Full[]>(node_count_)
-                              : std::make_unique<Full[]>(node_count_);
-    grid.for_each_star_row(Rows(field, dense_.get(), full.get()));
+    detail::StarRows<Field, Entry> rows(field, dense_.get());
+    grid.for_each_star_row(rows);
+    rows.add_values(facts_);
 }
 
 }  // namespace nestgrid

@@ -48,8 +48,26 @@ public:
     NESTGRID_INLINE value_type value_at(typename Grid::Place p, NodeKey node) const {
         return whole || grid_->whole() ? sample(node) : at(p);
     }
-    NESTGRID_INLINE value_type value(NodeKey node) const {
-        return grid_->whole() ? sample(node) : at(grid_->place(node));
+    void row_values(NodeKey first, std::size_t stride, std::span<value_type> out) const {
+        auto from = static_cast<std::size_t>(first);
+        std::size_t within = out.size();  // the rest lies in the padding
+        if (!grid_->whole()) {
+            const typename Grid::Place p = grid_->place(first);
+            const std::size_t x = grid_->at(p, 0);
+            const std::size_t last = grid_->samples(0) - 1;
+            from = grid_->sample(p);
+            within = x > last ? 0 : std::min(within, (last - x) / stride + 1);
+            std::ranges::fill(out.subspan(within), sample(from + last - std::min(x, last)));
+        }
+        const auto copy = [from = samples_.data() + from, to = out.first(within)](auto by) {
+            for (std::size_t i = 0; i < to.size(); ++i) {
+                to[i] = static_cast<value_type>(from[i * by]);
+            }
+        };
+        // Most nodes; the compiler then takes several at once.
+        if (stride == 2) return copy(std::integral_constant<std::size_t, 2>{});
+        if (stride == 4) return copy(std::integral_constant<std::size_t, 4>{});
+        copy(stride);
     }
 
     /// Central differences of the samples, one-sided at the boundary.

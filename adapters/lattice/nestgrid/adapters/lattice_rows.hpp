@@ -35,27 +35,32 @@ void Lattice<dim>::for_each_row(const PlaneOfNodes& of, Function&& function) con
     if (of.odd != 0 && of.is_odd(size_ - 1) != (of.plane % (2 * step) != 0)) return;
     const std::uint32_t spacing = of.odd == 0 ? step : 2 * step;
     std::array<std::uint32_t, 3> x{};
-    const auto beyond_all = [&](std::size_t d, std::uint32_t c) {
-        return of.odd != 0 && c >= cells_[d] + (of.is_odd(d) ? 1 : of.reach) * step;
-    };
-    const auto across = [&](std::size_t d, std::uint32_t c) {
-        return padded_ && of.odd != 0 && c + (of.is_odd(d) ? step : 0U) > cells_[d];
-    };
+    // From the first of these coordinates on a parent lies beyond the domain, from the second one
+    // all elements do.
+    const bool ends = padded_ && of.odd != 0;
+    const std::uint32_t never = std::numeric_limits<std::uint32_t>::max();
+    std::array<std::uint32_t, size_> across;
+    std::array<std::uint32_t, size_> beyond;
+    for (std::size_t d = 0; d < size_; ++d) {
+        const std::uint32_t parent = of.is_odd(d) ? step : 0;
+        const std::uint32_t reach = of.is_odd(d) ? step : of.reach * step;
+        across[d] = !ends ? never : cells_[d] + 1 - std::min(cells_[d] + 1, parent);
+        beyond[d] = !ends ? never : cells_[d] + reach;
+    }
     const auto line = [&] {
         bool all_across = false;
         for (std::size_t d = 1; d < size_; ++d) {
-            if (beyond_all(d, x[d])) return;
-            all_across = all_across || across(d, x[d]);
+            if (x[d] >= beyond[d]) return;
+            all_across = all_across || x[d] >= across[d];
         }
         const auto run = [&](std::uint32_t first, std::uint32_t end, std::uint32_t by) {
-            std::size_t count = !padded_ && first < end ? (end - first - 1) / by + 1 : 0;
-            std::size_t outside = 0;
-            for (std::uint32_t c = first; padded_ && c < end && !beyond_all(0, c); c += by) {
-                ++count;
-                outside += all_across || across(0, c) ? 1U : 0U;
-            }
+            const auto below = [&](std::uint32_t c) {
+                return first < c ? std::size_t{(c - first - 1) / by} + 1 : 0;
+            };
+            const std::size_t count = below(std::min(end, beyond[0]));
+            const std::size_t inside = all_across ? 0 : below(std::min(end, across[0]));
             x[0] = first;
-            if (count > 0) function(x, node_stride_[0] * by, count, outside);
+            if (count > 0) function(x, node_stride_[0] * by, count, count - inside);
         };
         const std::uint32_t last = padded_cells_[0];
         if (of.is_odd(0)) {

@@ -273,7 +273,6 @@ public:
         for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = values_[nodes[k]];
         return 0;
     }
-    Real value(NodeKey node) const { return values_[static_cast<std::size_t>(node)]; }
 
 private:
     const Grid* grid_;
