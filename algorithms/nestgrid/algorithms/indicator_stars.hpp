@@ -80,9 +80,8 @@ private:
             whole[k] = k * row.stride;
             rest[k] = std::min(k, (count - 1) % width_) * row.stride;
         }
-        Entry* to = entries_ + node;
-        for (std::size_t i = 0; i < count; i += width_, to += width_ * row.stride) {
-            make(row, i, to, i + width_ <= count ? whole : rest);
+        for (std::size_t i = 0, at = node; i < count; i += width_, at += width_ * row.stride) {
+            make(row, i, entries_ + at, i + width_ <= count ? whole : rest);
         }
     }
 
@@ -152,7 +151,7 @@ private:
 template <class Grid>
 void HierarchicalIndicator::add_splits(const Grid& grid) {
     Context<Grid> context = make_context(grid);
-    ElementOf<Grid> element = detail::call_coarse(grid, context, 0).element;
+    ElementOf<Grid> element = detail::call_coarse(grid, context, std::size_t{0}).element;
     while (const Rule* rule = detail::call_split(grid, context, element)) {
         facts_.largest_split = std::max(facts_.largest_split, rule->new_nodes.size());
         facts_.all_divided = facts_.all_divided && rule->divides_all;
