@@ -117,10 +117,11 @@ typedef struct nestgrid_grid {
     int (*library_star_rows)(const void* self, const void* function);
 
     /* Optional, all of the following: what makes bisections fast, for it is asked of many nodes at
-     * once (tests/data/tetrahedra_in_c.c is an example). A grid may tell them whose elements are nothing but their corners, halved as Maubach
-     * (1995) does: word[k] of an element is the node at its corner k, a number of the author's
-     * choice, and word[dimension + 1] its tag t, 1 to dimension. Where it is split, the new node z
-     * lies between the corners 0 and t, and the children, in this order, have the corners
+     * once (tests/data/tetrahedra_in_c.c is an example). A grid may tell them whose elements are
+     * nothing but their corners, halved as Maubach (1995) does: word[k] of an element is the node
+     * at its corner k, a number of the author's choice, and word[dimension + 1] its tag t, 1 to
+     * dimension. Where it is split, the new node z lies between the corners 0 and t, and the
+     * children, in this order, have the corners
      *     x0 ... x(t-1)  z  x(t+1) ... xn    and    x1 ... xt  z  x(t+1) ... xn
      * and the tag t - 1, or dimension after 1; the second one is mirrored where t is odd. Those of
      * the tag dimension are split dimension times over, into elements of which all are split or

@@ -56,7 +56,7 @@ public:
     using value_type = T;
     using Mask = Pack<MaskOf<T>, size>;
 
-    // Vector by vector: a copy of all of them goes through narrower ones, and whoever reads a vector
+    // Vector by vector: a copy of all of them goes through narrower ones, and who reads a vector
     // then waits until these have reached the cache.
     Pack() = default;
     NESTGRID_INLINE Pack(const Pack& other) { *this = other; }

@@ -122,7 +122,7 @@ struct ElementState {
 ///     bool passes_over_leaves() const;         optional: whether leaves around which nothing is
 ///                                              closed may be left out, unless coarse
 ///     NodeMask children_to_enter(const State&) optional: one bit each, where it said descend
-///     bool looks_ahead() const;                optional: whether leaves that are no coarse elements
+///     bool looks_ahead() const;                optional: whether leaves that are not coarse ones
 ///                                              need no inspect(); then it has
 ///     NodeMask leaves_of_interest(const Rule&, std::span<const Real> values) const;
 ///                                              the children at which it would say stop if they are
