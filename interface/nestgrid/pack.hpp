@@ -214,7 +214,7 @@ private:
     struct Part {  // a template argument would lose the attribute
         Vector of;
     };
-    std::array<Part, vectors_> v_;
+    Part v_[vectors_];  // each element of a std::array would be a call to inline
 };
 
 /// x, y and z of several points.

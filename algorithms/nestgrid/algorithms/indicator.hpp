@@ -26,6 +26,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 
@@ -111,7 +112,7 @@ public:
     /// Both of eight nodes.
     class Known {
     public:
-        explicit Known(const Pack<std::uint32_t>& bits) : bits_{bits} {}
+        NESTGRID_INLINE explicit Known(const Pack<std::uint32_t>& bits) : bits_{bits} {}
         NESTGRID_INLINE Pack<float> stop() const { return (bits_ << 16).as<float>(); }
         NESTGRID_INLINE Pack<float> bound() const {
             return (bits_ & Pack<std::uint32_t>::all(0xFFFF0000U)).as<float>();
@@ -127,8 +128,7 @@ public:
                 return entry[static_cast<std::size_t>(nodes[i])].bits();
             }));
         }
-        return Known(Pack<std::uint32_t>::make(
-            [&](auto i) NESTGRID_INLINE_LAMBDA { return sparse_entry(nodes[i]).bits(); }));
+        return look_up_sparse(nodes);
     }
 
     /// The same for the new nodes of one split.
@@ -175,7 +175,9 @@ private:
 
         NESTGRID_INLINE std::uint32_t bits() const {
             if constexpr (std::endian::native == std::endian::little) {
-                return std::bit_cast<std::uint32_t>(*this);
+                std::uint32_t both;
+                std::memcpy(&both, this, sizeof both);
+                return both;
             } else {
                 return stop | std::uint32_t{bound} << 16U;
             }
@@ -191,6 +193,11 @@ private:
     NESTGRID_NOINLINE Entry sparse_entry(NodeKey node) const {
         const Entry* e = sparse_.find(node);
         return e == nullptr ? Entry{} : *e;
+    }
+
+    NESTGRID_NOINLINE Known look_up_sparse(const NodeKey* nodes) const {
+        return Known(Pack<std::uint32_t>::make(
+            [&](auto i) NESTGRID_INLINE_LAMBDA { return sparse_entry(nodes[i]).bits(); }));
     }
 
     template <class Grid, class Field, class LeafError, class E>
