@@ -32,6 +32,14 @@ void expect_same_from_threads(const Grid& grid, const Field& field,
             ASSERT_EQ(together.size(), alone.size());
             for (std::size_t i = 0; i < alone.size(); ++i) expect_same(alone[i], together[i]);
         }
+        const auto triangles = [&](const auto& executor) {
+            const auto at = [&](double) { return criterion; };
+            return find_threshold(grid, field, isovalues[0], at, indicator, 1000000, options,
+                                  executor)
+                .triangles;
+        };
+        EXPECT_EQ(triangles(SequentialExecutor{}), alone[0].surface.simplices.size());
+        EXPECT_EQ(triangles(ThreadExecutor(2)), alone[0].surface.simplices.size());
     }
 }
 
@@ -211,6 +219,63 @@ TEST(ThreadsOnSoups, KeepWhatAStreamHandsOut) {
                         ThreadExecutor(2));
     EXPECT_GT(soup.size(), 100U);
     EXPECT_EQ(soup, streamed);
+}
+
+/// A sink without anything that is optional.
+template <class Element>
+class PlainSink {
+public:
+    explicit PlainSink(Surface<3, Element>& surface) : all_{surface} {}
+
+    void add_vertex(const Point& x, std::span<const double> attributes) {
+        all_.add_vertex(x, attributes);
+    }
+    Point position(std::uint32_t vertex) const { return all_.position(vertex); }
+    void add_element(const Element& element, Shape shape, int level) {
+        all_.add_element(element, shape, level);
+    }
+    void add_simplex(const std::array<std::uint32_t, 3>& vertices,
+                     std::span<const Point> reference) {
+        all_.add_simplex(vertices, reference);
+    }
+    void add_boundary(const std::array<std::uint32_t, 2>& vertices) {
+        all_.add_boundary(vertices);
+    }
+    void set_normal(std::uint32_t vertex, const Point& unit) { all_.set_normal(vertex, unit); }
+
+private:
+    SurfaceSink<3, Element> all_;
+};
+
+template <class Grid>
+void expect_same_in_plain_sinks(const Grid& grid, const SampledField& data) {
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    const Threshold<HierarchicalIndicator> criterion{&indicator, 0.01 * data.range};
+    const std::span<const double> isovalue(&data.isovalue, 1);
+    const IsosurfaceOptions everything{.normals = true, .cap = true, .reference = true};
+    for (const IsosurfaceOptions& options : {everything, IsosurfaceOptions{}}) {
+        const auto alone = isosurface(grid, field, data.isovalue, criterion, indicator, options);
+        EXPECT_GT(alone.surface.simplices.size(), 100U);
+        const auto expect_same_with = [&](const auto& executor) {
+            using Element = ElementOf<Grid>;
+            Surface<3, Element> surface;
+            auto results = extract_isosurfaces(
+                grid, field, isovalue, std::vector<PlainSink<Element>>{PlainSink(surface)},
+                criterion, indicator, options, executor);
+            results[0].surface = std::move(surface);
+            expect_same(alone, results[0]);
+        };
+        expect_same_with(SequentialExecutor{});
+        expect_same_with(ThreadExecutor(2));
+    }
+}
+
+TEST(ThreadsOnPlainSinks, FillThemTheSame) {
+    const Samples n{17, 17, 17};
+    const SampledField data = sampled_fields(n)[0];
+    expect_same_in_plain_sinks(LatticeBisection<3>({.samples = n}), data);
+    expect_same_in_plain_sinks(LatticeOctree<3>({.samples = n}), data);
 }
 
 TEST(ThreadsOnBudgets, FindTheSameThreshold) {

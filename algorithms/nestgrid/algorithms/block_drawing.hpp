@@ -141,6 +141,7 @@ private:
         if (run.simplex_count == 0) return;
         layer_->extracted += run.simplex_count - run.four_count;
         visitor_->count_simplices(run.simplex_count);
+        if (visitor_->counts_only_) return;
 
         std::array<Vertex, Run::most_cuts> v;
         if constexpr (indexed_) {

@@ -73,18 +73,20 @@ NESTGRID_INLINE void BlockDrawing<Visitor, Blocks>::add_vertices(std::span<const
     std::array<WidePoint, Run::most_cuts> x;
     blocks_->cuts(cuts, layer_->isovalue, x.data());
     layer_->vertex_count += static_cast<Number>(cuts.size());
-    for (std::size_t i = 0; i < cuts.size(); ++i) {
-        if constexpr (Visitor::logs) {
+    if (!visitor_->is_task_) {
+        for (std::size_t i = 0; i < cuts.size(); ++i) layer_->sink.add_vertex(Point(x[i]), {});
+    } else if constexpr (Visitor::may_be_task) {
+        const NodeKey* const key = blocks_->keys[0];
+        const SubtreeNode* const in_subtree = blocks_->in_subtree[0];
+        constexpr double not_asked_for = 0;  // with normals bisections are not walked
+        for (std::size_t i = 0; i < cuts.size(); ++i) {
             const auto& [low, high] = cuts[i];
-            const SubtreeNode* const in_subtree = blocks_->in_subtree[0];
-            if (!is_within_root(in_subtree[low], in_subtree[high])) {
-                const NodeKey* const key = blocks_->keys[0];
-                constexpr double not_asked_for = 0;  // with normals bisections are not walked
-                layer_->sink.add_cut({Point(x[i]), {key[low], key[high]}, not_asked_for, {}});
-                continue;
+            if (is_within_root(in_subtree[low], in_subtree[high])) {
+                layer_->sink.add_vertex(Point(x[i]), {});
+            } else {
+                layer_->sink.add_shared({key[low], key[high]}, not_asked_for, Point(x[i]), {});
             }
         }
-        layer_->sink.add_vertex(Point(x[i]), {});
     }
 }
 

@@ -72,7 +72,7 @@ NESTGRID_VISITOR::load_gradients(const State& s) -> void {
 NESTGRID_VISITOR::add_gradient(Number slot, const CornerGradient& g) -> void {
     if (gradients_.known(slot) && offers_gradients<Grid, Field>(walk_->field())) return;
     gradients_.add(slot, g);
-    if constexpr (logs) gradient_log_.emplace_back(slot, g);
+    if (is_task_) gradient_log_.emplace_back(slot, g);
 }
 
 NESTGRID_VISITOR::set_normals(Layer& layer) -> void {

@@ -32,6 +32,18 @@ NESTGRID_INLINE const Contour* IsosurfaceVisitor<Grid, Field, S, Indicator, Sink
     return contours_of(shape).plain(bits);
 }
 
+/// How many triangles (segments) a loop without a vertex in its middle is drawn as.
+NESTGRID_VISITOR::simplices_of(const ContourLoop& loop) -> std::size_t {
+    return loop.count <= 3 ? 1 : std::size_t{loop.count} - 2;
+}
+
+/// The same of a plain contour.
+NESTGRID_VISITOR::simplices_of(const Contour& contour) -> std::size_t {
+    std::size_t count = 0;
+    for (std::size_t l = 0; l < contour.loop_count; ++l) count += simplices_of(contour.loop[l]);
+    return count;
+}
+
 /// Draws a plain contour; positions (and keys) of the corners are loaded.
 template <class Grid, class Field, class S, class Indicator, class Sink>
 NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_plainly(
@@ -74,7 +86,7 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::draw_pl
             v[i] = add_named(names[i], make);
         }
         if (l == 0) layer.sink.add_element(s.element, s.shape, s.level);
-        count_simplices(n <= 3 ? 1 : n - 2);
+        count_simplices(simplices_of(loop));
         if (n <= 3 || loop.any_diagonal) {
             put_loop(v, n, mirrored);
         } else {

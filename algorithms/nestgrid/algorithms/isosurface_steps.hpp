@@ -154,6 +154,10 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
             joins = choose(s, layer, bits, contours_of(s.shape).alternating(bits));
         }
         if (plain != nullptr && !chained()) {
+            if (counts_only_) {
+                count_simplices(simplices_of(*plain));
+                continue;
+            }
             draw_plainly(s, layer, plain, bits);
             add_error(s, layer);
             continue;
@@ -161,7 +165,14 @@ NESTGRID_VISITOR::extract(const State& s) -> void {
         if (bits != all) draw(s, bits, joins);
         if (boundary != 0) draw_cap(s, layer, bits);
         if (begun_) add_error(s, layer);
+        if (counts_only_) forget_drawn(layer);
     }
+}
+
+/// What was drawn of an element in order to count it.
+NESTGRID_VISITOR::forget_drawn(Layer& layer) -> void {
+    if constexpr (requires { layer.sink.clear(); }) layer.sink.clear();
+    layer.vertex_count = 0;
 }
 
 NESTGRID_VISITOR::begin_drawing() -> void {

@@ -3,11 +3,11 @@
 //
 // Extraction by several threads; included by isosurface_steps.hpp.
 //
-// Each task has a visitor of its own, which logs what it draws below its part of the frontier. The
-// logs are repeated in the order of the parts, while later parts are drawn: vertices get their
-// numbers, and gradients are added up, in the order of one thread. So the surface does not depend
-// on the number of threads, nor on how the grid is cut, to the last bit. A sink that can be filled
-// in parts (surface.hpp) takes the place of the log.
+// Each task has a visitor of its own, which draws a part of the surface below its part of the
+// frontier (surface_part.hpp). The parts are put together in their order, while later ones are
+// drawn: vertices get their numbers, and gradients are added up, in the order of one thread. So the
+// surface does not depend on the number of threads, nor on how the grid is cut, to the last bit. A
+// sink without indices that can be filled in parts (surface.hpp) is given those.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ template <class Grid, class Field, class S, class Indicator, class Sink>
 template <class Executor>
 void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::walk(const Executor& executor) {
     if (executor.concurrency() < 2) return walk_->run(*this);
-    if constexpr (!logs && !std::is_same_v<Executor, SequentialExecutor>) {
+    if constexpr (!std::is_same_v<Executor, SequentialExecutor>) {
         // Enough parts that threads end together, and few entries, for each begins anew.
         const std::size_t wanted = 16 * executor.concurrency();
         const Frontier frontier(*walk_, *this, 2 * wanted);
@@ -69,12 +69,19 @@ NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
         }
     }
     std::vector<TaskSink> sinks;
+    [[maybe_unused]] std::vector<Part> parts;
+    if constexpr (indexed) {
+        if (task) parts = std::move(task->parts_);
+        parts.resize(layers_.size());
+    }
     for (std::size_t i = 0; i < layers_.size(); ++i) {
-        if constexpr (in_parts) {
+        [[maybe_unused]] const bool elements = keeps_elements(layers_[i].sink);
+        if constexpr (indexed) {
+            sinks.push_back(parts[i].begin(elements));
+        } else if constexpr (in_parts) {
             sinks.push_back(task ? std::move(task->layers_[i].sink) : layers_[i].sink.part());
         } else {
-            const bool elements = keeps_elements(layers_[i].sink);
-            sinks.push_back(task ? std::move(task->layers_[i].sink) : Log(elements));
+            sinks.push_back(task ? std::move(task->layers_[i].sink) : TaskSink(elements));
             sinks.back().clear(elements);
         }
     }
@@ -84,6 +91,9 @@ NESTGRID_VISITOR::begin_task() -> std::unique_ptr<Task> {
         task = std::make_unique<Task>(*walk_, isovalues_, std::move(sinks), *criterion_,
                                       *indicator_, idle_.silent);
     }
+    task->is_task_ = true;
+    task->parts_ = std::move(parts);
+    task->counts_only_ = counts_only_;
     task->recording_ = recording_;
     task->finishing_ = finishing_;
     task->limit_ = limit_;
@@ -98,6 +108,7 @@ NESTGRID_VISITOR::add_task(Task& task) -> void {
     counts_.calls += task.counts_.calls;
     counts_.visited += task.counts_.visited;
     deepest_ = std::max(deepest_, task.deepest_);
+    count_simplices(task.drawn_);
     if (drawn_ + (later_ += task.later_) > limit_) throw OverLimit{};
     task.later_below_.for_each([&](NodeKey path, NodeMask children) {
         *later_below_.insert(path, 0).first |= children;
@@ -111,87 +122,64 @@ NESTGRID_VISITOR::add_task(Task& task) -> void {
         layer.extracted += part.extracted;
         layer.error_bound = std::max(layer.error_bound, part.error_bound);
         if (recording_) layer.transitions.append(part.transitions);
-        if constexpr (in_parts) {
+        if (counts_only_) continue;
+        if constexpr (indexed) {
+            add_part(layer, task.parts_[i]);
+        } else if constexpr (in_parts) {
             layer.sink.append(part.sink);
         } else {
-            repeat(layer, part.sink);
+            part.sink.repeat(layer.sink);
         }
     }
-    if constexpr (in_parts) count_simplices(task.drawn_);
     if (options_->progress && !options_->progress(counts_)) throw Cancelled{};
 }
 
-NESTGRID_VISITOR::repeat(Layer& layer, const Log& log) -> void {
-    struct Receiver {
-        IsosurfaceVisitor* to;
-        std::vector<Vertex>& known;
-        std::span<const Point> points{};  // where there are no indices
-
-        NESTGRID_INLINE void expect([[maybe_unused]] const std::array<NodeKey, 2>& node) const {
-            if constexpr (indexed) {
-                const VertexNumbers& numbers = to->layer_->number_of;
-                numbers.prefetch(numbers.name({node[0], node[1]}));
-            }
-        }
-        void cut(const typename Log::Cut& c) {
-            known.push_back(to->add({c.node[0], c.node[1]}, [&] { return c; }));
-        }
-        void vertices(std::span<const Point> x, std::span<const double> attributes) {
-            if constexpr (indexed) {
-                const Number first = to->layer_->vertex_count;
-                const std::size_t before = known.size();
-                known.resize(before + x.size());
-                std::iota(known.data() + before, known.data() + known.size(), first);
-                to->add_unnamed(x, attributes);
-            } else {
-                points = x;
-            }
-        }
-        void element(const typename Log::Owner& e) {
-            to->layer_->sink.add_element(e.element, e.shape, e.level);
-        }
-        std::span<const Vertex> all_vertices() const {
-            if constexpr (indexed) {
-                return known;
-            } else {
-                return points;
-            }
-        }
-        std::array<Vertex, static_cast<std::size_t>(dimension)> vertices_of(
-            const typename Log::Simplex& corners) const {
-            std::array<Vertex, static_cast<std::size_t>(dimension)> v;
-            for (std::size_t k = 0; k < v.size(); ++k) v[k] = all_vertices()[corners[k]];
-            return v;
-        }
-        void simplex(const typename Log::Simplex& corners, std::span<const Point> reference) {
-            to->count_simplices(1);
-            to->put_simplex(vertices_of(corners), reference);
-        }
-        void simplices(std::span<const typename Log::Simplex> all) {
-            to->count_simplices(all.size());
-            put_simplices<dimension>(to->layer_->sink, all_vertices(), all);
-            add_areas(all);
-        }
-        void extracted(std::span<const typename Log::Owner> elements,
-                       std::span<const typename Log::Simplex> all) {
-            to->count_simplices(all.size());
-            put_extracted<dimension>(to->layer_->sink, elements, all_vertices(), all);
-            add_areas(all);
-        }
-        void add_areas(std::span<const typename Log::Simplex> all) {
-            if (!to->options_->normals) return;
-            for (const auto& corners : all) to->add_area(vertices_of(corners));
-        }
-        void boundary(typename Log::Ridge corners) {
-            if constexpr (indexed) {
-                for (auto& corner : corners) corner = known[corner];
-                to->layer_->sink.add_boundary(corners);
-            }
-        }
-    };
+/// Puts a part behind what is drawn. Its vertices get their numbers in the order in which it has
+/// them, those that other parts know the same.
+NESTGRID_VISITOR::add_part(Layer& layer, const Part& part) -> void {
+    constexpr std::size_t ahead = 16;
     layer_ = &layer;
-    local_.clear();
-    log.repeat(Receiver{this, local_});
+    const auto& surface = part.surface;
+    const std::span<const Point> x(surface.vertices);
+    const std::span<const double> attributes(surface.attributes);
+    std::vector<Number>& number = local_;  // here, of each of its vertices
+    number.clear();
+    const auto add_own = [&](std::size_t end) {
+        const std::size_t first = number.size();
+        if (first == end) return;
+        number.resize(end);
+        std::iota(number.data() + first, number.data() + end, layer.vertex_count);
+        add_unnamed(x.subspan(first, end - first),
+                    attributes.subspan(first * attribute_count, (end - first) * attribute_count));
+    };
+    const auto name = [&](const SharedVertex& v) {
+        return layer.number_of.name({v.node[0], v.node[1]});
+    };
+    for (std::size_t i = 0; i < part.shared.size(); ++i) {
+        if (i + ahead < part.shared.size()) {
+            layer.number_of.prefetch(name(part.shared[i + ahead]));
+        }
+        const SharedVertex& v = part.shared[i];
+        add_own(v.number);
+        number.push_back(add_named(name(v), [&] {
+            Cut cut{x[v.number], v.node, v.fraction, {}};
+            for (std::size_t k = 0; k < attribute_count; ++k) {
+                cut.attributes[k] = attributes[v.number * attribute_count + k];
+            }
+            return cut;
+        }));
+    }
+    add_own(x.size());
+    for (auto ridge : surface.boundary) {
+        for (Number& v : ridge) v = number[v];
+        layer.sink.add_boundary(ridge);
+    }
+    put_part(layer.sink, surface, std::span<const Number>(number));
+    if (!options_->normals) return;
+    for (auto simplex : surface.simplices) {
+        for (Number& v : simplex) v = number[v];
+        add_area(simplex);
+    }
 }
 
 }  // namespace nestgrid::detail

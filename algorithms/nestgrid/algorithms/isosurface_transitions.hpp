@@ -200,6 +200,7 @@ NESTGRID_VISITOR::fill_gaps(Layer& layer) -> void {
     state_ = nullptr;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     for (const auto& gap : layer.transitions.gaps()) {
+        if (counts_only_) forget_drawn(layer);
         local_.clear();
         reference_.clear();
         layer.sink.add_element(gap.owner.element, gap.owner.shape, gap.owner.level);

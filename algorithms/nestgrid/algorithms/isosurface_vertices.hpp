@@ -83,6 +83,7 @@ NESTGRID_INLINE auto IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::add_nam
     if constexpr (!indexed) {
         return make().x;
     } else {
+        if (counts_only_) return add_new(make());
         Layer& layer = *layer_;
         bool is_new = false;
         const Number number = layer.number_of.find(name, [&] {
@@ -102,14 +103,16 @@ NESTGRID_VISITOR::verify(const Layer& layer, Number number, const Point& x) cons
 
 NESTGRID_VISITOR::add_new(const Cut& cut) -> Number {
     if (layer_->vertex_count == none) throw_too_many_vertices();
-    if constexpr (logs) {
-        layer_->sink.add_cut(cut);
-    } else {
-        layer_->sink.add_vertex(cut.x, cut.attributes);
-        if (options_->normals) {
-            layer_->where.push_back({gradients_.slot(cut.node[0]), gradients_.slot(cut.node[1]),
-                                     cut.fraction, {}});
+    if (is_task_) {
+        if constexpr (may_be_task) {
+            layer_->sink.add_shared(cut.node, cut.fraction, cut.x, cut.attributes);
         }
+        return layer_->vertex_count++;
+    }
+    layer_->sink.add_vertex(cut.x, cut.attributes);
+    if (options_->normals) {
+        layer_->where.push_back(
+            {gradients_.slot(cut.node[0]), gradients_.slot(cut.node[1]), cut.fraction, {}});
     }
     return layer_->vertex_count++;
 }
@@ -131,7 +134,7 @@ NESTGRID_VISITOR::add_unnamed(std::span<const Point> x, std::span<const double> 
     Layer& layer = *layer_;
     if (none - layer.vertex_count < x.size()) throw_too_many_vertices();
     layer.vertex_count += static_cast<Number>(x.size());
-    if (options_->normals && !logs) {
+    if (options_->normals && !is_task_) {
         layer.where.resize(layer.where.size() + x.size(), {none, none, 0.0, {}});
     }
     if constexpr (attribute_count == 0 && requires { layer.sink.add_vertices(x); }) {
@@ -274,13 +277,13 @@ NESTGRID_INLINE void IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>::put_sim
     const std::array<Vertex, static_cast<std::size_t>(dimension)>& v,
     std::span<const Point> reference) {
     layer_->sink.add_simplex(v, reference);
-    if (options_->normals) add_area(v);
+    if (options_->normals && !is_task_) add_area(v);
 }
 
 /// For normals.
 NESTGRID_VISITOR::add_area(const std::array<Vertex, static_cast<std::size_t>(dimension)>& v)
     -> void {
-    if constexpr (indexed && !logs && dimension == 3) {
+    if constexpr (indexed && dimension == 3) {
         const Point x = layer_->sink.position(v[0]);
         const Point n = cross(layer_->sink.position(v[1]) - x, layer_->sink.position(v[2]) - x);
         for (const Number i : v) layer_->where[i].around = layer_->where[i].around + n;

@@ -23,7 +23,7 @@
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/algorithms/subtree_vertices.hpp>
 #include <nestgrid/algorithms/surface.hpp>
-#include <nestgrid/algorithms/surface_log.hpp>
+#include <nestgrid/algorithms/surface_part.hpp>
 #include <nestgrid/algorithms/transition_contours.hpp>
 #include <nestgrid/algorithms/vertex_numbers.hpp>
 #include <nestgrid/table.hpp>
@@ -61,11 +61,13 @@ public:
     using Number = std::uint32_t;
     using Element = ElementOf<Grid>;
     using Cut = SurfaceCut<attribute_count>;
-    static constexpr bool logs = requires { requires Sink::logs; };
     static constexpr bool in_parts = !indexed && SinkInParts<Sink>;
-    using Log = SurfaceLog<dimension, ElementOf<Grid>, attribute_count, indexed>;
-    using TaskSink = std::conditional_t<in_parts, Sink, Log>;
+    using Part = SurfacePart<dimension, Element>;
+    using TaskSink = std::conditional_t<indexed, SurfaceSink<dimension, Element>,
+                                        std::conditional_t<in_parts, Sink,
+                                                           SimplexLog<dimension, Element>>>;
     using Task = IsosurfaceVisitor<Grid, Field, S, Indicator, TaskSink>;
+    static constexpr bool may_be_task = std::is_same_v<Sink, TaskSink>;
 
     struct Level {
         double isovalue;
@@ -81,8 +83,14 @@ public:
     /// Makes it as new for other isovalues, as many as before, and keeps its memory.
     void begin_again(std::span<const double> isovalues, std::vector<Sink>& sinks);
 
-    /// Ends the traversal with OverLimit when there are more simplices than that.
-    void limit(std::uint64_t simplices) { limit_ = simplices; }
+    /// Simplices are counted and nothing is drawn; a sink is asked for that can forget.
+    /// \param most the traversal ends with OverLimit where there are more
+    void count_only(std::uint64_t most)
+        requires requires(Sink& sink) { sink.clear(); }
+    {
+        counts_only_ = true;
+        limit_ = most;
+    }
     /// Drawn so far.
     std::uint64_t simplices() const { return drawn_; }
 
@@ -125,7 +133,7 @@ public:
             if constexpr (requires { indicator_->prefetch(eight); }) indicator_->prefetch(eight);
         }
     }
-    static constexpr bool names_edges() { return indexed; }
+    bool names_edges() const { return indexed && !counts_only_; }
     void begin_subtrees(std::uint32_t numbers)
         requires(indexed)
     {
@@ -196,6 +204,7 @@ private:
     static FaceTopology loop_of(const State& s, std::size_t face);
     void load(const State& s, bool draws);
     void add_error(const State& s, Layer& layer) const;
+    void forget_drawn(Layer& layer);
     void begin_drawing();
     void draw(const State& s, unsigned pattern, unsigned joins);
 
@@ -224,6 +233,8 @@ private:
     // isosurface_plain.hpp
     const ContourTable& contours_of(Shape shape);
     const Contour* plain_contour(Shape shape, unsigned bits);
+    static std::size_t simplices_of(const ContourLoop& loop);
+    static std::size_t simplices_of(const Contour& contour);
     void draw_plainly(const State& s, Layer& layer, const Contour* contour, unsigned bits);
     NESTGRID_NOINLINE Vertex add_closed(const State& s, std::uint8_t edge, const VertexName& name);
     template <class Vertices>
@@ -295,7 +306,7 @@ private:
     void walk(const Executor& executor);
     std::unique_ptr<Task> begin_task();
     void add_task(Task& task);
-    void repeat(Layer& layer, const Log& log);
+    void add_part(Layer& layer, const Part& part);
 
     const Walk* walk_;
     const S* criterion_;
@@ -304,6 +315,8 @@ private:
     std::vector<double> isovalues_;
     bool plainly_ = false;  // nothing but vertices and triangles is asked for
     bool bisects_ = false;  // and bisections are known at compile time
+    bool is_task_ = false;  // draws parts_
+    bool counts_only_ = false;
     std::array<const ContourTable*, shape_count> table_{};
     std::vector<Layer> layers_;
     decltype(packed_criterion(std::declval<const S&>())) packed_criterion_;
@@ -321,6 +334,7 @@ private:
     int deepest_ = 0;
     NodeGradients gradients_;
     std::vector<std::pair<Number, CornerGradient>> gradient_log_;  // of a task
+    std::vector<Part> parts_;                                      // likewise, one per layer
     struct {
         std::mutex mutex;
         std::vector<std::unique_ptr<Task>> tasks;  // whose memory is free to be used

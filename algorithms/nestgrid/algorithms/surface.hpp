@@ -21,6 +21,9 @@
 //     void add_extracted(std::span<const ExtractedElement<Element>> elements,
 //                        std::span<const std::uint32_t> vertices, std::span<const Corners> all)
 //         optional: several elements and all simplices from them, in their order
+//     void add_part(const Surface& part, std::span<const std::uint32_t> numbers)
+//         optional: all elements, simplices and references of a surface whose vertices have these
+//         numbers here
 //     void add_boundary(const Ridge& vertices)        on the boundary of the domain
 //     void set_normal(std::uint32_t vertex, const Point& unit)   at the end, where asked for
 // A sink with `static constexpr bool indexed = false` takes positions instead and nothing is kept:
@@ -42,6 +45,7 @@
 #include <vector>
 
 #include <nestgrid/inlining.hpp>
+#include <nestgrid/keys.hpp>
 #include <nestgrid/shape.hpp>
 #include <nestgrid/wide_point.hpp>
 
@@ -159,7 +163,45 @@ void append_simplices(std::span<const std::uint32_t> vertices, std::span<const C
     }
 }
 
+/// Puts a surface into a sink where its vertices have these numbers.
+template <int dimension, class Sink, class Element>
+void put_part(Sink& sink, const Surface<dimension, Element>& part,
+              std::span<const std::uint32_t> numbers) {
+    if constexpr (requires { sink.add_part(part, numbers); }) {
+        sink.add_part(part, numbers);
+    } else {
+        using Simplex = typename Surface<dimension, Element>::Simplex;
+        constexpr auto corners = static_cast<std::size_t>(dimension);
+        const std::span<const Simplex> all(part.simplices);
+        const std::span<const std::uint32_t> element_of(part.element_of);
+        for (std::size_t first = 0, end = all.size(); first < all.size(); first = end) {
+            if (!element_of.empty()) {
+                const std::uint32_t e = element_of[first];
+                sink.add_element(part.elements[e], part.shape_of[e], part.level_of[e]);
+                for (end = first + 1; end < all.size() && element_of[end] == e;) ++end;
+            }
+            if (part.reference.empty()) {
+                put_simplices<dimension>(sink, numbers, all.subspan(first, end - first));
+                continue;
+            }
+            for (std::size_t i = first; i < end; ++i) {
+                Simplex simplex;
+                for (std::size_t k = 0; k < corners; ++k) simplex[k] = numbers[all[i][k]];
+                sink.add_simplex(
+                    simplex, std::span<const Point>(part.reference).subspan(i * corners, corners));
+            }
+        }
+    }
+}
+
 }  // namespace detail
+
+/// A vertex of a part of a surface that other parts may know, by the nodes it lies between.
+struct SharedVertex {
+    std::uint32_t number;
+    std::array<NodeKey, 2> node;  ///< the one with the lower value first
+    double fraction;              ///< of the way to the other one
+};
 
 /// Fills a Surface.
 template <int dimension, class Element>
@@ -168,9 +210,17 @@ public:
     using Target = Surface<dimension, Element>;
 
     /// \param elements whether to keep the elements and which simplex comes from which
-    explicit SurfaceSink(Target& surface, bool elements = true)
-        : surface_{&surface}, elements_{elements} {}
+    /// \param shared where the surface is a part of another one: to which add_shared() adds
+    explicit SurfaceSink(Target& surface, bool elements = true,
+                         std::vector<SharedVertex>* shared = nullptr)
+        : surface_{&surface}, shared_{shared}, elements_{elements} {}
 
+    /// A vertex, of a part, that other parts may know.
+    void add_shared(const std::array<NodeKey, 2>& node, double fraction, const Point& x,
+                    std::span<const double> attributes) {
+        shared_->push_back({static_cast<std::uint32_t>(surface_->vertices.size()), node, fraction});
+        add_vertex(x, attributes);
+    }
     void add_vertex(const Point& x, std::span<const double> attributes) {
         surface_->vertices.push_back(x);
         for (const double a : attributes) surface_->attributes.push_back(a);
@@ -218,8 +268,29 @@ public:
             add_element(e.element, e.shape, e.level);
         }
     }
+    void add_part(const Target& part, std::span<const std::uint32_t> numbers) {
+        const auto append = [](const auto& from, auto& to) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        detail::append_simplices(numbers, std::span<const typename Target::Simplex>(part.simplices),
+                                 surface_->simplices);
+        append(part.reference, surface_->reference);
+        if (!elements_) return;
+        const auto elements = static_cast<std::uint32_t>(surface_->elements.size());
+        const std::size_t simplices = surface_->element_of.size();
+        append(part.element_of, surface_->element_of);
+        for (std::uint32_t& e : std::span(surface_->element_of).subspan(simplices)) e += elements;
+        append(part.elements, surface_->elements);
+        append(part.shape_of, surface_->shape_of);
+        append(part.level_of, surface_->level_of);
+    }
     void add_boundary(const typename Target::Ridge& vertices) {
         surface_->boundary.push_back(vertices);
+    }
+    /// Forgets everything but the memory.
+    void clear() {
+        surface_->clear();
+        if (shared_ != nullptr) shared_->clear();
     }
     void set_normal(std::uint32_t vertex, const Point& unit) {
         surface_->normals.resize(surface_->vertices.size());
@@ -228,6 +299,7 @@ public:
 
 private:
     Target* surface_;
+    std::vector<SharedVertex>* shared_;
     bool elements_;
 };
 

@@ -27,37 +27,22 @@ struct TriangleBudget {
 
 namespace detail {
 
-/// Keeps nothing, for the visitor counts; can be filled in parts.
-template <int dimension>
-struct CountedSimplices {
-    static constexpr bool indexed = false;
-
-    CountedSimplices part() const { return {}; }
-    void append(CountedSimplices&) {}
-    bool keeps_elements() const { return false; }
-    template <class Element>
-    void add_element(const Element&, Shape, int) {}
-    void add_simplex(const std::array<Point, static_cast<std::size_t>(dimension)>&,
-                     std::span<const Point>) {}
-    template <class Corners>
-    void add_simplices(std::span<const WidePoint>, std::span<const Corners>) {}
-};
-
 /// Triangles (segments) under a criterion, or nothing where there are more than `most`.
 template <class Grid, class Field, class S, class Indicator, class Executor>
 std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& field, double isovalue,
                                              const S& criterion, const Indicator& indicator,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor) {
-    using Sink = CountedSimplices<Grid::dimension>;
+    using Sink = SurfaceSink<Grid::dimension, ElementOf<Grid>>;
     using Visitor = IsosurfaceVisitor<Grid, Field, S, Indicator, Sink>;
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
     const typename Visitor::Walk walk(grid, field, indicator.hanging());
-    Visitor visitor(walk, std::span<const double>(&isovalue, 1), std::vector<Sink>(1), criterion,
+    typename Sink::Target nothing;
+    Visitor visitor(walk, std::span<const double>(&isovalue, 1), {Sink(nothing, false)}, criterion,
                     indicator, plain);
-    visitor.limit(most);
+    visitor.count_only(most);
     try {
         visitor.run(executor);
     } catch (const OverLimit&) {
