@@ -277,7 +277,11 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n", error.what());
+        // Who misspells an option that is required has left it out, too.
+        const std::vector<std::string> unknown = app.remaining(true);
+        const std::string what =
+            unknown.empty() ? error.what() : unknown.front() + " was not expected";
+        std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n", what.c_str());
         return 2;
     }
     try {

@@ -142,8 +142,9 @@ refused 1 "threshold 'much'" isosurface v.vti --value 130 --threshold much
 refused 1 "threshold '-3'" isosurface v.vti --value 130 --threshold=-3
 refused 2 '--frobnicate' isosurface v.vti --value 130 --frobnicate
 refused 2 'value is required' isosurface v.vti
+refused 2 '--valu=130 was not expected' isosurface v.vti --valu=130 -o x.vtp
 refused 2 '' isosurface
-refused 2 '' paint v.vti
+refused 2 'paint was not expected' paint v.vti
 # Hierarchies.
 cat >tetra.off <<'END'
 OFF
