@@ -4,6 +4,8 @@
 // The walk of check_grid; included by check_grid.hpp.
 #pragma once
 
+#include <map>
+
 #include <nestgrid/check_grid.hpp>
 
 namespace nestgrid::detail {

@@ -4,6 +4,8 @@
 // What check_grid asks below the coarse grid; included by check_grid_steps.hpp.
 #pragma once
 
+#include <limits>
+
 #include <nestgrid/check_grid_steps.hpp>
 
 namespace nestgrid::detail {

@@ -4,8 +4,11 @@
 // The contour of one element: for every sign pattern of every shape and every choice on its
 // alternating faces the filled loops are a manifold whose boundary is the contours on the faces;
 // and for random values it has the topology of the level set of the element's function.
+#include <bit>
+#include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <set>
 

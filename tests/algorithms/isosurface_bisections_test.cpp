@@ -3,6 +3,8 @@
 //
 // Where bisections are known at compile time, behind tables too, surfaces are those of the plain
 // traversal.
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection.hpp>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Arithmetic that never rounds down gives the least number that is not below.
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What several threads extract is what one does: to the last bit, in the same order.
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection.hpp>

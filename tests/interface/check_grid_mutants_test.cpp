@@ -3,6 +3,7 @@
 //
 // Every law of check_grid has a mutator that breaks it at a random place of a random grid; more
 // than a thousand mutants, each named by the right law and a sentence.
+#include <map>
 #include <numeric>
 
 #include <gtest/gtest.h>

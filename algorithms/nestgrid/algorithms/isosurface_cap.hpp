@@ -8,6 +8,8 @@
 // the other one adopts the vertices between: what is done for faces, one dimension lower.
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \

@@ -4,6 +4,9 @@
 // The steps of the extraction; included by isosurface_visitor.hpp.
 #pragma once
 
+#include <bit>
+#include <limits>
+
 #include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \

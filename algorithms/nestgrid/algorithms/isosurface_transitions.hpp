@@ -5,6 +5,9 @@
 // for the second one, and how coarser elements adopt it; included by isosurface_steps.hpp.
 #pragma once
 
+#include <bit>
+#include <limits>
+
 #include <nestgrid/algorithms/isosurface_visitor.hpp>
 
 #define NESTGRID_VISITOR                                                     \

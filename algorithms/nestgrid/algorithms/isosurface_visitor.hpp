@@ -10,6 +10,7 @@
 // only what leads to the others.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <mutex>
 

@@ -4,6 +4,7 @@
 // A forest that offers the optional operations it is told to offer, and errs at one place.
 #pragma once
 
+#include <map>
 #include <set>
 
 #include <nestgrid/derive_hanging.hpp>

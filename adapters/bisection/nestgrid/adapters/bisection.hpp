@@ -17,6 +17,8 @@
 // the samples in a skin of about two cells along that curve; elsewhere nothing.
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/adapters/lattice.hpp>
 #include <nestgrid/known_bisection.hpp>
 #include <nestgrid/standard_rules.hpp>

@@ -4,6 +4,8 @@
 // Definitions of bisection.hpp.
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/adapters/bisection.hpp>
 
 namespace nestgrid {

@@ -4,6 +4,8 @@
 // Rows of nodes of a lattice; included by lattice.hpp.
 #pragma once
 
+#include <limits>
+
 #include <nestgrid/adapters/lattice.hpp>
 
 namespace nestgrid {

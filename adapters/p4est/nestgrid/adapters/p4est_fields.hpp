@@ -4,6 +4,8 @@
 // Data on a forest of p4est, read in place; included by p4est.hpp.
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/adapters/p4est.hpp>
 #include <nestgrid/adapters/p4est_face_codes.hpp>
 #include <nestgrid/mean.hpp>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/adapters/green_rules.hpp>
 #include <nestgrid/error.hpp>
 

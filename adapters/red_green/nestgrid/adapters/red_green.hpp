@@ -12,6 +12,7 @@
 // tetrahedra, pyramids and prisms (green_rules.hpp).
 #pragma once
 
+#include <bit>
 #include <tuple>
 
 #include <nestgrid/adapters/green_rules.hpp>

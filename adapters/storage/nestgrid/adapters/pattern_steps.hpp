@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 
 #include <nestgrid/adapters/pattern.hpp>
 #include <nestgrid/error.hpp>

@@ -4,6 +4,8 @@
 // What a file of a hierarchy must hold before anything is done with it.
 #pragma once
 
+#include <bit>
+
 #include <nestgrid/adapters/stored_file_steps.hpp>
 
 namespace nestgrid::detail {
