@@ -11,9 +11,14 @@ function(nestgrid_component name)
   if(arg_SOURCES)
     set(scope PUBLIC)
     add_library(${target} ${arg_SOURCES})
-    set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0
-                                               POSITION_INDEPENDENT_CODE ON)
+    # A shared library finds those it depends on beside itself.
+    set_target_properties(
+      ${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0 POSITION_INDEPENDENT_CODE ON
+                           INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>")
     nestgrid_warnings(${target})
+    # Products and sums are rounded one by one, so that results are equal to the last bit on all
+    # machines.
+    target_compile_options(${target} PRIVATE -ffp-contract=off)
   else()
     set(scope INTERFACE)
     add_library(${target} INTERFACE)

@@ -15,10 +15,13 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <nestgrid/error.hpp>
 #include <nestgrid/shape.hpp>
 
 namespace nestgrid {
@@ -137,6 +140,3 @@ std::optional<std::string> find_violation(const Rule& rule);
 std::vector<Point> reference_nodes(const Rule& rule);
 
 }  // namespace nestgrid
-
-#include <nestgrid/rule_checks.hpp>
-#include <nestgrid/rule_parts.hpp>

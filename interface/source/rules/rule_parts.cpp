@@ -2,17 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The edges and faces of a rule: those of the parent, and those that appear between two steps of a
-// rule that takes several. Included by rule.hpp.
-#pragma once
-
+// rule that takes several.
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <vector>
 
 #include <nestgrid/error.hpp>
 #include <nestgrid/rule.hpp>
 
+#include "rule_steps.hpp"
+
 namespace nestgrid::detail {
+
+namespace {
 
 /// Sets of nodes of one rule: closed under "all parents of a new node are in it".
 class NodeSet {
@@ -46,18 +49,18 @@ private:
     std::vector<bool> has_;
 };
 
-inline bool same_nodes(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
+bool same_nodes(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
     return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
-inline std::span<const std::uint8_t> corners_of(const RuleFace& face) {
+std::span<const std::uint8_t> corners_of(const RuleFace& face) {
     return std::span(face.corner).first(face.corners);
 }
 
 /// The loop of a face of the parent with nodes p and q put where they lie on its edges, or nothing
 /// where one does not.
-inline std::vector<std::uint8_t> loop_through(const Rule& rule, const RuleFace& face,
-                                              std::uint8_t p, std::uint8_t q) {
+std::vector<std::uint8_t> loop_through(const Rule& rule, const RuleFace& face, std::uint8_t p,
+                                       std::uint8_t q) {
     std::vector<std::uint8_t> loop;
     for (std::size_t i = 0; i < face.corners; ++i) {
         const std::array<std::uint8_t, 2> side{face.corner[i],
@@ -74,8 +77,8 @@ inline std::vector<std::uint8_t> loop_through(const Rule& rule, const RuleFace& 
 }
 
 /// The parts of a face on both sides of the edge p q.
-inline std::vector<RuleFace> cut_face(const Rule& rule, std::uint8_t face, std::uint8_t p,
-                                      std::uint8_t q) {
+std::vector<RuleFace> cut_face(const Rule& rule, std::uint8_t face, std::uint8_t p,
+                               std::uint8_t q) {
     std::vector<std::uint8_t> loop = loop_through(rule, rule.faces[face], p, q);
     std::vector<RuleFace> parts;
     if (loop.empty()) return parts;
@@ -96,8 +99,70 @@ inline std::vector<RuleFace> cut_face(const Rule& rule, std::uint8_t face, std::
     return parts;
 }
 
-/// Fills Rule::edges and Rule::faces.
-inline void find_parts(Rule& rule) {
+/// Adds the edge between two nodes, and the parts into which it cuts a face of the parent, where it
+/// lies inside a face and on no edge that the rule has.
+void add_edge_in_faces(Rule& rule, const std::array<std::uint8_t, 2>& ends) {
+    const Topology& t = topology(rule.parent);
+    const bool known = std::any_of(rule.edges.begin(), rule.edges.end(), [&](const auto& e) {
+        return NodeSet(rule, e.end).contains(ends);
+    });
+    for (std::uint8_t f = 0; f < t.faces && !known; ++f) {
+        if (!NodeSet(rule, corners_of(rule.faces[f])).contains(ends)) continue;
+        const std::vector<RuleFace> parts = cut_face(rule, f, ends[0], ends[1]);
+        if (parts.empty()) continue;
+        rule.edges.push_back({ends, NodeSet(rule, ends).inner});
+        for (const std::uint8_t end : ends) {
+            if (end >= t.corners) rule.faces[f].first |= NodeMask{1} << (end - t.corners);
+        }
+        rule.faces.insert(rule.faces.end(), parts.begin(), parts.end());
+    }
+}
+
+/// Fills Child::rule_edge and Child::rule_edges.
+void place_edges(const Rule& rule, Child& child) {
+    const Topology& t = topology(child.shape);
+    child.rule_edge.fill(no_edge);
+    for (std::size_t e = 0; e < t.edges; ++e) {
+        const std::array<std::uint8_t, 2> ends{child.corner[t.edge[e][0]],
+                                               child.corner[t.edge[e][1]]};
+        for (std::size_t r = 0; r < rule.edges.size(); ++r) {
+            if (NodeSet(rule, rule.edges[r].end).contains(ends)) {
+                child.rule_edge[e] = static_cast<std::uint8_t>(r);
+            }
+        }
+    }
+    for (const std::uint8_t e : child.rule_edge) {
+        if (e != no_edge) child.rule_edges |= 1U << e;
+    }
+}
+
+/// Fills Child::rule_face and Child::rule_faces, and RuleFace::divided as far as this child says.
+void place_faces(Rule& rule, Child& child) {
+    const Topology& t = topology(child.shape);
+    child.rule_face.fill(no_face);
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        std::vector<std::uint8_t> corners;
+        for (std::size_t i = 0; i < t.face[f].corners; ++i) {
+            corners.push_back(child.corner[t.face[f].corner[i]]);
+        }
+        for (std::size_t r = 0; r < rule.faces.size(); ++r) {
+            RuleFace& face = rule.faces[r];
+            if (!NodeSet(rule, corners_of(face)).contains(corners)) continue;
+            const bool whole = same_nodes(corners, corners_of(face));
+            face.divided = face.divided || !whole;
+            if (face.parent == no_face || !whole) {
+                child.rule_face[f] = static_cast<std::uint8_t>(r);
+            }
+        }
+    }
+    for (const std::uint8_t f : child.rule_face) {
+        if (f != no_face) child.rule_faces |= 1U << f;
+    }
+}
+
+}  // namespace
+
+void find_parts(Rule& rule) {
     const Topology& t = topology(rule.parent);
     for (std::size_t e = 0; e < t.edges; ++e) {
         rule.edges.push_back({t.edge[e], NodeSet(rule, t.edge[e]).inner});
@@ -111,66 +176,18 @@ inline void find_parts(Rule& rule) {
         rule.faces.push_back(face);
     }
     for (const Stencil& s : rule.new_nodes) {
-        if (s.count != 2) continue;
-        const std::array<std::uint8_t, 2> ends{s.parent[0], s.parent[1]};
-        const bool known = std::any_of(rule.edges.begin(), rule.edges.end(), [&](const auto& e) {
-            return NodeSet(rule, e.end).contains(ends);
-        });
-        for (std::uint8_t f = 0; f < t.faces && !known; ++f) {
-            if (!NodeSet(rule, corners_of(rule.faces[f])).contains(ends)) continue;
-            const std::vector<RuleFace> parts = cut_face(rule, f, ends[0], ends[1]);
-            if (parts.empty()) continue;
-            rule.edges.push_back({ends, NodeSet(rule, ends).inner});
-            for (const std::uint8_t end : ends) {
-                if (end >= t.corners) rule.faces[f].first |= NodeMask{1} << (end - t.corners);
-            }
-            rule.faces.insert(rule.faces.end(), parts.begin(), parts.end());
-        }
+        if (s.count == 2) add_edge_in_faces(rule, {s.parent[0], s.parent[1]});
     }
     if (rule.edges.size() > max_rule_edges || rule.faces.size() > max_rule_faces) {
         throw InvalidInput("rule '" + rule.name + "' has too many edges inside the parent's faces");
     }
 }
 
-/// Says of every child on which edge and in which face of the rule its own ones lie.
-inline void place_in_parts(Rule& rule) {
-    for (Child& child : rule.children) {
-        const Topology& t = topology(child.shape);
-        child.rule_edge.fill(no_edge);
-        child.rule_face.fill(no_face);
-        for (std::size_t e = 0; e < t.edges; ++e) {
-            const std::array<std::uint8_t, 2> ends{child.corner[t.edge[e][0]],
-                                                   child.corner[t.edge[e][1]]};
-            for (std::size_t r = 0; r < rule.edges.size(); ++r) {
-                if (NodeSet(rule, rule.edges[r].end).contains(ends)) {
-                    child.rule_edge[e] = static_cast<std::uint8_t>(r);
-                }
-            }
-        }
-        for (std::size_t f = 0; f < t.faces; ++f) {
-            std::vector<std::uint8_t> corners;
-            for (std::size_t i = 0; i < t.face[f].corners; ++i) {
-                corners.push_back(child.corner[t.face[f].corner[i]]);
-            }
-            for (std::size_t r = 0; r < rule.faces.size(); ++r) {
-                RuleFace& face = rule.faces[r];
-                if (!NodeSet(rule, corners_of(face)).contains(corners)) continue;
-                const bool whole = same_nodes(corners, corners_of(face));
-                face.divided = face.divided || !whole;
-                if (face.parent == no_face || !whole) {
-                    child.rule_face[f] = static_cast<std::uint8_t>(r);
-                }
-            }
-        }
-    }
+void place_in_parts(Rule& rule) {
     static_assert(max_rule_edges <= 32 && max_rule_faces <= 32);
     for (Child& child : rule.children) {
-        for (const std::uint8_t e : child.rule_edge) {
-            if (e != no_edge) child.rule_edges |= 1U << e;
-        }
-        for (const std::uint8_t f : child.rule_face) {
-            if (f != no_face) child.rule_faces |= 1U << f;
-        }
+        place_edges(rule, child);
+        place_faces(rule, child);
     }
     NodeMask around = 0;
     for (const RuleEdge& edge : rule.edges) around |= edge.inner;
