@@ -10,93 +10,23 @@ namespace nestgrid {
 
 namespace detail {
 
-inline Rule rule_from_table(const nestgrid_rule& r) {
-    const auto bad = [&](const std::string& what) {
-        throw InvalidInput("rule '" + std::string(r.name == nullptr ? "" : r.name) + "': " + what);
-    };
-    const auto shape = [&](int s) {
-        if (s <= 0 || s >= shape_count) bad("the shape " + std::to_string(s) + " does not exist");
-        return static_cast<Shape>(s);
-    };
-    if (r.new_node_count < 0 || r.new_node_count > max_new_nodes) {
-        bad(std::to_string(r.new_node_count) + " new nodes, not 0 to 64");
-    }
-    if (r.child_count < 1 || r.child_count > max_children) {
-        bad(std::to_string(r.child_count) + " children, not 1 to 64");
-    }
-    if ((r.new_node_count > 0 && r.new_nodes == nullptr) || r.children == nullptr) {
-        bad("its tables are NULL");
-    }
-    std::vector<Stencil> nodes;
-    for (const nestgrid_stencil& s :
-         std::span(r.new_nodes, static_cast<std::size_t>(r.new_node_count))) {
-        if (s.count < 2 || s.count > max_corners) {
-            bad("a stencil has " + std::to_string(s.count) + " parents, not 2 to 8");
-        }
-        if (s.number < 0 || s.number > 255) {
-            bad("a stencil has the number " + std::to_string(s.number) + ", not 0 to 255");
-        }
-        Stencil stencil;
-        stencil.count = static_cast<std::uint8_t>(s.count);
-        stencil.number = static_cast<std::uint8_t>(s.number);
-        for (std::size_t i = 0; i < stencil.count; ++i) {
-            if (s.parent[i] < 0 || s.parent[i] > 255) bad("a parent is no node");
-            stencil.parent[i] = static_cast<std::uint8_t>(s.parent[i]);
-            stencil.weight[i] = s.weight[i];
-        }
-        nodes.push_back(stencil);
-    }
-    std::vector<Child> children;
-    for (const nestgrid_child& c : std::span(r.children, static_cast<std::size_t>(r.child_count))) {
-        Child child;
-        child.shape = shape(c.shape);
-        if (c.orientation != 1 && c.orientation != -1) {
-            bad("a child has an orientation that is neither 1 nor -1");
-        }
-        child.orientation = static_cast<std::int8_t>(c.orientation);
-        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
-            if (c.corner[i] < 0 || c.corner[i] > 255) bad("a corner of a child is no node");
-            child.corner[i] = static_cast<std::uint8_t>(c.corner[i]);
-        }
-        children.push_back(child);
-    }
-    return make_rule(r.name == nullptr ? "" : r.name, shape(r.shape), nodes, children);
-}
+/// A copy of the table in which the functions that it is too short for are null.
+/// \throw InvalidInput for a table of another dimension or without a required function
+nestgrid_grid checked_table(const nestgrid_grid& given, int dimension);
+
+/// \throw InvalidInput for a table with other values than asked for, or without a required function
+nestgrid_field checked_table(const nestgrid_field& given, int value_type, int components);
+
+/// The rules of a table whose functions are in order.
+/// \throw InvalidInput for one that make_rule refuses
+std::shared_ptr<const std::deque<Rule>> rules_of_table(const nestgrid_grid& table);
 
 }  // namespace detail
 
 template <int dim>
 AnyGrid<dim>::AnyGrid(const nestgrid_grid& given) {
-    if (given.size < offsetof(nestgrid_grid, corner_keys)) {
-        throw InvalidInput("the table of the grid is too small: its size says " +
-                           std::to_string(given.size) + " bytes");
-    }
-    nestgrid_grid table{};
-    std::memcpy(&table, &given, std::min(given.size, sizeof(table)));
-    if (table.dimension != dim) {
-        throw InvalidInput("the table is of a grid of dimension " +
-                           std::to_string(table.dimension) + ", not " + std::to_string(dim));
-    }
-    const auto require = [](bool there, const char* name) {
-        if (!there) {
-            throw InvalidInput("the table of the grid lacks the function '" + std::string(name) +
-                               "'");
-        }
-    };
-    require(table.coarse_count != nullptr, "coarse_count");
-    require(table.coarse != nullptr, "coarse");
-    require(table.split != nullptr || table.library_split != nullptr, "split");
-    require(table.children != nullptr, "children");
-    if (table.library_split == nullptr) {
-        if (table.rule_count < 0 || (table.rule_count > 0 && table.rules == nullptr)) {
-            throw InvalidInput("the table of the grid lacks its rules");
-        }
-        auto rules = std::make_shared<std::deque<Rule>>();
-        for (int i = 0; i < table.rule_count; ++i) {
-            rules->push_back(detail::rule_from_table(table.rules[i]));
-        }
-        rules_ = rules;
-    }
+    const nestgrid_grid table = detail::checked_table(given, dim);
+    if (table.library_split == nullptr) rules_ = detail::rules_of_table(table);
     table_ = std::make_shared<const nestgrid_grid>(table);
 }
 
@@ -190,26 +120,8 @@ void AnyGrid<dim>::keys(Function function, const char* operation, const Element&
 }
 
 template <class Real, int component_count>
-AnyField<Real, component_count>::AnyField(const nestgrid_field& given) : table_{} {
-    if (given.size < offsetof(nestgrid_field, corner_gradients)) {
-        throw InvalidInput("the table of the field is too small: its size says " +
-                           std::to_string(given.size) + " bytes");
-    }
-    std::memcpy(&table_, &given, std::min(given.size, sizeof(table_)));
-    if (table_.value_type != detail::value_type_code<Real>()) {
-        throw InvalidInput(
-            "the values of the field are of another type, float or double, than "
-            "asked for");
-    }
-    if (table_.components != component_count) {
-        throw InvalidInput("the field has " + std::to_string(table_.components) +
-                           " components, not " + std::to_string(component_count));
-    }
-    if (table_.coarse_values == nullptr || table_.new_values == nullptr) {
-        throw InvalidInput(
-            "the table of the field lacks the function 'coarse_values' or 'new_values'");
-    }
-}
+AnyField<Real, component_count>::AnyField(const nestgrid_field& given)
+    : table_{detail::checked_table(given, detail::value_type_code<Real>(), component_count)} {}
 
 template <class Real, int component_count>
 template <int dim>
