@@ -14,13 +14,10 @@
 // inside one element is an edge of another.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
-#include <numeric>
-#include <span>
-#include <utility>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <nestgrid/shape.hpp>
@@ -135,18 +132,7 @@ public:
 
 private:
     explicit ContourTable(Shape shape);
-    Contour make_contour(unsigned pattern, unsigned joined) const;
-    void find_regions(Contour& contour, unsigned pattern, unsigned joined) const;
-    void fill(ContourLoop& loop) const;
-    bool on_one_face(std::uint8_t edge_a, std::uint8_t edge_b) const;
-    Point middle(std::uint8_t edge) const;
 
-    /// The loop of face f; of the element itself in two dimensions.
-    FaceTopology face(std::size_t f) const;
-    std::size_t face_count() const { return topology_->dimension == 2 ? 1 : topology_->faces; }
-
-    Shape shape_;
-    const Topology* topology_;
     std::vector<std::uint8_t> alternating_;
     std::vector<std::uint16_t> cut_edges_;
     std::vector<std::uint8_t> cut_faces_;
@@ -156,5 +142,3 @@ private:
 };
 
 }  // namespace nestgrid
-
-#include <nestgrid/algorithms/contour_table_steps.hpp>
