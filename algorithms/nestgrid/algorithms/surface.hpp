@@ -104,6 +104,19 @@ struct ExtractedElement {
 
 namespace detail {
 
+/// A triangle surface where its vectors are: what compiled functions look at.
+struct TriangleView {
+    std::span<const Point> vertices;
+    std::span<const std::array<std::uint32_t, 3>> triangles;
+    std::span<const std::array<std::uint32_t, 2>> boundary;
+    std::span<const double> attributes;  ///< vertex by vertex
+};
+
+template <class Element>
+TriangleView view(const Surface<3, Element>& surface) {
+    return {surface.vertices, surface.simplices, surface.boundary, surface.attributes};
+}
+
 template <class Sink>
 concept IndexedSink = !requires {
     requires !Sink::indexed;

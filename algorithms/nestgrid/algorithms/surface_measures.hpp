@@ -7,8 +7,9 @@
 // data the error is of order h^2, h being the size of the elements.
 #pragma once
 
-#include <algorithm>
-#include <numeric>
+#include <array>
+#include <span>
+#include <vector>
 
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/error.hpp>
@@ -34,82 +35,15 @@ struct SurfaceMeasurement {
 };
 
 namespace detail {
-
-/// Vertices joined by triangles: the least vertex of each component, by path halving.
-inline std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-}
-
-template <class Surface>
-std::vector<bool> open_vertices(const Surface& surface) {
-    std::vector<std::array<std::uint32_t, 2>> sides;
-    for (const auto& t : surface.simplices) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
-            sides.push_back({low, high});
-        }
-    }
-    std::sort(sides.begin(), sides.end());
-    std::vector<bool> open(surface.vertices.size(), false);
-    for (std::size_t i = 0; i < sides.size();) {
-        std::size_t j = i + 1;
-        while (j < sides.size() && sides[j] == sides[i]) ++j;
-        if (j - i == 1) open[sides[i][0]] = true;
-        i = j;
-    }
-    return open;
-}
-
+SurfaceMeasurement measure_triangles(const TriangleView& surface);
+std::vector<double> flux_through(const TriangleView& surface, const SurfaceMeasurement& measured,
+                                 std::size_t first);
 }  // namespace detail
 
 /// Measures a triangle surface, component by component.
 template <class Element>
 SurfaceMeasurement measure_surface(const Surface<3, Element>& surface) {
-    const std::size_t vertices = surface.vertices.size();
-    const std::size_t attributes = vertices == 0 ? 0 : surface.attributes.size() / vertices;
-    std::vector<std::uint32_t> parent(vertices);
-    std::iota(parent.begin(), parent.end(), 0U);
-    for (const auto& t : surface.simplices) {
-        for (const std::uint32_t v : {t[1], t[2]}) {
-            const std::uint32_t a = detail::find_root(parent, t[0]);
-            const std::uint32_t b = detail::find_root(parent, v);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
-    }
-    const std::vector<bool> open = detail::open_vertices(surface);
-    const Point origin = vertices == 0 ? Point{} : surface.vertices.front();
-    constexpr std::uint32_t none = 0xFFFFFFFFU;
-    std::vector<std::uint32_t> number(vertices, none);
-    SurfaceMeasurement result;
-    result.total.integrals.assign(attributes, 0.0);
-    for (const auto& t : surface.simplices) {
-        std::uint32_t& component = number[detail::find_root(parent, t[0])];
-        if (component == none) {
-            component = static_cast<std::uint32_t>(result.components.size());
-            result.components.emplace_back();
-            result.components.back().integrals.assign(attributes, 0.0);
-        }
-        result.component_of.push_back(component);
-        const Point a = surface.vertices[t[0]] - origin;
-        const Point b = surface.vertices[t[1]] - origin;
-        const Point c = surface.vertices[t[2]] - origin;
-        const Point normal = 0.5 * cross(b - a, c - a);
-        const double area = norm(normal);
-        for (SurfaceMeasures* m : {&result.components[component], &result.total}) {
-            ++m->triangles;
-            m->area += area;
-            m->area_vector = m->area_vector + normal;
-            m->volume += dot(a, cross(b, c)) / 6;
-            m->closed = m->closed && !open[t[0]] && !open[t[1]] && !open[t[2]];
-            for (std::size_t i = 0; i < attributes; ++i) {
-                double sum = 0;
-                for (const std::uint32_t v : t) sum += surface.attributes[v * attributes + i];
-                m->integrals[i] += area * sum / 3;
-            }
-        }
-    }
-    return result;
+    return detail::measure_triangles(detail::view(surface));
 }
 
 /// Flux of a vector field through each component, out of U >= C. The field is component `first`,
@@ -118,25 +52,7 @@ SurfaceMeasurement measure_surface(const Surface<3, Element>& surface) {
 template <class Element>
 std::vector<double> flux(const Surface<3, Element>& surface, const SurfaceMeasurement& measured,
                          std::size_t first = 0) {
-    const std::size_t vertices = surface.vertices.size();
-    const std::size_t attributes = vertices == 0 ? 0 : surface.attributes.size() / vertices;
-    if (vertices > 0 && attributes < first + 3) {
-        throw InvalidInput("the surface has " + std::to_string(attributes) +
-                           " attributes, too few for a vector field from number " +
-                           std::to_string(first) + " on");
-    }
-    std::vector<double> result(measured.components.size(), 0.0);
-    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        const auto& of = surface.simplices[t];
-        const Point& x = surface.vertices[of[0]];
-        const Point normal = 0.5 * cross(surface.vertices[of[1]] - x, surface.vertices[of[2]] - x);
-        for (std::size_t d = 0; d < 3; ++d) {
-            double sum = 0;
-            for (const std::uint32_t v : of) sum += surface.attributes[v * attributes + first + d];
-            result[measured.component_of[t]] += normal[d] * sum / 3;
-        }
-    }
-    return result;
+    return detail::flux_through(detail::view(surface), measured, first);
 }
 
 /// Volume of the part of the domain where low <= U < high, under the projection with a threshold:

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <nestgrid/algorithms/surface_measures.hpp>
+#include <nestgrid/error.hpp>
+
+#include "union_find.hpp"
+
+namespace nestgrid::detail {
+
+namespace {
+
+std::size_t attribute_count(const TriangleView& surface) {
+    return surface.vertices.empty() ? 0 : surface.attributes.size() / surface.vertices.size();
+}
+
+/// Marks the lower end of every edge that belongs to one triangle only.
+std::vector<bool> open_vertices(const TriangleView& surface) {
+    std::vector<std::array<std::uint32_t, 2>> sides;
+    for (const auto& t : surface.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
+            sides.push_back({low, high});
+        }
+    }
+    std::sort(sides.begin(), sides.end());
+    std::vector<bool> open(surface.vertices.size(), false);
+    for (std::size_t i = 0; i < sides.size();) {
+        std::size_t j = i + 1;
+        while (j < sides.size() && sides[j] == sides[i]) ++j;
+        if (j - i == 1) open[sides[i][0]] = true;
+        i = j;
+    }
+    return open;
+}
+
+/// Numbers the components in the order of their first triangles; one number per triangle.
+std::vector<std::uint32_t> number_components(const TriangleView& surface) {
+    UnionFind joined(surface.vertices.size());
+    for (const auto& t : surface.triangles) {
+        joined.join(t[0], t[1]);
+        joined.join(t[0], t[2]);
+    }
+    constexpr std::uint32_t none = 0xFFFFFFFFU;
+    std::vector<std::uint32_t> number(surface.vertices.size(), none);
+    std::vector<std::uint32_t> component_of;
+    std::uint32_t count = 0;
+    for (const auto& t : surface.triangles) {
+        std::uint32_t& component = number[joined.root(t[0])];
+        if (component == none) component = count++;
+        component_of.push_back(component);
+    }
+    return component_of;
+}
+
+/// Adds a triangle to the measures of what it belongs to.
+/// \param origin apex of the cones whose volumes are added
+void add_triangle(const TriangleView& surface, const std::array<std::uint32_t, 3>& t,
+                  const Point& origin, const std::vector<bool>& open, SurfaceMeasures& to) {
+    const Point a = surface.vertices[t[0]] - origin;
+    const Point b = surface.vertices[t[1]] - origin;
+    const Point c = surface.vertices[t[2]] - origin;
+    const Point normal = 0.5 * cross(b - a, c - a);
+    const double area = norm(normal);
+    ++to.triangles;
+    to.area += area;
+    to.area_vector = to.area_vector + normal;
+    to.volume += dot(a, cross(b, c)) / 6;
+    to.closed = to.closed && !open[t[0]] && !open[t[1]] && !open[t[2]];
+    const std::size_t attributes = to.integrals.size();
+    for (std::size_t i = 0; i < attributes; ++i) {
+        double sum = 0;
+        for (const std::uint32_t v : t) sum += surface.attributes[v * attributes + i];
+        to.integrals[i] += area * sum / 3;
+    }
+}
+
+}  // namespace
+
+SurfaceMeasurement measure_triangles(const TriangleView& surface) {
+    const std::vector<bool> open = open_vertices(surface);
+    const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
+    SurfaceMeasures nothing;
+    nothing.integrals.assign(attribute_count(surface), 0.0);
+    SurfaceMeasurement result;
+    result.total = nothing;
+    result.component_of = number_components(surface);
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const std::uint32_t component = result.component_of[t];
+        if (component == result.components.size()) result.components.push_back(nothing);
+        for (SurfaceMeasures* const to : {&result.components[component], &result.total}) {
+            add_triangle(surface, surface.triangles[t], origin, open, *to);
+        }
+    }
+    return result;
+}
+
+std::vector<double> flux_through(const TriangleView& surface, const SurfaceMeasurement& measured,
+                                 std::size_t first) {
+    const std::size_t attributes = attribute_count(surface);
+    if (!surface.vertices.empty() && attributes < first + 3) {
+        throw InvalidInput("the surface has " + std::to_string(attributes) +
+                           " attributes, too few for a vector field from number " +
+                           std::to_string(first) + " on");
+    }
+    std::vector<double> result(measured.components.size(), 0.0);
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto& of = surface.triangles[t];
+        const Point& x = surface.vertices[of[0]];
+        const Point normal = 0.5 * cross(surface.vertices[of[1]] - x, surface.vertices[of[2]] - x);
+        for (std::size_t d = 0; d < 3; ++d) {
+            double sum = 0;
+            for (const std::uint32_t v : of) sum += surface.attributes[v * attributes + first + d];
+            result[measured.component_of[t]] += normal[d] * sum / 3;
+        }
+    }
+    return result;
+}
+
+}  // namespace nestgrid::detail

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <nestgrid/algorithms/surface_report.hpp>
+#include <nestgrid/error.hpp>
+
+#include "union_find.hpp"
+
+namespace nestgrid::detail {
+
+namespace {
+
+/// One side of a triangle, ends ascending; `forward` where the triangle runs along it upwards.
+struct Side {
+    std::uint32_t low;
+    std::uint32_t high;
+    std::uint32_t triangle;
+    bool forward;
+
+    auto ends() const { return std::pair(low, high); }
+};
+
+using Sides = std::vector<Side>;
+
+/// All sides of all triangles; those of one edge follow each other.
+/// \throw InvalidInput where a triangle repeats a vertex or names one that does not exist
+Sides sorted_sides(const TriangleView& surface) {
+    Sides sides;
+    sides.reserve(3 * surface.triangles.size());
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto& v = surface.triangles[t];
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = v[i];
+            const std::uint32_t b = v[(i + 1) % 3];
+            if (a >= surface.vertices.size() || a == b) {
+                throw InvalidInput("triangle " + std::to_string(t) +
+                                   " repeats a vertex or names one that does not exist");
+            }
+            sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+    return sides;
+}
+
+/// Calls function(sides of the edge) for every edge.
+template <class Function>
+void for_each_edge(const Sides& sides, Function&& function) {
+    for (auto first = sides.begin(); first != sides.end();) {
+        const auto last = std::find_if(first, sides.end(),
+                                       [&](const Side& s) { return s.ends() != first->ends(); });
+        function(std::span<const Side>(first, last));
+        first = last;
+    }
+}
+
+void count_edges(const Sides& sides, const TriangleView& surface, SurfaceReport& report) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary;
+    for (const auto& edge : surface.boundary) boundary.push_back(std::minmax(edge[0], edge[1]));
+    std::sort(boundary.begin(), boundary.end());
+    for_each_edge(sides, [&](std::span<const Side> edge) {
+        ++report.edges;
+        if (edge.size() == 1) {
+            const bool known = std::binary_search(boundary.begin(), boundary.end(), edge[0].ends());
+            ++(known ? report.boundary_edges : report.open_edges);
+        } else if (edge.size() > 2) {
+            ++report.nonmanifold_edges;
+        } else if (edge[0].forward == edge[1].forward) {
+            ++report.misoriented_edges;
+        }
+    });
+}
+
+/// The number of a triangle's corner at a vertex, among all corners.
+std::uint32_t corner_at(const TriangleView& surface, std::uint32_t triangle, std::uint32_t vertex) {
+    const auto& v = surface.triangles[triangle];
+    return 3 * triangle + (v[0] == vertex ? 0U : v[1] == vertex ? 1U : 2U);
+}
+
+/// Counts the vertices whose triangles do not form one fan. Corners are joined where their
+/// triangles share a side, so that each class is a fan.
+std::size_t count_nonmanifold_vertices(const TriangleView& surface, const Sides& sides) {
+    UnionFind fans(3 * surface.triangles.size());
+    for_each_edge(sides, [&](std::span<const Side> edge) {
+        for (const Side& side : edge.subspan(1)) {
+            for (const std::uint32_t v : {side.low, side.high}) {
+                fans.join(corner_at(surface, edge[0].triangle, v),
+                          corner_at(surface, side.triangle, v));
+            }
+        }
+    });
+    constexpr std::uint32_t none = 0xFFFFFFFFU;
+    std::vector<std::uint32_t> fan_of(surface.vertices.size(), none);
+    std::vector<bool> bad(surface.vertices.size(), false);
+    for (std::uint32_t c = 0; c < 3 * surface.triangles.size(); ++c) {
+        const std::uint32_t v = surface.triangles[c / 3][c % 3];
+        const std::uint32_t fan = fans.root(c);
+        if (fan_of[v] == none) fan_of[v] = fan;
+        if (fan_of[v] != fan) bad[v] = true;
+    }
+    return static_cast<std::size_t>(std::count(bad.begin(), bad.end(), true));
+}
+
+/// Counts the vertices that belong to a triangle, and the components that edges make of them.
+void count_vertices(const TriangleView& surface, SurfaceReport& report) {
+    UnionFind components(surface.vertices.size());
+    std::vector<bool> used(surface.vertices.size(), false);
+    for (const auto& t : surface.triangles) {
+        for (const std::uint32_t v : t) used[v] = true;
+        components.join(t[0], t[1]);
+        components.join(t[0], t[2]);
+    }
+    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+        if (!used[v]) continue;
+        ++report.vertices;
+        if (components.root(v) == v) ++report.components;
+    }
+}
+
+/// Fills in the area and the degenerate triangles, and returns the volume.
+double measure(const TriangleView& surface, SurfaceReport& report) {
+    const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
+    double volume = 0;
+    for (const auto& t : surface.triangles) {
+        const Point a = surface.vertices[t[0]] - origin;
+        const Point b = surface.vertices[t[1]] - origin;
+        const Point c = surface.vertices[t[2]] - origin;
+        const double area = norm(cross(b - a, c - a)) / 2;
+        if (area == 0) ++report.degenerate_triangles;
+        report.area += area;
+        volume += dot(a, cross(b, c)) / 6;
+    }
+    return volume;
+}
+
+}  // namespace
+
+SurfaceReport report_on(const TriangleView& surface) {
+    SurfaceReport report;
+    report.triangles = surface.triangles.size();
+    const Sides sides = sorted_sides(surface);
+    count_edges(sides, surface, report);
+    count_vertices(surface, report);
+    report.nonmanifold_vertices = count_nonmanifold_vertices(surface, sides);
+    report.euler = static_cast<long long>(report.vertices) - static_cast<long long>(report.edges) +
+                   static_cast<long long>(report.triangles);
+    const double volume = measure(surface, report);
+    if (report.closed()) report.volume = volume;
+    return report;
+}
+
+}  // namespace nestgrid::detail
