@@ -28,6 +28,7 @@ struct Options {
     std::string array;
     RawFormat raw;
     std::string endian = "little";
+    double read_limit = 0;
     double value = 0;
     std::vector<std::string> thresholds;
     std::vector<std::int64_t> budgets;
@@ -42,9 +43,18 @@ struct Options {
     MeshRequest mesh;
 };
 
+void add_read_limit(CLI::App& command, Options& o) {
+    command
+        .add_option("--read-limit", o.read_limit,
+                    "seconds after which a file is refused that is still being read; default: 60 "
+                    "and one for each MB, ten times that for .poly and .smesh")
+        ->check(CLI::PositiveNumber);
+}
+
 void add_input_options(CLI::App& command, Options& o) {
     command
-        .add_option("INPUT", o.input, ".vti, .mhd, .mha, .nrrd, .nii, .nii.gz, .raw or .nestgrid")
+        .add_option("INPUT", o.input,
+                    ".vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz, .raw or .nestgrid")
         ->required();
     command.add_option("--array", o.array, "point data array of a .vti file, field of a .nestgrid");
     command.add_option("--dims", o.raw.dims, "samples of a .raw file along x,y,z")->delimiter(',');
@@ -55,6 +65,7 @@ void add_input_options(CLI::App& command, Options& o) {
         ->check(CLI::IsMember({"little", "big"}))
         ->capture_default_str();
     command.add_option("--spacing", o.raw.spacing, "their distances along x,y,z")->delimiter(',');
+    add_read_limit(command, o);
 }
 
 /// Overwrites one line on a terminal; does nothing elsewhere.
@@ -82,7 +93,7 @@ fs::path numbered(const fs::path& path, std::size_t number, std::size_t count) {
 
 Volume read(Options& o) {
     o.raw.big_endian = o.endian == "big";
-    return read_volume(o.input, o.array, o.raw);
+    return read_volume(o.input, o.array, o.raw, o.read_limit);
 }
 
 FineBox fine_box(const Options& o) {
@@ -173,6 +184,7 @@ void run_info(Options& o) {
 
 void run_mesh(Options& o) {
     o.mesh.output = o.output;
+    o.mesh.read_limit = o.read_limit;
     if (!is_hierarchy(o.output)) {
         throw nestgrid::IoError("'" + o.output.string() + "' is no name of a .nestgrid file");
     }
@@ -214,6 +226,7 @@ void add_mesh_options(CLI::App& command, Options& o) {
         ->capture_default_str();
     command.add_option("--max-elements", o.mesh.maximum_elements, "refuse to make more than these")
         ->capture_default_str();
+    add_read_limit(command, o);
     command.add_option("-o,--output", o.output, ".nestgrid")->required();
     command.footer("Fields:\n" + Expression::names());
 }

@@ -19,10 +19,11 @@ struct MeshRequest {
     double tolerance = 0;       ///< refine until the field is interpolated to this; 0: do not
     int levels = 30;            ///< refinements at most
     std::size_t maximum_elements = 20000000;  ///< leaves, before the closure
+    double read_limit = 0;  ///< seconds to read the input and to fill a complex; 0: by its size
     std::filesystem::path output;
     std::function<void(const std::string&)> progress{};
 };
 
-/// Builds a hierarchy, refines it and writes it.
+/// Builds a hierarchy, refines it and writes it. To be called before there are threads.
 /// \throw nestgrid::IoError, nestgrid::InvalidInput with one sentence about what is wrong
 void make_hierarchy(const MeshRequest& request);

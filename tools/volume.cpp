@@ -4,25 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
+#include <optional>
 
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
-#include <vtkImageReader.h>
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
 #include <vtkMatrix4x4.h>
-#include <vtkMetaImageReader.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
-#include <vtkNrrdReader.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLImageDataReader.h>
 
 #include <nestgrid/error.hpp>
 
-#include "file_checks.hpp"
+#include "child_process.hpp"
+#include "end_checks.hpp"
+#include "sample_layout.hpp"
+#include "text_header.hpp"
 
 namespace {
 
@@ -71,10 +73,18 @@ std::string type_name(int vtk_type) {
     return "";
 }
 
-bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() &&
-           text.compare(text.size() - end.size(), end.size(), end) == 0;
+/// A large whole number without an exponent.
+std::string whole(double number) {
+    std::array<char, 400> text{};
+    std::snprintf(text.data(), text.size(), "%.0f", number);
+    return text.data();
 }
+
+/// A volume as VTK reads it, and where it is in space.
+struct VtkVolume {
+    vtkSmartPointer<vtkImageData> image;
+    nestgrid::LatticeGeometry<3> geometry;
+};
 
 struct Reading {
     fs::path path;
@@ -89,22 +99,27 @@ struct Reading {
             throw IoError(path.string() + " cannot be read: " + errors->message);
         }
     }
-    /// The header first; what it asks for must be plausible for the size of the file.
-    vtkSmartPointer<vtkImageData> run(vtkAlgorithm* reader, bool compressed,
-                                      int sample_bytes) const {
+    /// Reads the header; what it asks for must be plausible for the size of the file.
+    /// \return the number of samples
+    std::uintmax_t read_header(vtkAlgorithm* reader) const {
         reader->UpdateInformation();
         check();
         std::array<int, 6> extent{0, -1, 0, -1, 0, -1};
         vtkInformation* info = reader->GetOutputInformation(0);
         info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
-        double expected = sample_bytes;
-        for (std::size_t d = 0; d < 3; ++d) expected *= extent[2 * d + 1] - extent[2 * d] + 1.0;
-        const auto found = static_cast<double>(fs::file_size(path));
-        // Deflate packs at most 1032 to 1.
-        if (expected > found * (compressed ? 1100 : 1)) {
-            truncated(path, fs::file_size(path),
-                      static_cast<std::uintmax_t>(std::min(expected, 1e18)));
+        double samples = 1;
+        for (std::size_t d = 0; d < 3; ++d) {
+            samples *= std::max(0.0, extent[2 * d + 1] - extent[2 * d] + 1.0);
         }
+        const std::uintmax_t found = fs::file_size(path);
+        // Deflate packs at most 1032 to 1.
+        if (samples > 1032 * static_cast<double>(found)) {
+            throw IoError(path.string() + " is truncated: " + std::to_string(found) +
+                          " bytes cannot hold " + whole(samples) + " samples");
+        }
+        return static_cast<std::uintmax_t>(samples);
+    }
+    vtkSmartPointer<vtkImageData> read_samples(vtkAlgorithm* reader) const {
         reader->Update();
         check();
         auto* image = vtkImageData::SafeDownCast(reader->GetOutputDataObject(0));
@@ -113,7 +128,7 @@ struct Reading {
     }
 };
 
-void set_direction(Volume& volume, const vtkMatrix4x4* matrix) {
+void set_direction(VtkVolume& volume, const vtkMatrix4x4* matrix) {
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) {
             volume.geometry.direction[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] =
@@ -123,7 +138,7 @@ void set_direction(Volume& volume, const vtkMatrix4x4* matrix) {
     }
 }
 
-void set_geometry(Volume& volume) {
+void set_geometry(VtkVolume& volume) {
     std::array<int, 3> dims{};
     volume.image->GetDimensions(dims.data());
     volume.geometry.samples = dims;
@@ -136,74 +151,18 @@ void set_geometry(Volume& volume) {
     for (std::size_t i = 0; i < 9; ++i) volume.geometry.direction[i / 3][i % 3] = direction[i];
 }
 
-Volume read_meta(const Reading& reading) {
-    check_meta_sizes(reading.path);
-    const vtkNew<vtkMetaImageReader> reader;
-    reading.listen(reader);
-    reader->SetFileName(reading.path.c_str());
-    Volume volume;
-    volume.image = reading.run(reader, true, 1);
-    set_geometry(volume);
-    const TextHeader header = read_text_header(reading.path, '=', "elementdatafile");
-    for (const char* key : {"transformmatrix", "rotation", "orientation"}) {
-        const std::vector<double> m = header.numbers(key);
-        if (m.size() != 9) continue;
-        // MetaImage lists the axes one after the other.
-        for (std::size_t i = 0; i < 9; ++i) volume.geometry.direction[i % 3][i / 3] = m[i];
-        break;
-    }
-    return volume;
-}
-
-Volume read_nrrd(const Reading& reading) {
-    const TextHeader header = read_text_header(reading.path, ':', "");
-    check_nrrd_sizes(reading.path, header);
-    const vtkNew<vtkNrrdReader> reader;
-    reading.listen(reader);
-    if (reader->CanReadFile(reading.path.c_str()) == 0) {
-        throw IoError(reading.path.string() + " is no NRRD file that can be read");
-    }
-    reader->SetFileName(reading.path.c_str());
-    Volume volume;
-    volume.image = reading.run(reader, true, 1);
-    set_geometry(volume);
-    const std::vector<double> axes = header.numbers("space directions");
-    const std::vector<double> origin = header.numbers("space origin");
-    if (axes.size() == 9) {
-        for (std::size_t d = 0; d < 3; ++d) {
-            const nestgrid::Point axis{axes[3 * d], axes[3 * d + 1], axes[3 * d + 2]};
-            volume.geometry.spacing[d] = nestgrid::norm(axis);
-            for (std::size_t r = 0; r < 3; ++r) {
-                volume.geometry.direction[r][d] = axis[r] / volume.geometry.spacing[d];
-            }
-        }
-    }
-    if (origin.size() == 3) std::copy_n(origin.begin(), 3, volume.geometry.origin.begin());
-    return volume;
-}
-
-Volume read_nifti(const Reading& reading, bool compressed) {
+VtkVolume read_nifti(const Reading& reading) {
     const vtkNew<vtkNIFTIImageReader> reader;
     reading.listen(reader);
     if (reader->CanReadFile(reading.path.c_str()) == 0) {
         throw IoError(reading.path.string() + " is no NIfTI file, or truncated in its header");
     }
     reader->SetFileName(reading.path.c_str());
-    reader->UpdateInformation();
-    reading.check();
-    std::array<int, 6> extent{};
-    reader->GetDataExtent(extent.data());
-    auto expected =
-        static_cast<std::uintmax_t>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
-    for (std::size_t d = 0; d < 3; ++d) {
-        expected *= static_cast<std::uintmax_t>(extent[2 * d + 1] - extent[2 * d] + 1);
-    }
-    expected += nifti_offset(reading.path);
-    const std::uintmax_t found =
-        compressed ? unpacked_size(reading.path) : fs::file_size(reading.path);
-    if (found < expected) truncated(reading.path, found, expected);
-    Volume volume;
-    volume.image = reading.run(reader, compressed, 1);
+    const std::uintmax_t samples = reading.read_header(reader);
+    const int bytes = vtkDataArray::GetDataTypeSize(reader->GetDataScalarType());
+    check_nifti_size(reading.path, samples * static_cast<std::uintmax_t>(bytes));
+    VtkVolume volume;
+    volume.image = reading.read_samples(reader);
     set_geometry(volume);
     const vtkMatrix4x4* matrix =
         reader->GetSFormMatrix() != nullptr ? reader->GetSFormMatrix() : reader->GetQFormMatrix();
@@ -211,7 +170,7 @@ Volume read_nifti(const Reading& reading, bool compressed) {
     return volume;
 }
 
-Volume read_vti(const Reading& reading, const std::string& array) {
+VtkVolume read_vti(const Reading& reading, const std::string& array) {
     const vtkNew<vtkXMLImageDataReader> reader;
     reading.listen(reader);
     if (reader->CanReadFile(reading.path.c_str()) == 0) {
@@ -219,8 +178,9 @@ Volume read_vti(const Reading& reading, const std::string& array) {
     }
     check_xml_end(reading.path);
     reader->SetFileName(reading.path.c_str());
-    Volume volume;
-    volume.image = reading.run(reader, true, 1);
+    reading.read_header(reader);
+    VtkVolume volume;
+    volume.image = reading.read_samples(reader);
     vtkPointData* data = volume.image->GetPointData();
     if (!array.empty() && data->SetActiveScalars(array.c_str()) < 0) {
         throw InvalidInput(reading.path.string() + " has no point data array '" + array + "'");
@@ -233,48 +193,49 @@ Volume read_vti(const Reading& reading, const std::string& array) {
     return volume;
 }
 
-Volume read_raw(const Reading& reading, const RawFormat& raw) {
-    const auto type = std::find_if(types.begin(), types.end(),
-                                   [&](const NamedType& t) { return raw.type == t.name; });
-    if (type == types.end() || *std::min_element(raw.dims.begin(), raw.dims.end()) < 1) {
-        throw InvalidInput(reading.path.string() +
+SampleLayout raw_layout(const fs::path& path, const RawFormat& raw) {
+    const std::size_t size = bytes_of(raw.type);
+    if (size == 0 || *std::min_element(raw.dims.begin(), raw.dims.end()) < 1) {
+        throw InvalidInput(path.string() +
                            " does not describe itself: give --dims NX,NY,NZ and --type");
     }
-    const auto size = static_cast<std::uintmax_t>(vtkDataArray::GetDataTypeSize(type->vtk));
-    const std::uintmax_t expected = size * static_cast<std::uintmax_t>(raw.dims[0]) *
-                                    static_cast<std::uintmax_t>(raw.dims[1]) *
-                                    static_cast<std::uintmax_t>(raw.dims[2]);
-    const std::uintmax_t found = fs::file_size(reading.path);
-    if (found != expected) {
-        throw IoError(reading.path.string() + " has " + std::to_string(found) +
-                      " bytes, but --dims and --type ask for " + std::to_string(expected));
+    SampleLayout layout{.path = path, .type = raw.type, .files = {path}};
+    layout.geometry.samples = raw.dims;
+    std::copy(raw.spacing.begin(), raw.spacing.end(), layout.geometry.spacing.begin());
+    layout.big_endian = raw.big_endian;
+    double expected = static_cast<double>(size);
+    for (const int n : raw.dims) expected *= n;
+    const std::uintmax_t found = fs::file_size(path);
+    if (static_cast<double>(found) != expected) {
+        throw IoError(path.string() + " has " + std::to_string(found) +
+                      " bytes, but --dims and --type ask for " + whole(expected));
     }
-    const vtkNew<vtkImageReader> reader;
-    reading.listen(reader);
-    reader->SetFileName(reading.path.c_str());
-    reader->SetFileDimensionality(3);
-    reader->SetDataExtent(0, raw.dims[0] - 1, 0, raw.dims[1] - 1, 0, raw.dims[2] - 1);
-    reader->SetDataSpacing(raw.spacing[0], raw.spacing[1], raw.spacing[2]);
-    reader->SetDataScalarType(type->vtk);
-    reader->SetHeaderSize(0);
-    reader->FileLowerLeftOn();
-    raw.big_endian ? reader->SetDataByteOrderToBigEndian()
-                   : reader->SetDataByteOrderToLittleEndian();
-    Volume volume;
-    volume.image = reading.run(reader, false, static_cast<int>(size));
-    set_geometry(volume);
-    return volume;
+    return layout;
 }
 
-void check_samples(const Volume& volume, const fs::path& path) {
+/// What precedes the samples in a parcel.
+struct Description {
+    std::array<char, 8> type{};
+    nestgrid::LatticeGeometry<3> geometry;
+
+    Description(const std::string& type_name, const nestgrid::LatticeGeometry<3>& g) : geometry{g} {
+        std::copy_n(type_name.begin(), std::min(type.size() - 1, type_name.size()), type.begin());
+    }
+    std::size_t sample_count() const {
+        std::size_t count = 1;
+        for (const int n : geometry.samples) count *= static_cast<std::size_t>(n);
+        return count;
+    }
+};
+
+void check_samples(const fs::path& path, const Description& volume, const std::byte* data) {
     const auto n = volume.geometry.samples;
     if (*std::min_element(n.begin(), n.end()) < 2) {
         throw InvalidInput(path.string() + " has " + std::to_string(n[0]) + " x " +
                            std::to_string(n[1]) + " x " + std::to_string(n[2]) +
                            " samples; an isosurface needs at least 2 along each direction");
     }
-    if (volume.type.compare(0, 5, "float") != 0) return;
-    with_samples(volume, [&](auto samples) {
+    with_samples(volume.type.data(), data, volume.sample_count(), [&](auto samples) {
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (std::isfinite(static_cast<double>(samples[i]))) continue;
             const auto nx = static_cast<std::size_t>(n[0]);
@@ -285,6 +246,64 @@ void check_samples(const Volume& volume, const fs::path& path) {
                 (std::isnan(static_cast<double>(samples[i])) ? "not a number" : "infinite"));
         }
     });
+}
+
+void read_layout(const SampleLayout& layout, std::size_t bytes, Parcel& parcel) {
+    const Description description(layout.type, layout.geometry);
+    parcel.put(std::span(&description, 1));
+    const std::span<std::byte> samples = parcel.append(bytes);
+    read_samples(layout, samples);
+    check_samples(layout.path, description, samples.data());
+}
+
+void read_with_vtk(const fs::path& path, const std::string& array, Parcel& parcel) {
+    const Reading reading{path};
+    const bool is_vti = lower(path.filename().string()).ends_with(".vti");
+    const VtkVolume volume = is_vti ? read_vti(reading, array) : read_nifti(reading);
+    vtkDataArray* scalars = volume.image->GetPointData()->GetScalars();
+    if (scalars == nullptr) {
+        throw InvalidInput(path.string() + " has no point data that could be contoured");
+    }
+    if (scalars->GetNumberOfComponents() != 1) {
+        throw InvalidInput(path.string() + " has " +
+                           std::to_string(scalars->GetNumberOfComponents()) +
+                           " numbers per sample, not one");
+    }
+    const std::string type = type_name(scalars->GetDataType());
+    if (type.empty()) {
+        throw InvalidInput(path.string() + " has samples of a type that is not read");
+    }
+    const Description description(type, volume.geometry);
+    const std::size_t count = description.sample_count();
+    if (static_cast<std::size_t>(scalars->GetNumberOfTuples()) != count) {
+        throw IoError(path.string() + " holds fewer samples than its header says");
+    }
+    auto* data = static_cast<std::byte*>(scalars->GetVoidPointer(0));
+    check_samples(path, description, data);
+    parcel.put(std::span(&description, 1));
+    parcel.put_last_use({data, count * bytes_of(type)});
+}
+
+/// The volume in a parcel, whose samples stay there.
+Volume open_volume(std::shared_ptr<const Parcel> parcel) {
+    const Description& description = parcel->block<Description>(0).front();
+    const std::span<const std::byte> samples = parcel->block<std::byte>(1);
+    Volume volume;
+    volume.type = description.type.data();
+    volume.geometry = description.geometry;
+    const auto type = std::find_if(types.begin(), types.end(),
+                                   [&](const NamedType& t) { return volume.type == t.name; });
+    const auto array =
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type->vtk));
+    // VTK takes no const pointer, and does not write to what it borrows.
+    array->SetVoidArray(const_cast<std::byte*>(samples.data()),
+                        static_cast<vtkIdType>(description.sample_count()), 1);
+    volume.image = vtkSmartPointer<vtkImageData>::New();
+    volume.image->SetDimensions(volume.geometry.samples.data());
+    volume.image->SetSpacing(volume.geometry.spacing.data());
+    volume.image->GetPointData()->SetScalars(array);
+    volume.memory = std::move(parcel);
+    return volume;
 }
 
 }  // namespace
@@ -301,44 +320,29 @@ std::size_t Volume::sample_count() const {
            static_cast<std::size_t>(geometry.samples[2]);
 }
 
-Volume read_volume(const fs::path& path, const std::string& array, const RawFormat& raw) {
+Volume read_volume(const fs::path& path, const std::string& array, const RawFormat& raw,
+                   double seconds) {
     if (!fs::exists(path)) throw IoError(path.string() + " does not exist");
     if (!fs::is_regular_file(path)) throw IoError(path.string() + " is no file");
     if (std::ifstream file(path); !file) throw IoError(path.string() + " cannot be opened");
     if (fs::file_size(path) == 0) throw IoError(path.string() + " is empty");
-    const Reading reading{path};
     const std::string name = lower(path.filename().string());
-    Volume volume;
-    if (ends_with(name, ".vti")) {
-        volume = read_vti(reading, array);
-    } else if (ends_with(name, ".mhd") || ends_with(name, ".mha")) {
-        volume = read_meta(reading);
-    } else if (ends_with(name, ".nrrd") || ends_with(name, ".nhdr")) {
-        volume = read_nrrd(reading);
-    } else if (ends_with(name, ".nii") || ends_with(name, ".nii.gz")) {
-        volume = read_nifti(reading, ends_with(name, ".gz"));
-    } else if (ends_with(name, ".raw")) {
-        volume = read_raw(reading, raw);
-    } else {
+    const auto is = [&](std::initializer_list<const char*> endings) {
+        return std::any_of(endings.begin(), endings.end(),
+                           [&](const char* ending) { return name.ends_with(ending); });
+    };
+    std::optional<SampleLayout> layout;
+    if (is({".mhd", ".mha"})) layout = meta_layout(path);
+    if (is({".nrrd", ".nhdr"})) layout = nrrd_layout(path);
+    if (is({".raw"})) layout = raw_layout(path, raw);
+    if (!layout && !is({".vti", ".nii", ".nii.gz"})) {
         throw IoError(path.string() +
-                      " is of no known format (.vti, .mhd, .mha, .nrrd, .nii, .nii.gz, .raw)");
+                      " is of no known format (.vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz, "
+                      ".raw)");
     }
-    vtkDataArray* scalars = volume.image->GetPointData()->GetScalars();
-    if (scalars == nullptr) {
-        throw InvalidInput(path.string() + " has no point data that could be contoured");
-    }
-    if (scalars->GetNumberOfComponents() != 1) {
-        throw InvalidInput(path.string() + " has " +
-                           std::to_string(scalars->GetNumberOfComponents()) +
-                           " numbers per sample, not one");
-    }
-    volume.type = type_name(scalars->GetDataType());
-    if (volume.type.empty()) {
-        throw InvalidInput(path.string() + " has samples of a type that is not read");
-    }
-    if (static_cast<std::size_t>(scalars->GetNumberOfTuples()) != volume.sample_count()) {
-        throw IoError(path.string() + " holds fewer samples than its header says");
-    }
-    check_samples(volume, path);
-    return volume;
+    const std::size_t bytes = layout ? checked_size(*layout) : fs::file_size(path);
+    if (!(seconds > 0)) seconds = reading_time(bytes);
+    return open_volume(run_apart(path.string(), seconds, [&](Parcel& parcel) {
+        layout ? read_layout(*layout, bytes, parcel) : read_with_vtk(path, array, parcel);
+    }));
 }
