@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Writes one small volume of 8-bit samples in every format that the program reads, and some that it
-// must refuse, to the folder given.
+// Writes volumes to the folder given: a small one of 8-bit samples in every format that the program
+// reads, and some that it must refuse; or, with the further argument "large", one of 14 MB of
+// 16-bit samples in every format that VTK writes, and bare.
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -29,10 +30,39 @@ void write(vtkImageData* image, const std::string& name) {
     writer->Write();
 }
 
+/// A ball of radius 50 and value 600 around the centre, and noise.
+int write_large(const std::string& folder) {
+    constexpr int n = 256;
+    constexpr int slices = 108;
+    const vtkNew<vtkImageData> image;
+    image->SetDimensions(n, n, slices);
+    image->AllocateScalars(VTK_SHORT, 1);
+    auto* samples = static_cast<short*>(image->GetScalarPointer());
+    for (int z = 0, i = 0; z < slices; ++z) {
+        for (int y = 0; y < n; ++y) {
+            for (int x = 0; x < n; ++x, ++i) {
+                const unsigned noise = (static_cast<unsigned>(i) * 2654435761U) >> 30U;
+                samples[i] =
+                    static_cast<short>(1000 - 8 * std::hypot(x - 120, y - 125, z - 53) + noise);
+            }
+        }
+    }
+    const auto size = static_cast<std::streamsize>(sizeof(short)) * n * n * slices;
+    std::ofstream(folder + "large.raw", std::ios::binary)
+        .write(reinterpret_cast<char*>(samples), size);
+    write<vtkXMLImageDataWriter>(image, folder + "large.vti");
+    write<vtkMetaImageWriter>(image, folder + "large_packed.mhd");
+    write<vtkMetaImageWriter>(image, folder + "large_packed.mha");
+    write<vtkNIFTIImageWriter>(image, folder + "large.nii");
+    write<vtkNIFTIImageWriter>(image, folder + "large.nii.gz");
+    return 0;
+}
+
 }  // namespace
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
     const std::string folder = std::string(argv[1]) + "/";
+    if (argc > 2) return write_large(folder);
     const vtkNew<vtkImageData> image;
     image->SetDimensions(nx, ny, nz);
     image->SetSpacing(0.5, 1, 2);
@@ -59,6 +89,9 @@ int main(int, char** argv) {
             "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,1,0) (0,0,2)\n"
             "space origin: (0,0,0)\nencoding: raw\nendian: little\n\n";
     nrrd.write(reinterpret_cast<char*>(samples), size);
+    std::ofstream(folder + "v.nhdr", std::ios::binary)
+        << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 24 18\nspacings: 0.5 1 2\n"
+           "encoding: raw\ndata file: v.raw\n\n";
 
     const vtkNew<vtkImageCast> cast;
     cast->SetInputData(image);

@@ -37,7 +37,7 @@ refused() {
 
 raw_options=(--dims 20,24,18 --type uint8 --spacing 0.5,1,2)
 expected=
-for format in vti mhd mha nii nii.gz nrrd raw; do
+for format in vti mhd mha nii nii.gz nrrd nhdr raw; do
     options=()
     [ $format = raw ] && options=("${raw_options[@]}")
     "$program" isosurface v.$format --value 130 --threshold 2 "${options[@]}" >out 2>err ||

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Damages files of one format and hands them to the program (see mutate_files.cpp).
+# Arguments: the folder of the program's tests, the program, the format. The environment variable
+# NESTGRID_DAMAGED_FILES says how many files, by default 200.
+set -euo pipefail
+tools=$1
+program=$2
+format=$3
+count=${NESTGRID_DAMAGED_FILES:-200}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+"$tools/make_volumes" "$work"
+"$tools/make_meshes" "$work" 1
+cd "$work"
+gzip -c v.raw >v.raw.gz
+sed 's/raw$/gzip/; s/v\.gzip/v.raw.gz/' v.nhdr >packed.nhdr
+{ sed 's/encoding: raw/encoding: gzip/' v.nrrd | head -n 10 && cat v.raw.gz; } >packed.nrrd 2>/dev/null
+printf '%s\n' 'NDims = 3' 'DimSize = 20 24 18' 'ElementType = MET_UCHAR' \
+    'ElementDataFile = v.raw' >plain.mhd
+od -An -v -t u1 v.raw | sed '1i NRRD0004\ntype: uchar\ndimension: 3\nsizes: 20 24 18\nencoding: ascii\n' >text.nrrd
+"$program" mesh t.off --family bisection --field x -o h.nestgrid >log
+
+isosurface=(isosurface IN --threshold 5% -o OUT.vtp)
+mesh=(mesh IN --read-limit 2 -o OUT.nestgrid)
+volume=("${isosurface[@]}" --value 130 --read-limit 2)
+mutate() { "$tools/mutate_files" "$program" "$count" "$work" "$@"; }
+case $format in
+mhd) mutate v.mhd v.zraw -- "${volume[@]}" && mutate plain.mhd v.raw -- "${volume[@]}" ;;
+nhdr) mutate v.nhdr v.raw -- "${volume[@]}" && mutate packed.nhdr v.raw.gz -- "${volume[@]}" ;;
+nrrd)
+    mutate v.nrrd -- "${volume[@]}" && mutate packed.nrrd -- "${volume[@]}" &&
+        mutate text.nrrd -- "${volume[@]}"
+    ;;
+raw) mutate v.raw -- "${volume[@]}" --dims 20,24,18 --type uint8 ;;
+vti | mha | nii | nii.gz) mutate v.$format -- "${volume[@]}" ;;
+off | obj | ply | stl) mutate t.$format -- "${mesh[@]}" --family red-green ;;
+ele) mutate c.ele c.node -- "${mesh[@]}" --family bisection ;;
+node) mutate c.node c.ele -- "${mesh[@]}" --family bisection ;;
+poly) mutate p.poly -- "${mesh[@]}" --family bisection ;;
+smesh) mutate s.smesh -- "${mesh[@]}" --family bisection ;;
+nestgrid) mutate h.nestgrid -- "${isosurface[@]}" --value 0.5 ;;
+*) echo "unknown format $format" && exit 1 ;;
+esac
