@@ -17,10 +17,11 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 gzip -c v.raw >v.raw.gz
 sed 's/raw$/gzip/; s/v\.gzip/v.raw.gz/' v.nhdr >packed.nhdr
-{ sed 's/encoding: raw/encoding: gzip/' v.nrrd | head -n 10 && cat v.raw.gz; } >packed.nrrd 2>/dev/null
+header=(NRRD0004 'type: uchar' 'dimension: 3' 'sizes: 20 24 18' 'spacings: 0.5 1 2')
+{ printf '%s\n' "${header[@]}" 'encoding: gzip' '' && cat v.raw.gz; } >packed.nrrd
+{ printf '%s\n' "${header[@]}" 'encoding: ascii' '' && od -An -v -t u1 v.raw; } >text.nrrd
 printf '%s\n' 'NDims = 3' 'DimSize = 20 24 18' 'ElementType = MET_UCHAR' \
     'ElementDataFile = v.raw' >plain.mhd
-od -An -v -t u1 v.raw | sed '1i NRRD0004\ntype: uchar\ndimension: 3\nsizes: 20 24 18\nencoding: ascii\n' >text.nrrd
 "$program" mesh t.off --family bisection --field x -o h.nestgrid >log
 
 isosurface=(isosurface IN --threshold 5% -o OUT.vtp)

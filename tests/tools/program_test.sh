@@ -232,6 +232,8 @@ refused 1 'tolerance is negative' mesh tetra.off "${mesh[@]}" --field x --tolera
 refused 1 'refine is negative' mesh tetra.off "${mesh[@]}" --refine -1
 refused 1 'levels is negative' mesh tetra.off "${mesh[@]}" --levels -1
 refused 1 'max-volume is negative' mesh cube.smesh "${mesh[@]}" --max-volume -1
+refused 1 'cube.smesh. cannot be read within 0.2 seconds' mesh cube.smesh "${mesh[@]}" --max-volume 1e-6 --read-limit 0.2
+refused 2 'read-limit' mesh cube.smesh "${mesh[@]}" --read-limit 0
 refused 1 'layer 0 is no positive' mesh tetra.off --family prism --layers nan -o x.nestgrid
 refused 1 'cannot be written' mesh tetra.off --family bisection -o missing/x.nestgrid
 refused 1 't.nestgrid' mesh t.nestgrid "${mesh[@]}"
