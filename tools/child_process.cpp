@@ -153,9 +153,9 @@ Parcel::Parcel() : file_{memfd_create("parcel", MFD_CLOEXEC)} {
         page = mmap(nullptr, first, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
     }
     if (page == MAP_FAILED) {
+        const std::string reason = std::strerror(errno);
         if (file_ >= 0) close(file_);
-        throw IoError(std::string("no memory to share with a child process: ") +
-                      std::strerror(errno));
+        throw IoError("no memory to share with a child process: " + reason);
     }
     directory_ = static_cast<Directory*>(page);
     directory_->end = first;
