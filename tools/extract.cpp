@@ -8,7 +8,6 @@
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/region.hpp>
-#include <nestgrid/any_grid.hpp>
 #include <nestgrid/error.hpp>
 
 #include "hierarchy.hpp"
@@ -81,33 +80,33 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
     run.preroll_kept_bytes = indicator.memory_bytes();
     run.least = indicator.least();
     run.greatest = indicator.greatest();
-    // One kind of criterion, with a region that may be empty: each would be compiled for every
-    // grid.
-    nestgrid::Region region;
-    double inside = 0;
-    if (request.box) {
-        if (request.progress) request.progress("region");
-        const FineBox& box = *request.box;
-        inside = box.threshold;
-        region = nestgrid::Region(grid, [&](const nestgrid::Point& x) {
-            for (std::size_t d = 0; d < Grid::dimension; ++d) {
-                if (x[d] < box.bounds[2 * d] || x[d] > box.bounds[2 * d + 1]) return false;
-            }
-            return true;
-        });
-    }
-    const auto criterion_at = [&](double threshold) {
-        return nestgrid::fine_inside(region, indicator, threshold, inside);
+    const auto draw_all = [&](const auto& criterion_at) {
+        for (const std::uint64_t budget : request.budgets) {
+            run.surfaces.push_back(
+                extract_one(grid, field, criterion_at, indicator, 0, budget, executor, request));
+        }
+        for (const ThresholdText& t : request.thresholds) {
+            const double threshold =
+                t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
+            run.surfaces.push_back(
+                extract_one(grid, field, criterion_at, indicator, threshold, 0, executor, request));
+        }
     };
-    for (const std::uint64_t budget : request.budgets) {
-        run.surfaces.push_back(
-            extract_one(grid, field, criterion_at, indicator, 0, budget, executor, request));
+    if (!request.box) {
+        draw_all([&](double threshold) { return nestgrid::Threshold(&indicator, threshold); });
+        return;
     }
-    for (const ThresholdText& t : request.thresholds) {
-        const double threshold = t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
-        run.surfaces.push_back(
-            extract_one(grid, field, criterion_at, indicator, threshold, 0, executor, request));
-    }
+    if (request.progress) request.progress("region");
+    const FineBox& box = *request.box;
+    const nestgrid::Region region(grid, [&](const nestgrid::Point& x) {
+        for (std::size_t d = 0; d < Grid::dimension; ++d) {
+            if (x[d] < box.bounds[2 * d] || x[d] > box.bounds[2 * d + 1]) return false;
+        }
+        return true;
+    });
+    draw_all([&](double threshold) {
+        return nestgrid::fine_inside(region, indicator, threshold, box.threshold);
+    });
 }
 
 }  // namespace
@@ -134,12 +133,8 @@ ExtractionRun extract(const Volume& volume, const ExtractionRequest& request) {
     ExtractionRun run;
     run.nodes = volume.sample_count();
     run.leaf_elements = leaf_count(grid);
-    // Type-erased: samples have ten types, and all of this would be compiled for each.
-    const nestgrid::AnyGrid<3> any(grid);
     with_samples(volume, [&](auto samples) {
-        const nestgrid::LatticeField field(grid, samples);
-        using Real = typename decltype(field)::value_type;
-        extract_all(any, nestgrid::AnyField<Real>(grid, field), request, run);
+        extract_all(grid, nestgrid::LatticeField(grid, samples), request, run);
     });
     return run;
 }

@@ -10,6 +10,7 @@
 
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "surface_file.hpp"
 #include "volume.hpp"

@@ -18,7 +18,7 @@ Contour contour_with_vtk(const Volume& volume, double isovalue) {
     contour.seconds = now() - start;
 
     vtkPolyData* output = filter->GetOutput();
-    nestgrid::Surface<3, int> surface;
+    nestgrid::Surface<3> surface;
     surface.vertices.resize(static_cast<std::size_t>(output->GetNumberOfPoints()));
     const vtkNew<vtkIdList> corners;
     for (vtkIdType t = 0; t < output->GetNumberOfCells(); ++t) {

@@ -53,7 +53,7 @@ extern "C" int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_fie
     *out = {};
     return with_models(grid, field, message, message_size, [&](const auto& g, const auto& f) {
         constexpr int dimension = std::remove_reference_t<decltype(g)>::dimension;
-        using Result = Isosurface<dimension, nestgrid_element>;
+        using Result = Isosurface<dimension>;
         auto result = std::make_unique<Result>(
             isosurface(g, f, isovalue, {.threshold = threshold, .elements = false}));
         out->vertex_count = result->surface.vertices.size();
@@ -71,9 +71,9 @@ extern "C" int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_fie
 
 extern "C" void nestgrid_surface_free(nestgrid_surface* surface) {
     if (surface->dimension == 2) {
-        delete static_cast<Isosurface<2, nestgrid_element>*>(surface->owner);
+        delete static_cast<Isosurface<2>*>(surface->owner);
     } else {
-        delete static_cast<Isosurface<3, nestgrid_element>*>(surface->owner);
+        delete static_cast<Isosurface<3>*>(surface->owner);
     }
     *surface = {};
 }

@@ -314,19 +314,27 @@ ContourTable::ContourTable(Shape shape) {
     }
 }
 
+template <Shape shape>
+const ContourTable& ContourTable::table_of() {
+    static const ContourTable table(shape);
+    return table;
+}
+
 const ContourTable& ContourTable::of(Shape shape) {
-    static const ContourTable triangle(Shape::triangle);
-    static const ContourTable tetrahedron(Shape::tetrahedron);
-    if (shape == Shape::triangle) return triangle;
-    if (shape == Shape::tetrahedron) return tetrahedron;
-    static const ContourTable quadrilateral(Shape::quadrilateral);
-    static const ContourTable pyramid(Shape::pyramid);
-    static const ContourTable prism(Shape::prism);
-    static const ContourTable hexahedron(Shape::hexahedron);
-    return shape == Shape::quadrilateral ? quadrilateral
-           : shape == Shape::pyramid     ? pyramid
-           : shape == Shape::prism       ? prism
-                                         : hexahedron;
+    switch (shape) {
+        case Shape::triangle:
+            return table_of<Shape::triangle>();
+        case Shape::quadrilateral:
+            return table_of<Shape::quadrilateral>();
+        case Shape::tetrahedron:
+            return table_of<Shape::tetrahedron>();
+        case Shape::pyramid:
+            return table_of<Shape::pyramid>();
+        case Shape::prism:
+            return table_of<Shape::prism>();
+        default:
+            return table_of<Shape::hexahedron>();
+    }
 }
 
 }  // namespace nestgrid

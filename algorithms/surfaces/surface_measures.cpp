@@ -7,20 +7,20 @@
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/error.hpp>
 
-#include "union_find.hpp"
+#include <surfaces/union_find.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid {
 
 namespace {
 
-std::size_t attribute_count(const TriangleView& surface) {
+std::size_t attribute_count(const Surface<3>& surface) {
     return surface.vertices.empty() ? 0 : surface.attributes.size() / surface.vertices.size();
 }
 
 /// Marks the lower end of every edge that belongs to one triangle only.
-std::vector<bool> open_vertices(const TriangleView& surface) {
+std::vector<bool> open_vertices(const Surface<3>& surface) {
     std::vector<std::array<std::uint32_t, 2>> sides;
-    for (const auto& t : surface.triangles) {
+    for (const auto& t : surface.simplices) {
         for (std::size_t i = 0; i < 3; ++i) {
             const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
             sides.push_back({low, high});
@@ -38,9 +38,9 @@ std::vector<bool> open_vertices(const TriangleView& surface) {
 }
 
 /// Numbers the components in the order of their first triangles; one number per triangle.
-std::vector<std::uint32_t> number_components(const TriangleView& surface) {
-    UnionFind joined(surface.vertices.size());
-    for (const auto& t : surface.triangles) {
+std::vector<std::uint32_t> number_components(const Surface<3>& surface) {
+    engine::UnionFind joined(surface.vertices.size());
+    for (const auto& t : surface.simplices) {
         joined.join(t[0], t[1]);
         joined.join(t[0], t[2]);
     }
@@ -48,7 +48,7 @@ std::vector<std::uint32_t> number_components(const TriangleView& surface) {
     std::vector<std::uint32_t> number(surface.vertices.size(), none);
     std::vector<std::uint32_t> component_of;
     std::uint32_t count = 0;
-    for (const auto& t : surface.triangles) {
+    for (const auto& t : surface.simplices) {
         std::uint32_t& component = number[joined.root(t[0])];
         if (component == none) component = count++;
         component_of.push_back(component);
@@ -58,7 +58,7 @@ std::vector<std::uint32_t> number_components(const TriangleView& surface) {
 
 /// Adds a triangle to the measures of what it belongs to.
 /// \param origin apex of the cones whose volumes are added
-void add_triangle(const TriangleView& surface, const std::array<std::uint32_t, 3>& t,
+void add_triangle(const Surface<3>& surface, const std::array<std::uint32_t, 3>& t,
                   const Point& origin, const std::vector<bool>& open, SurfaceMeasures& to) {
     const Point a = surface.vertices[t[0]] - origin;
     const Point b = surface.vertices[t[1]] - origin;
@@ -80,7 +80,7 @@ void add_triangle(const TriangleView& surface, const std::array<std::uint32_t, 3
 
 }  // namespace
 
-SurfaceMeasurement measure_triangles(const TriangleView& surface) {
+SurfaceMeasurement measure_surface(const Surface<3>& surface) {
     const std::vector<bool> open = open_vertices(surface);
     const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
     SurfaceMeasures nothing;
@@ -88,18 +88,18 @@ SurfaceMeasurement measure_triangles(const TriangleView& surface) {
     SurfaceMeasurement result;
     result.total = nothing;
     result.component_of = number_components(surface);
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
         const std::uint32_t component = result.component_of[t];
         if (component == result.components.size()) result.components.push_back(nothing);
         for (SurfaceMeasures* const to : {&result.components[component], &result.total}) {
-            add_triangle(surface, surface.triangles[t], origin, open, *to);
+            add_triangle(surface, surface.simplices[t], origin, open, *to);
         }
     }
     return result;
 }
 
-std::vector<double> flux_through(const TriangleView& surface, const SurfaceMeasurement& measured,
-                                 std::size_t first) {
+std::vector<double> flux(const Surface<3>& surface, const SurfaceMeasurement& measured,
+                         std::size_t first) {
     const std::size_t attributes = attribute_count(surface);
     if (!surface.vertices.empty() && attributes < first + 3) {
         throw InvalidInput("the surface has " + std::to_string(attributes) +
@@ -107,8 +107,8 @@ std::vector<double> flux_through(const TriangleView& surface, const SurfaceMeasu
                            std::to_string(first) + " on");
     }
     std::vector<double> result(measured.components.size(), 0.0);
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto& of = surface.triangles[t];
+    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
+        const auto& of = surface.simplices[t];
         const Point& x = surface.vertices[of[0]];
         const Point normal = 0.5 * cross(surface.vertices[of[1]] - x, surface.vertices[of[2]] - x);
         for (std::size_t d = 0; d < 3; ++d) {
@@ -120,4 +120,4 @@ std::vector<double> flux_through(const TriangleView& surface, const SurfaceMeasu
     return result;
 }
 
-}  // namespace nestgrid::detail
+}  // namespace nestgrid

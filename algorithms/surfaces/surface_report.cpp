@@ -9,9 +9,9 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/error.hpp>
 
-#include "union_find.hpp"
+#include <surfaces/union_find.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid {
 
 namespace {
 
@@ -29,11 +29,11 @@ using Sides = std::vector<Side>;
 
 /// All sides of all triangles; those of one edge follow each other.
 /// \throw InvalidInput where a triangle repeats a vertex or names one that does not exist
-Sides sorted_sides(const TriangleView& surface) {
+Sides sorted_sides(const Surface<3>& surface) {
     Sides sides;
-    sides.reserve(3 * surface.triangles.size());
-    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto& v = surface.triangles[t];
+    sides.reserve(3 * surface.simplices.size());
+    for (std::uint32_t t = 0; t < surface.simplices.size(); ++t) {
+        const auto& v = surface.simplices[t];
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t a = v[i];
             const std::uint32_t b = v[(i + 1) % 3];
@@ -61,7 +61,7 @@ void for_each_edge(const Sides& sides, Function&& function) {
     }
 }
 
-void count_edges(const Sides& sides, const TriangleView& surface, SurfaceReport& report) {
+void count_edges(const Sides& sides, const Surface<3>& surface, SurfaceReport& report) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary;
     for (const auto& edge : surface.boundary) boundary.push_back(std::minmax(edge[0], edge[1]));
     std::sort(boundary.begin(), boundary.end());
@@ -79,15 +79,15 @@ void count_edges(const Sides& sides, const TriangleView& surface, SurfaceReport&
 }
 
 /// The number of a triangle's corner at a vertex, among all corners.
-std::uint32_t corner_at(const TriangleView& surface, std::uint32_t triangle, std::uint32_t vertex) {
-    const auto& v = surface.triangles[triangle];
+std::uint32_t corner_at(const Surface<3>& surface, std::uint32_t triangle, std::uint32_t vertex) {
+    const auto& v = surface.simplices[triangle];
     return 3 * triangle + (v[0] == vertex ? 0U : v[1] == vertex ? 1U : 2U);
 }
 
 /// Counts the vertices whose triangles do not form one fan. Corners are joined where their
 /// triangles share a side, so that each class is a fan.
-std::size_t count_nonmanifold_vertices(const TriangleView& surface, const Sides& sides) {
-    UnionFind fans(3 * surface.triangles.size());
+std::size_t count_nonmanifold_vertices(const Surface<3>& surface, const Sides& sides) {
+    engine::UnionFind fans(3 * surface.simplices.size());
     for_each_edge(sides, [&](std::span<const Side> edge) {
         for (const Side& side : edge.subspan(1)) {
             for (const std::uint32_t v : {side.low, side.high}) {
@@ -99,8 +99,8 @@ std::size_t count_nonmanifold_vertices(const TriangleView& surface, const Sides&
     constexpr std::uint32_t none = 0xFFFFFFFFU;
     std::vector<std::uint32_t> fan_of(surface.vertices.size(), none);
     std::vector<bool> bad(surface.vertices.size(), false);
-    for (std::uint32_t c = 0; c < 3 * surface.triangles.size(); ++c) {
-        const std::uint32_t v = surface.triangles[c / 3][c % 3];
+    for (std::uint32_t c = 0; c < 3 * surface.simplices.size(); ++c) {
+        const std::uint32_t v = surface.simplices[c / 3][c % 3];
         const std::uint32_t fan = fans.root(c);
         if (fan_of[v] == none) fan_of[v] = fan;
         if (fan_of[v] != fan) bad[v] = true;
@@ -109,10 +109,10 @@ std::size_t count_nonmanifold_vertices(const TriangleView& surface, const Sides&
 }
 
 /// Counts the vertices that belong to a triangle, and the components that edges make of them.
-void count_vertices(const TriangleView& surface, SurfaceReport& report) {
-    UnionFind components(surface.vertices.size());
+void count_vertices(const Surface<3>& surface, SurfaceReport& report) {
+    engine::UnionFind components(surface.vertices.size());
     std::vector<bool> used(surface.vertices.size(), false);
-    for (const auto& t : surface.triangles) {
+    for (const auto& t : surface.simplices) {
         for (const std::uint32_t v : t) used[v] = true;
         components.join(t[0], t[1]);
         components.join(t[0], t[2]);
@@ -125,10 +125,10 @@ void count_vertices(const TriangleView& surface, SurfaceReport& report) {
 }
 
 /// Fills in the area and the degenerate triangles, and returns the volume.
-double measure(const TriangleView& surface, SurfaceReport& report) {
+double measure(const Surface<3>& surface, SurfaceReport& report) {
     const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
     double volume = 0;
-    for (const auto& t : surface.triangles) {
+    for (const auto& t : surface.simplices) {
         const Point a = surface.vertices[t[0]] - origin;
         const Point b = surface.vertices[t[1]] - origin;
         const Point c = surface.vertices[t[2]] - origin;
@@ -142,9 +142,9 @@ double measure(const TriangleView& surface, SurfaceReport& report) {
 
 }  // namespace
 
-SurfaceReport report_on(const TriangleView& surface) {
+SurfaceReport surface_report(const Surface<3>& surface) {
     SurfaceReport report;
-    report.triangles = surface.triangles.size();
+    report.triangles = surface.simplices.size();
     const Sides sides = sorted_sides(surface);
     count_edges(sides, surface, report);
     count_vertices(surface, report);
@@ -156,4 +156,4 @@ SurfaceReport report_on(const TriangleView& surface) {
     return report;
 }
 
-}  // namespace nestgrid::detail
+}  // namespace nestgrid

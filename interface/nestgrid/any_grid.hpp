@@ -212,6 +212,17 @@ private:
     nestgrid_field table_;
 };
 
+template <int dim, class Real>
+bool knows_blocks(const AnyGrid<dim>& grid, const AnyField<Real>& field, const HierarchyFacts&) {
+    return field.bisects(grid);
+}
+template <int dim, class Real>
+void bisect_blocks(const AnyGrid<dim>& grid, const AnyField<Real>& field, AnyContext& context,
+                   const nestgrid_element& e, const Real* values, int level, int orientation,
+                   detail::ErasedBisectionVisitor<dim, Real>& visitor) {
+    field.bisect(grid, context, e, values, level, orientation, visitor);
+}
+
 }  // namespace nestgrid
 
 #include <nestgrid/any_grid_steps.hpp>

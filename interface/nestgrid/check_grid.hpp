@@ -9,17 +9,19 @@
 // Costs O(elements) memory and several times a traversal: for tests, not for production.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/hanging_probe.hpp>
 #include <nestgrid/known_bisection.hpp>
+#include <nestgrid/operations.hpp>
 #include <nestgrid/pack.hpp>
-#include <nestgrid/traversal.hpp>
 
 namespace nestgrid {
 
@@ -61,6 +63,10 @@ struct CheckOptions {
     bool hanging_values = false;
     /// Relative to the largest value, for that.
     double value_tolerance = 1e-12;
+    /// Relative to the largest value met so far: how far the values that elements give one node may
+    /// differ, where a solver rounds them in each element. Surfaces of such a field may still show
+    /// two vertices instead of one.
+    double node_value_tolerance = 0;
 };
 
 namespace detail {

@@ -10,6 +10,16 @@
 
 namespace nestgrid::detail {
 
+inline constexpr const char* in_tensor_order =
+    "; its corners are numbered in tensor order, x fastest, and not around";
+
+/// As many digits as tell apart any two numbers.
+inline std::string all_digits(double number) {
+    std::array<char, 32> text;
+    std::snprintf(text.data(), text.size(), "%.17g", number);
+    return text.data();
+}
+
 /// Walks once and compares every node with what is known of its place.
 template <class Grid, class Field>
 class GridChecker {
@@ -97,6 +107,7 @@ private:
     void make_node(const Rule& rule, std::size_t n, std::vector<Corner>& nodes);
     void check_node(const State& s, std::size_t n, const Corner& c, NodeKey signature,
                     bool constrained, bool deviates);
+    void check_same_value(const Values& a, const Values& b, const std::string& both) const;
     void check_new_nodes(const State& s, const Rule& rule, std::vector<Corner>& nodes);
     bool deviates_from_mean(const Stencil& stencil, const std::vector<Corner>& nodes,
                             Real value) const;
@@ -172,7 +183,8 @@ void GridChecker<Grid, Field>::check_coarse(std::size_t i) {
         fail(Law::coarse_element, who + " has an orientation that is neither 1 nor -1");
     }
     if (!((t.dimension == 3 ? c.orientation * volume : volume) > 0)) {
-        fail(Law::coarse_element, who + " is flat or inverted under its orientation sign");
+        fail(Law::coarse_element, who + " is flat or inverted under its orientation sign" +
+                                      (is_simplex(c.shape) ? "" : in_tensor_order));
     }
     for (std::size_t f = 0; f < t.faces; ++f) {
         NodeKey sum = 0;
@@ -183,6 +195,18 @@ void GridChecker<Grid, Field>::check_coarse(std::size_t i) {
             fail(Law::coarse_face, "face " + std::to_string(f) + " of " + who +
                                        " belongs to more than two coarse elements");
         }
+    }
+}
+
+/// \param both the two elements
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_same_value(const Values& a, const Values& b,
+                                                const std::string& both) const {
+    for (std::size_t q = 0; q < components_; ++q) {
+        const double off = std::abs(static_cast<double>(a[q]) - static_cast<double>(b[q]));
+        if (off <= options_.node_value_tolerance * largest_value_) continue;
+        fail(Law::value_unique, "the field gives one node two values, " + all_digits(b[q]) +
+                                    " and " + all_digits(a[q]) + ": as " + both);
     }
 }
 
@@ -277,9 +301,7 @@ void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const C
     if (node->key != c.key || node->signature != signature) {
         fail(Law::one_stencil, "one node has two stencils or keys: as " + both);
     }
-    if (node->value != c.value) {
-        fail(Law::value_unique, "the field gives one node two values: as " + both);
-    }
+    check_same_value(node->value, c.value, both);
     if (node->constrained != constrained) {
         fail(Law::hanging_mask, "one node is constrained and not constrained: as " + both);
     }

@@ -10,6 +10,7 @@
 
 #include <nestgrid/nestgrid.h>
 #include <nestgrid/bisection_walk.hpp>
+#include <nestgrid/hierarchy.hpp>
 #include <nestgrid/operations.hpp>
 
 namespace nestgrid::detail {
@@ -22,7 +23,7 @@ public:
 
     virtual Point position(std::size_t place) const = 0;
     virtual void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const = 0;
-    virtual nestgrid_element element(std::size_t id, std::size_t part) const = 0;
+    virtual Handle element(std::size_t id, std::size_t part) const = 0;
     virtual unsigned boundary(std::size_t id, std::size_t part) const = 0;
 
     bool mirrored(std::size_t id) const { return orientations[id] != 0; }
@@ -135,8 +136,10 @@ private:
         void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const override {
             of->cuts(edges, isovalue, to);
         }
-        nestgrid_element element(std::size_t id, std::size_t part) const override {
-            return erased(of->element(id, part));
+        Handle element(std::size_t id, std::size_t part) const override {
+            Handle handle;
+            set_handle(handle, of->element(id, part));
+            return handle;
         }
         unsigned boundary(std::size_t id, std::size_t part) const override {
             return of->boundary(id, part);
@@ -150,3 +153,28 @@ private:
 };
 
 }  // namespace nestgrid::detail
+
+namespace nestgrid {
+
+/// Whether the bisections of a grid and a field can be walked in blocks (Hierarchy::bisect).
+template <class Grid, class Field>
+    requires(
+        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() ==
+            1 &&
+        detail::fits_handle<ElementOf<Grid>>)
+bool knows_blocks(const Grid&, const Field&, const HierarchyFacts&) { return true; }
+
+/// Walks them below an element.
+template <class Grid, class Field>
+    requires(
+        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() == 1)
+void bisect_blocks(
+    const Grid& grid, const Field& field, Context<Grid>&, const ElementOf<Grid>& e,
+    const typename Field::value_type* values, int level, int orientation,
+    detail::ErasedBisectionVisitor<Grid::dimension, typename Field::value_type>& visitor) {
+    detail::BisectionForwarder<Grid, typename Field::value_type> forward(grid, visitor);
+    walk_bisections(grid, field, forward, e, values, level, orientation,
+                    [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+}
+
+}  // namespace nestgrid

@@ -10,7 +10,8 @@
 // Consequence: a node has one key in every element, thread and process, without any search, and an
 // adapter needs ids on the coarse grid only.
 // With n nodes, two get the same 64-bit key with probability n^2 / 2^65: 3e-8 for a million,
-// 3e-4 for a hundred million. Define NESTGRID_WIDE_KEYS for 128 bits beyond that.
+// 3e-4 for a hundred million. Configure with -D NESTGRID_WIDE_KEYS=ON for 128 bits beyond that: the
+// library and the programs that use it must agree, or they do not link.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,16 @@ using NodeKey = std::uint64_t;
 #endif
 
 namespace detail {
+
+/// Defined in the library for the keys it was compiled with, so that a program with others does not
+/// link.
+#ifdef NESTGRID_WIDE_KEYS
+void library_has_keys_of_128_bits();
+inline void require_same_keys() { library_has_keys_of_128_bits(); }
+#else
+void library_has_keys_of_64_bits();
+inline void require_same_keys() { library_has_keys_of_64_bits(); }
+#endif
 
 /// Finaliser of splitmix64 (Steele, Lea, Flood 2014): a bijection with full avalanche.
 constexpr std::uint64_t mix64(std::uint64_t x) {

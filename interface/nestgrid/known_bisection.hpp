@@ -50,8 +50,9 @@
 #include <cstdint>
 #include <span>
 
+#include <nestgrid/operations.hpp>
 #include <nestgrid/pack.hpp>
-#include <nestgrid/traversal.hpp>
+#include <nestgrid/visit.hpp>
 
 namespace nestgrid {
 

@@ -27,7 +27,7 @@ template <class T>
 using MaskOf = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 
 template <class T>
-concept Packable = std::is_arithmetic_v<T> && (sizeof(T) == 4 || sizeof(T) == 8);
+concept Packable = std::is_arithmetic_v<T> &&(sizeof(T) == 4 || sizeof(T) == 8);
 
 /// Bytes of the vectors that are used. Wider ones were slower (docs/speed.md).
 #if defined(__AVX2__)
@@ -101,7 +101,8 @@ public:
     /// The same bits as numbers of another type.
     template <class U>
         requires(sizeof(U) == sizeof(T))
-    NESTGRID_INLINE Pack<U, size> as() const {
+    NESTGRID_INLINE Pack<U, size> as()
+    const {
         Pack<U, size> p;
         unrolled<vectors_>([&](auto v) NESTGRID_INLINE_LAMBDA {
             std::memcpy(&p.v_[v].of, &v_[v].of, sizeof(Vector));

@@ -9,7 +9,9 @@
 //   - every child lies inside the parent and has positive volume under its orientation sign;
 //   - every face of a child lies in a face of the parent, or belongs to two children on its two
 //     sides;
-//   - the volumes of the children add up to that of the parent.
+//   - the volumes of the children add up to that of the parent;
+//   - where there are new nodes, every child has one for a corner: what saturates a function of the
+//     nodes goes from a child to its father by it.
 // Consequence: the children tile the parent, and no node hangs inside one split.
 #pragma once
 
@@ -69,6 +71,8 @@ struct Child {
                                                         // around it, or no_face
     std::uint32_t rule_edges = 0;                       // derived: all of rule_edge, one bit each
     std::uint32_t rule_faces = 0;                       // derived: all of rule_face, one bit each
+    std::uint64_t nodes = 0;  // derived: all of corner, one bit each, where the rule has at most 64
+                              // nodes, corners of the parent included; else 0
 };
 
 /// An edge of the parent; or one inside a face of it, whose middle node has its ends for parents:

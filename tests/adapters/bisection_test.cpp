@@ -9,9 +9,10 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/check_grid.hpp>
-#include <nestgrid/levels.hpp>
+#include <walk/for_each_element.hpp>
 
 #include "counting_allocator.hpp"
+#include "element_in.hpp"
 #include "sample_fields.hpp"
 
 using namespace nestgrid;
@@ -19,39 +20,42 @@ using namespace nestgrid_test;
 
 namespace {
 
-struct Census {
+class Census final : public engine::Visitor<float> {
+public:
     std::size_t leaves = 0;
     std::size_t inner = 0;
     std::size_t greatest_depth = 0;
     std::uintptr_t base = 0;
     std::size_t stack = 0;
 
-    template <class State>
-    Decision inspect(const State& s, const Split& split) {
+    engine::Decision inspect(const engine::ElementView<float>& view,
+                             const engine::Split& split) override {
         if (split.rule != nullptr) ++inner;
-        greatest_depth = std::max(greatest_depth, static_cast<std::size_t>(s.level));
+        greatest_depth = std::max(greatest_depth, static_cast<std::size_t>(view.level));
         const char here = 0;
         const auto at = reinterpret_cast<std::uintptr_t>(&here);
         if (base == 0) base = at;
         stack = std::max<std::size_t>(stack, at > base ? at - base : base - at);
         return {};
     }
-    template <class State>
-    void extract(const State&) {
-        ++leaves;
-    }
+    void extract(const engine::ElementView<float>&) override { ++leaves; }
 };
 
-/// Walks a cubic lattice completely; fails where that touches the heap.
+/// Walks a cubic lattice completely; fails where that touches the heap, but for some frames for
+/// each level that the first walk makes.
 Census take_census(int n) {
     const LatticeBisection<3> grid({.samples = {n, n, n}});
     const std::vector<std::uint8_t> samples(grid.sample_count());
     const LatticeField field(grid, std::span<const std::uint8_t>(samples));
     EXPECT_EQ(grid.node_count(), samples.size());
-    const Traversal<LatticeBisection<3>, decltype(field), Needs{.keys = true, .positions = true}>
-        walk(grid, field);
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<float> walk(hierarchy, {.positions = true});
+    Census first;
+    std::size_t before = allocation_count();
+    walk.run(first, 0, 1);
+    EXPECT_LE(allocation_count() - before, 8 * (first.greatest_depth + 2));
     Census census;
-    const std::size_t before = allocation_count();
+    before = allocation_count();
     walk.run(census);
     EXPECT_EQ(allocation_count(), before);
     return census;
@@ -73,35 +77,38 @@ TEST(Lattice, NodesAreCountedByTheirElements) {
     const LatticeBisection<3> grid({.samples = {17, 17, 17}});
     const std::vector<std::uint8_t> samples(grid.sample_count());
     const LatticeField field(grid, std::span<const std::uint8_t>(samples));
-    const Traversal<LatticeBisection<3>, decltype(field), Needs{.keys = true}> walk(grid, field);
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<float> walk(hierarchy, {});
     std::set<NodeKey> nodes;
-    for (int level = 0; level < count_levels(walk); ++level) {
-        for_each_on_level(walk, level, [&](const auto& s, const Split&) {
+    for (int level = 0; level < engine::count_levels(walk); ++level) {
+        engine::for_each_on_level(walk, level, [&](const auto& view, const engine::Split&) {
             std::array<NodeKey, 8> keys;
-            walk.keys(s, keys);
+            walk.corners(view, keys.data(), nullptr);
             nodes.insert(keys.begin(), keys.begin() + 4);
         });
     }
     EXPECT_EQ(nodes.size(), 4913U);
 }
 
-struct Volume {
-    const LatticeBisection<3>& grid;
-    double sum = 0;
-    bool inside = true;
+class Volume final : public engine::Visitor<float> {
+public:
+    explicit Volume(const LatticeBisection<3>& grid) : grid_{&grid} {}
 
-    template <class State>
-    Decision inspect(const State&, const Split&) {
+    double sum = 0;
+
+    engine::Decision inspect(const engine::ElementView<float>&, const engine::Split&) override {
         return {};
     }
-    template <class State>
-    void extract(const State& s) {
+    void extract(const engine::ElementView<float>& view) override {
         std::array<Point, 4> x;
-        grid.corner_positions(s.element, x);
-        const double v = s.orientation * measure(Shape::tetrahedron, x);
+        grid_->corner_positions(element_in(*grid_, view), x);
+        const double v = view.orientation * measure(Shape::tetrahedron, x);
         EXPECT_GT(v, 0);
         sum += v;
     }
+
+private:
+    const LatticeBisection<3>* grid_;
 };
 
 TEST(Lattice, LeavesFillTheDomainForAnyDimensions) {
@@ -112,8 +119,9 @@ TEST(Lattice, LeavesFillTheDomainForAnyDimensions) {
                                         .direction = {{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}});
         const std::vector<float> samples(grid.sample_count(), 1.0F);
         const LatticeField field(grid, std::span<const float>(samples));
-        const Traversal<LatticeBisection<3>, decltype(field)> walk(grid, field);
-        Volume volume{grid};
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<float> walk(hierarchy, {.keys = false});
+        Volume volume(grid);
         walk.run(volume);
         const double whole = double(n[0] - 1) * (n[1] - 1) * (n[2] - 1);
         EXPECT_NEAR(volume.sum / whole, 1, 1e-12);

@@ -11,8 +11,11 @@
 #include <CGAL/boost/graph/Euler_operations.h>
 
 #include <nestgrid/check_grid.hpp>
+#include <nestgrid/detail/erase.hpp>
+#include <walk/walk.hpp>
 
 #include "coarse_samples.hpp"
+#include "element_in.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -138,24 +141,31 @@ private:
     const Octree* tree_;
 };
 
-struct Leaves {
+/// Counts and measures the elements of a walk.
+class Leaves final : public engine::Visitor<double> {
+public:
+    using View = engine::ElementView<double>;
+
+    explicit Leaves(const engine::Walk<double>& walk, const CgalOctree<Octree>& grid,
+                    const Octree& tree)
+        : walk_{&walk}, grid_{&grid}, tree_{&tree} {}
+
     std::size_t count = 0;
     std::size_t inner = 0;
     double volume = 0;
     double worst = 0;
-    const Octree* tree;
 
-    template <class State>
-    Decision inspect(const State&, const Split& split) {
+    engine::Decision inspect(const View&, const engine::Split& split) override {
         if (split.rule != nullptr) ++inner;
         return {};
     }
-    template <class State>
-    void extract(const State& s) {
+    void extract(const View& view) override {
         ++count;
-        const CGAL::Bbox_3 box = tree->bbox(s.element);
-        const Point low = s.position[0];
-        const Point high = s.position[7];
+        const CGAL::Bbox_3 box = tree_->bbox(element_in(*grid_, view));
+        std::array<Point, max_corners> x;
+        walk_->corners(view, nullptr, x.data());
+        const Point low = x[0];
+        const Point high = x[7];
         for (std::size_t d = 0; d < 3; ++d) {
             const auto axis = static_cast<int>(d);
             worst = std::max(worst, std::abs(low[d] - box.min(axis)));
@@ -163,6 +173,11 @@ struct Leaves {
         }
         volume += (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
     }
+
+private:
+    const engine::Walk<double>* walk_;
+    const CgalOctree<Octree>* grid_;
+    const Octree* tree_;
 };
 
 TEST(CgalOctree, IsANestedGridAroundASphere) {
@@ -190,9 +205,9 @@ TEST(CgalOctree, IsANestedGridAroundASphere) {
         const auto violation = check_grid(grid, field);
         EXPECT_FALSE(violation.has_value()) << violation->sentence;
 
-        const Traversal<CgalOctree<Octree>, FieldOnOctree, Needs{.positions = true}> walk(grid,
-                                                                                          field);
-        Leaves found{.tree = &tree};
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<double> walk(hierarchy, {.keys = false, .positions = true});
+        Leaves found(walk, grid, tree);
         walk.run(found);
         EXPECT_EQ(found.inner + found.count, nodes);
         EXPECT_EQ(found.count, leaves);

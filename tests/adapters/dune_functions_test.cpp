@@ -33,11 +33,12 @@ void expect_function_is_seen() {
     const auto violation = check_grid(grid, field);
     ASSERT_FALSE(violation) << violation->sentence;
 
-    const Traversal<decltype(grid), decltype(field), Needs{.keys = true}> walk(grid, field);
-    project(walk, Exact{}, [&](const auto& s) {
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<double> walk(hierarchy, {});
+    engine::project(walk, Exact{}, [&](const auto& view) {
         for (int k = 0; k < 4; ++k) {
-            EXPECT_NEAR(s.value[static_cast<std::size_t>(k)],
-                        quadratic(s.element.geometry().corner(k)), 1e-15);
+            EXPECT_NEAR(view.value[k], quadratic(element_in(grid, view).geometry().corner(k)),
+                        1e-15);
         }
     });
     if constexpr (order == 1) {

@@ -13,11 +13,13 @@
 
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/project.hpp>
 #include <nestgrid/check_grid.hpp>
+#include <walk/project.hpp>
 
 #include "closedness.hpp"
+#include "element_in.hpp"
 #include "refusal.hpp"
 #include "solver_laws.hpp"
 #include "thread_executor.hpp"
@@ -61,22 +63,22 @@ void expect_sound(const Grid& grid, double volume) {
     ASSERT_FALSE(violation) << violation->sentence;
 
     const HierarchicalIndicator indicator(grid, field);
-    using Walk = Traversal<Grid, decltype(field), Needs{.keys = true, .positions = true}>;
-    const Walk walk(grid, field, indicator.hanging());
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<double> walk(hierarchy, {.positions = true}, indicator.hanging());
     for (const double threshold : six_thresholds) {
         double sum = 0;
         double error = 0;
         std::size_t count = 0;
-        project(walk, Threshold<HierarchicalIndicator>{&indicator, threshold}, [&](const auto& s) {
+        engine::project(walk, Threshold(&indicator, threshold), [&](const auto& view) {
             std::array<Point, max_corners> x;
-            walk.positions(s, x);
-            const std::size_t corners = topology(s.shape).corners;
-            const double size = measure(s.shape, std::span(x).first(corners));
-            EXPECT_GT(Grid::dimension == 3 ? s.orientation * size : size, 0);
+            walk.corners(view, nullptr, x.data());
+            const std::size_t corners = view.corner_count();
+            const double size = measure(view.shape, std::span(x).first(corners));
+            EXPECT_GT(Grid::dimension == 3 ? view.orientation * size : size, 0);
             sum += std::abs(size);
             ++count;
             for (std::size_t k = 0; k < corners; ++k) {
-                error = std::max(error, std::abs(s.value[k] - linear(x[k])));
+                error = std::max(error, std::abs(view.value[k] - linear(x[k])));
             }
         });
         EXPECT_NEAR(sum, volume, 1e-11 * volume);

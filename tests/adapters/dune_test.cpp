@@ -58,19 +58,20 @@ TEST(DuneVertexField, ReadsWhatVectorsHold) {
     std::vector<Dune::FieldVector<double, 2>> pairs(n);
     const std::vector<double> first = at_vertices(*solver, linear);
     for (std::size_t i = 0; i < n; ++i) pairs[i] = {first[i], -3 * first[i]};
-    const auto view = solver->leafGridView();
-    const Dune::MultipleCodimMultipleGeomTypeMapper mapper(view, Dune::mcmgVertexLayout());
+    const auto leaf_view = solver->leafGridView();
+    const Dune::MultipleCodimMultipleGeomTypeMapper mapper(leaf_view, Dune::mcmgVertexLayout());
     const DuneVertexField both(grid, pairs, mapper);
     static_assert(decltype(both)::components == 2);
     EXPECT_FALSE(check_grid(grid, both));
-    const Traversal<decltype(grid), decltype(both), Needs{.keys = true}> walk(grid, both);
+    const auto hierarchy = erase(grid, both);
+    const engine::Walk<double> walk(hierarchy, {});
     std::size_t leaves = 0;
-    project(walk, Exact{}, [&](const auto& s) {
+    engine::project(walk, Exact{}, [&](const auto& view) {
         ++leaves;
         for (std::size_t k = 0; k < 4; ++k) {
-            const auto x = s.element.geometry().corner(static_cast<int>(k));
-            EXPECT_EQ(s.value[2 * k], linear(nestgrid::detail::dune_point(x)));
-            EXPECT_EQ(s.value[2 * k + 1], -3 * s.value[2 * k]);
+            const auto x = element_in(grid, view).geometry().corner(static_cast<int>(k));
+            EXPECT_EQ(view.value[2 * k], linear(nestgrid::detail::dune_point(x)));
+            EXPECT_EQ(view.value[2 * k + 1], -3 * view.value[2 * k]);
         }
     });
     EXPECT_EQ(leaves, static_cast<std::size_t>(solver->size(0)));

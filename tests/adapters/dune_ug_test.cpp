@@ -209,17 +209,17 @@ TEST(DuneUG, FollowsParametrisedBoundaries) {
         const auto violation = check_grid(grid, field);
         ASSERT_FALSE(violation) << violation->sentence;
         const HierarchicalIndicator indicator(grid, field);
-        using Walk = Traversal<decltype(grid), decltype(field), Needs{true, true}>;
-        const Walk walk(grid, field);
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<double> walk(hierarchy, {.positions = true});
         double volume = 0;
-        project(walk, Exact{}, [&](const auto& s) {
+        engine::project(walk, Exact{}, [&](const auto& view) {
             std::array<Point, max_corners> p;
-            walk.positions(s, p);
+            walk.corners(view, nullptr, p.data());
             for (int k = 0; k < 4; ++k) {
-                const auto y = s.element.geometry().corner(k);
+                const auto y = element_in(grid, view).geometry().corner(k);
                 EXPECT_EQ(p[static_cast<std::size_t>(k)], nestgrid::detail::dune_point(y));
             }
-            volume += s.orientation * measure(s.shape, std::span(p).first(4));
+            volume += view.orientation * measure(view.shape, std::span(p).first(4));
         });
         errors.push_back(4 * std::acos(-1.0) / 3 - volume);
         expect_closed_at_all_thresholds(grid, values);

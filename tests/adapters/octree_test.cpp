@@ -11,6 +11,8 @@
 #include <nestgrid/adapters/linear_octree.hpp>
 #include <nestgrid/any_grid.hpp>
 #include <nestgrid/check_grid.hpp>
+#include <nestgrid/detail/erase.hpp>
+#include <walk/walk.hpp>
 
 #include "counting_allocator.hpp"
 #include "refusal.hpp"
@@ -21,26 +23,26 @@ using namespace nestgrid_test;
 
 namespace {
 
-struct LeafSum {
+template <class Real>
+class LeafSum final : public engine::Visitor<Real> {
+public:
+    explicit LeafSum(const engine::Walk<Real>& walk) : walk_{&walk} {}
+
     std::size_t leaves = 0;
     double volume = 0;
-    template <class State>
-    Decision inspect(const State&, const Split&) {
+
+    engine::Decision inspect(const engine::ElementView<Real>&, const engine::Split&) override {
         return {};
     }
-    template <class State>
-    void extract(const State& s) {
+    void extract(const engine::ElementView<Real>& view) override {
+        std::array<Point, max_corners> x;
+        walk_->corners(view, nullptr, x.data());
         ++leaves;
-        volume += last_volume(s);
+        volume += std::abs(measure(view.shape, std::span(x).first(view.corner_count())));
     }
-    template <class State>
-    static double last_volume(const State& s) {
-        if constexpr (State::carries_positions) {
-            return std::abs(measure(s.shape, s.position));
-        } else {
-            return 0;
-        }
-    }
+
+private:
+    const engine::Walk<Real>* walk_;
 };
 
 template <int dim>
@@ -54,13 +56,16 @@ void check_lattice(const std::array<int, static_cast<std::size_t>(dim)>& samples
     EXPECT_FALSE(violation) << violation->sentence;
     std::size_t cells = 1;
     for (const int n : samples) cells *= static_cast<std::size_t>(n - 1);
-    const Traversal<LatticeOctree<dim>, decltype(field), Needs{.keys = true, .positions = true}>
-        walk(grid, field);
-    LeafSum sum;
-    const std::size_t before = allocation_count();
-    walk.run(sum);
-    EXPECT_EQ(allocation_count(), before);
-    EXPECT_EQ(sum.leaves, cells);
+    // The first walk makes some frames for each level.
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<float> walk(hierarchy, {.positions = true});
+    for (const std::size_t allocations : {std::size_t{8 * 10}, std::size_t{0}}) {
+        LeafSum sum(walk);
+        const std::size_t before = allocation_count();
+        walk.run(sum);
+        EXPECT_LE(allocation_count() - before, allocations);
+        EXPECT_EQ(sum.leaves, cells);
+    }
 }
 
 TEST(LatticeOctree, FillsTheDomainForAnyDimensions) {
@@ -180,9 +185,9 @@ void check_linear(unsigned seed) {
         grid, sample.element_nodes, sample.values);
     const auto violation = check_grid(grid, field);
     EXPECT_FALSE(violation) << violation->sentence;
-    const Traversal<LinearOctree<dim, Octant>, decltype(field), Needs{.positions = true}> walk(
-        grid, field);
-    LeafSum sum;
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<double> walk(hierarchy, {.keys = false, .positions = true});
+    LeafSum sum(walk);
     walk.run(sum);
     EXPECT_EQ(sum.leaves, grid.leaf_count());
     double whole = 0;
@@ -193,9 +198,9 @@ void check_linear(unsigned seed) {
 
     const AnyGrid<dim> any(grid);
     const AnyField<double> any_field(grid, field);
-    const Traversal<AnyGrid<dim>, AnyField<double>, Needs{.positions = true}> any_walk(any,
-                                                                                       any_field);
-    LeafSum any_sum;
+    const auto any_hierarchy = erase(any, any_field);
+    const engine::Walk<double> any_walk(any_hierarchy, {.keys = false, .positions = true});
+    LeafSum any_sum(any_walk);
     any_walk.run(any_sum);
     EXPECT_EQ(any_sum.leaves, sum.leaves);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <nestgrid/algorithms/cell_data.hpp>
+#include <nestgrid/algorithms/hanging_nodes.hpp>
 
 #include "counting_allocator.hpp"
 #include "p4est_advection.hpp"
@@ -30,17 +31,16 @@ void check_nodal_field(double threshold) {
         const HierarchicalIndicator indicator(grid, field);
         EXPECT_LE(indicator.hanging_violation(), 0);
         // Corners of trees first, then what lies below.
-        const Traversal<std::decay_t<decltype(grid)>, std::decay_t<decltype(field)>,
-                        Needs{.keys = true, .positions = true}>
-            walk(grid, field, indicator.hanging());
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<Real> walk(hierarchy, {.positions = true}, indicator.hanging());
         const bool straight = name != "ring" && name != "shell";
         int deepest = 0;
-        project(walk, Threshold<HierarchicalIndicator>{&indicator, threshold}, [&](const auto& s) {
-            deepest = std::max(deepest, s.level);
+        engine::project(walk, Threshold(&indicator, threshold), [&](const auto& view) {
+            deepest = std::max(deepest, view.level);
             std::array<Point, max_corners> x;
-            walk.positions(s, x);
-            for (std::size_t c = 0; straight && c < std::size_t(s.corner_count()); ++c) {
-                EXPECT_NEAR(s.value[c], linear(x[c]), threshold);
+            walk.corners(view, nullptr, x.data());
+            for (std::size_t c = 0; straight && c < view.corner_count(); ++c) {
+                EXPECT_NEAR(view.value[c], linear(x[c]), threshold);
             }
         });
         EXPECT_EQ(deepest == 0, straight);
@@ -83,15 +83,19 @@ TEST(P4estNodalField, SurfacesAreClosedAtEveryThreshold) {
     for_each_forest<3>(true, check);
 }
 
-struct CompareHanging {
-    const HangingNodes& hanging;
-    template <class State>
-    Decision inspect(const State&, const Split& split) {
-        EXPECT_EQ(split.constrained, hanging.mask(split.keys));
+class CompareHanging final : public engine::Visitor<float> {
+public:
+    explicit CompareHanging(const HangingNodes& hanging) : hanging_{&hanging} {}
+
+    engine::Decision inspect(const engine::ElementView<float>&,
+                             const engine::Split& split) override {
+        EXPECT_EQ(split.constrained, hanging_->mask(split.keys));
         return {};
     }
-    template <class State>
-    void extract(const State&) {}
+    void extract(const engine::ElementView<float>&) override {}
+
+private:
+    const HangingNodes* hanging_;
 };
 
 /// What face codes tell is what the library derives.
@@ -104,8 +108,9 @@ TEST(P4estBalancedGrid, KnowsWhichNodesHang) {
         const HangingNodes hanging = derive_hanging_nodes(plain);
         EXPECT_GT(hanging.size(), 0U);
         const ZeroField<Grid> zero;
-        const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
-        CompareHanging compare{hanging};
+        const auto hierarchy = erase(grid, zero);
+        const engine::Walk<float> walk(hierarchy, {});
+        CompareHanging compare(hanging);
         walk.run(compare);
 
         const std::vector<double> values =
@@ -124,25 +129,25 @@ TEST(P4estCellValues, BecomeMeansAroundNodes) {
         const std::vector<double> values = noise(grid.leaf_count(), 4);
         const CellAverages field(grid, P4estCellValues(grid, values));
         KeyTable<NodeKey, std::pair<double, int>> sums;
-        for_each_leaf(grid, [&](const auto& s, const auto& walk) {
-            EXPECT_EQ(field.leaf_value(s.element), values[grid.leaf_index(s.element)]);
+        for_each_leaf(grid, [&](const auto& view, const auto& walk) {
+            const auto& e = element_in(grid, view);
+            EXPECT_EQ(field.leaf_value(e), values[grid.leaf_index(e)]);
             std::array<NodeKey, max_corners> keys;
-            walk.keys(s, keys);
-            for (std::size_t c = 0; c < std::size_t(s.corner_count()); ++c) {
+            walk.corners(view, keys.data(), nullptr);
+            for (std::size_t c = 0; c < view.corner_count(); ++c) {
                 auto& [sum, count] = *sums.insert(keys[c], {0, 0}).first;
-                sum += field.leaf_value(s.element);
+                sum += field.leaf_value(e);
                 ++count;
             }
         });
-        const Traversal<std::decay_t<decltype(grid)>, std::decay_t<decltype(field)>,
-                        Needs{.keys = true}>
-            walk(grid, field);
-        project(walk, Exact{}, [&](const auto& s) {
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<double> walk(hierarchy, {});
+        engine::project(walk, Exact{}, [&](const auto& view) {
             std::array<NodeKey, max_corners> keys;
-            walk.keys(s, keys);
-            for (std::size_t c = 0; c < std::size_t(s.corner_count()); ++c) {
+            walk.corners(view, keys.data(), nullptr);
+            for (std::size_t c = 0; c < view.corner_count(); ++c) {
                 const auto [sum, count] = *sums.find(keys[c]);
-                EXPECT_NEAR(s.value[c], sum / count, 1e-15);
+                EXPECT_NEAR(view.value[c], sum / count, 1e-15);
             }
         });
         expect_sound(grid, field);
@@ -175,10 +180,10 @@ Forest<3> refined_at_sphere(int depth) {
     });
     forest.balance();
     const P4estGrid grid(forest.get());
-    for_each_leaf(grid, [&](const auto& s, const auto&) {
+    for_each_leaf(grid, [&](const auto& view, const auto&) {
         double half = 0;
-        *static_cast<double*>(grid.quadrant(s.element).p.user_data) =
-            distance(grid.quadrant(s.element), half);
+        const auto& quadrant = grid.quadrant(element_in(grid, view));
+        *static_cast<double*>(quadrant.p.user_data) = distance(quadrant, half);
     });
     return forest;
 }
@@ -235,13 +240,18 @@ TEST(P4estFields, LargeForestsAreReadInPlace) {
     const P4estNodalField field(grid, nodes.get(), values);
     EXPECT_LE(allocated_bytes() - before, values.size() * sizeof(double) + 4096);
 
-    const Traversal<P4estGrid<3>, decltype(field), Needs{.keys = true, .positions = true}> walk(
-        grid, field);
-    std::size_t leaves = 0;
-    const std::size_t calls = allocation_count();
-    project(walk, Exact{}, [&](const auto& s) { leaves += grid.split(s.element) == nullptr; });
-    EXPECT_EQ(allocation_count(), calls);
-    EXPECT_EQ(leaves, grid.leaf_count());
+    // A walk allocates some frames for each level, and nothing when they are there.
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<double> walk(hierarchy, {.positions = true});
+    for (const std::size_t allocations : {std::size_t{8 * 10}, std::size_t{0}}) {
+        std::size_t leaves = 0;
+        const std::size_t calls = allocation_count();
+        engine::project(walk, Exact{}, [&](const auto& view) {
+            leaves += grid.split(element_in(grid, view)) == nullptr;
+        });
+        EXPECT_LE(allocation_count() - calls, allocations);
+        EXPECT_EQ(leaves, grid.leaf_count());
+    }
 
     const HierarchicalIndicator indicator(grid, field);
     EXPECT_LE(indicator.hanging_violation(), 0);

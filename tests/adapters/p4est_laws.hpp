@@ -4,7 +4,6 @@
 // What every forest must be, whatever its connectivity, its balance and the data on it.
 #pragma once
 
-#include <nestgrid/algorithms/project.hpp>
 #include <nestgrid/any_grid.hpp>
 #include <nestgrid/check_grid.hpp>
 
@@ -95,8 +94,7 @@ void expect_sound(const Grid& grid, const Field& field, const CheckOptions& opti
 }
 
 /// In two dimensions on a surface that cannot be oriented: every vertex ends two segments.
-template <class Element>
-void expect_lines(const Surface<2, Element>& lines) {
+inline void expect_lines(const Surface<2>& lines) {
     std::vector<int> ends(lines.vertices.size(), 0);
     for (const auto& segment : lines.simplices) {
         for (const auto v : segment) ++ends[v];
@@ -127,7 +125,7 @@ void expect_closed_surfaces(const AnyGrid<dim>& grid, const AnyField<double>& fi
         const bool crossed = indicator.least() < 0 && indicator.greatest() > 0;
         EXPECT_TRUE(threshold > 0 || !crossed || !result.surface.simplices.empty());
         auto context = grid.make_context();
-        for (const auto& e : result.surface.elements) {
+        for (const auto& e : result.surface.elements.template as<ElementOf<AnyGrid<dim>>>()) {
             EXPECT_TRUE(threshold > 0 || !expected.generic || grid.split(e, context) == nullptr);
         }
     }

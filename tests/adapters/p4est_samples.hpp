@@ -15,9 +15,11 @@
 #include <p8est_geometry.h>
 
 #include <nestgrid/adapters/p4est.hpp>
-#include <nestgrid/algorithms/project.hpp>
+#include <nestgrid/key_table.hpp>
+#include <walk/project.hpp>
 
 #include "closedness.hpp"
+#include "element_in.hpp"
 
 namespace nestgrid_test {
 
@@ -106,13 +108,13 @@ private:
     Pointer forest_;
 };
 
-/// Calls function(state, walk) for every leaf, with keys and positions.
+/// Calls function(view, walk) for every leaf, with keys and positions.
 template <class Grid, class Function>
 void for_each_leaf(const Grid& grid, Function&& function) {
-    using Walk = Traversal<Grid, ZeroField<Grid>, Needs{.keys = true, .positions = true}>;
     const ZeroField<Grid> zero;
-    const Walk walk(grid, zero);
-    project(walk, Exact{}, [&](const auto& s) { function(s, walk); });
+    const auto hierarchy = erase(grid, zero);
+    const engine::Walk<float> walk(hierarchy, {.values = false, .positions = true});
+    engine::project(walk, Exact{}, [&](const auto& view) { function(view, walk); });
 }
 
 /// The nodes of all leaves: places by key, scaled into the unit cube.
@@ -122,12 +124,11 @@ struct NodePlaces {
     KeyTable<NodeKey, std::size_t> number;
 
     explicit NodePlaces(const Grid& grid) {
-        for_each_leaf(grid, [&](const auto& s, const auto& walk) {
+        for_each_leaf(grid, [&](const auto& view, const auto& walk) {
             std::array<NodeKey, max_corners> keys;
             std::array<Point, max_corners> x;
-            walk.keys(s, keys);
-            walk.positions(s, x);
-            for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
+            walk.corners(view, keys.data(), x.data());
+            for (std::size_t i = 0; i < view.corner_count(); ++i) {
                 if (number.insert(keys[i], places.size()).second) places.push_back(x[i]);
             }
         });
@@ -207,10 +208,10 @@ template <int dim, class Map, class Nodes, class Function>
 auto nodal_values(const P4estGrid<dim, Map>& grid, const Nodes& nodes, Function&& function) {
     std::vector<std::decay_t<decltype(function(Point{}))>> values(
         static_cast<std::size_t>(nodes.num_local_nodes));
-    for_each_leaf(grid, [&](const auto& s, const auto& walk) {
+    for_each_leaf(grid, [&](const auto& view, const auto& walk) {
         std::array<Point, max_corners> x;
-        walk.positions(s, x);
-        const std::size_t leaf = grid.leaf_index(s.element);
+        walk.corners(view, nullptr, x.data());
+        const std::size_t leaf = grid.leaf_index(element_in(grid, view));
         const unsigned hanging = hanging_corners(nodes, leaf);
         for (std::size_t c = 0; c < 1U << dim; ++c) {
             if ((hanging >> c & 1U) != 0) continue;

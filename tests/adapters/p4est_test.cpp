@@ -51,15 +51,16 @@ TEST(P4estGrid, LeavesFillTheTrees) {
         }
         std::size_t leaves = 0;
         double volume = 0;
-        for_each_leaf(grid, [&](const auto& s, const auto& walk) {
-            EXPECT_EQ(grid.leaf_index(s.element), leaves++);
-            const auto& quadrant = grid.quadrant(s.element);
-            EXPECT_EQ(quadrant.level, s.level);
+        for_each_leaf(grid, [&](const auto& view, const auto& walk) {
+            const auto& e = element_in(grid, view);
+            EXPECT_EQ(grid.leaf_index(e), leaves++);
+            const auto& quadrant = grid.quadrant(e);
+            EXPECT_EQ(quadrant.level, view.level);
             std::array<Point, max_corners> x;
-            walk.positions(s, x);
-            volume += measure(s.shape, x) * (dim == 3 ? s.orientation : 1);
+            walk.corners(view, nullptr, x.data());
+            volume += measure(view.shape, x) * (dim == 3 ? view.orientation : 1);
             if constexpr (std::is_same_v<std::decay_t<decltype(map)>, P4estVertices>) {
-                EXPECT_LE(norm(x[0] - anchor_of(forest, s.coarse, quadrant)), 1e-12);
+                EXPECT_LE(norm(x[0] - anchor_of(forest, view.coarse, quadrant)), 1e-12);
             }
         });
         EXPECT_EQ(leaves, grid.leaf_count());
@@ -117,12 +118,11 @@ void check_touching(const std::vector<std::array<int, 3>>& trees) {
     const P4estGrid grid(static_cast<const typename P4estTypes<dim>::Forest*>(forest.get()));
     std::map<Point, NodeKey> key_of;
     KeyTable<NodeKey, Point> place_of;
-    for_each_leaf(grid, [&](const auto& s, const auto& walk) {
+    for_each_leaf(grid, [&](const auto& view, const auto& walk) {
         std::array<NodeKey, max_corners> keys;
         std::array<Point, max_corners> x;
-        walk.keys(s, keys);
-        walk.positions(s, x);
-        for (std::size_t c = 0; c < std::size_t(s.corner_count()); ++c) {
+        walk.corners(view, keys.data(), x.data());
+        for (std::size_t c = 0; c < view.corner_count(); ++c) {
             EXPECT_EQ(key_of.try_emplace(x[c], keys[c]).first->second, keys[c]);
             EXPECT_EQ(*place_of.insert(keys[c], x[c]).first, x[c]);
         }
@@ -156,10 +156,10 @@ TEST(P4estGrid, KeysAgreeForAllTurnsOfTrees) {
                     const P4estGrid grid(forest.get());
                     ++sound;
                     KeyTable<NodeKey, p4est_locidx_t> number_of;
-                    for_each_leaf(grid, [&](const auto& s, const auto& walk) {
+                    for_each_leaf(grid, [&](const auto& view, const auto& walk) {
                         std::array<NodeKey, max_corners> keys;
-                        walk.keys(s, keys);
-                        const std::size_t leaf = grid.leaf_index(s.element);
+                        walk.corners(view, keys.data(), nullptr);
+                        const std::size_t leaf = grid.leaf_index(element_in(grid, view));
                         for (std::size_t c = 0; nodes->face_code[leaf] == 0 && c < 8; ++c) {
                             const p4est_locidx_t number = nodes->element_nodes[8 * leaf + c];
                             EXPECT_EQ(*number_of.insert(keys[c], number).first, number);

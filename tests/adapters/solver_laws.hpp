@@ -6,8 +6,9 @@
 
 #include <bit>
 
-#include <nestgrid/algorithms/project.hpp>
 #include <nestgrid/check_grid.hpp>
+#include <nestgrid/key_table.hpp>
+#include <walk/project.hpp>
 
 #include "closedness.hpp"
 
@@ -24,17 +25,16 @@ void expect_sound_grid(const Grid& grid, const Field& field, const CheckOptions&
 template <class Grid, class Field>
 void expect_single_valued(const Grid& grid, const Field& field,
                           const HierarchicalIndicator& indicator, double threshold) {
-    using Walk = Traversal<Grid, Field, Needs{.keys = true, .positions = true}>;
-    const Walk walk(grid, field, indicator.hanging());
     using Real = typename Field::value_type;
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<Real> walk(hierarchy, {.positions = true}, indicator.hanging());
     KeyTable<NodeKey, std::pair<Real, Point>> seen;
-    project(walk, Threshold<HierarchicalIndicator>{&indicator, threshold}, [&](const auto& s) {
+    engine::project(walk, Threshold(&indicator, threshold), [&](const auto& view) {
         std::array<NodeKey, max_corners> keys;
         std::array<Point, max_corners> x;
-        walk.keys(s, keys);
-        walk.positions(s, x);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(s.corner_count()); ++k) {
-            const std::pair here{s.value[k * Walk::State::components], x[k]};
+        walk.corners(view, keys.data(), x.data());
+        for (std::size_t k = 0; k < view.corner_count(); ++k) {
+            const std::pair here{view.value[k * walk.components()], x[k]};
             const auto [at, is_new] = seen.insert(keys[k], here);
             EXPECT_EQ(*at, here);
         }
@@ -100,8 +100,8 @@ inline constexpr Plane slanted_line{{1, -2, 0}, -0.9 + 1 / 7.7};
 template <int dim>
 constexpr const Plane& slanted = dim == 2 ? slanted_line : slanted_plane;
 
-inline double size_of(const Surface<3, auto>& surface) { return surface_report(surface).area; }
-inline double size_of(const Surface<2, auto>& lines) {
+inline double size_of(const Surface<3>& surface) { return surface_report(surface).area; }
+inline double size_of(const Surface<2>& lines) {
     double length = 0;
     for (const auto& [a, b] : lines.simplices)
         length += norm(lines.vertices[b] - lines.vertices[a]);

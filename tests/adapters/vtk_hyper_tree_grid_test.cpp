@@ -11,7 +11,10 @@
 
 #include <nestgrid/adapters/vtk_hyper_tree_grid.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
+#include <walk/for_each_element.hpp>
+#include <walk/project.hpp>
 
+#include "element_in.hpp"
 #include "refusal.hpp"
 #include "solver_laws.hpp"
 
@@ -67,17 +70,16 @@ template <int dim>
 std::vector<double> at_centres(const HyperTreeGrid<dim>& grid, std::size_t cells,
                                const std::function<double(const Point&)>& f) {
     std::vector<double> values(cells, 0.0);
-    using Zero = ZeroField<HyperTreeGrid<dim>>;
-    const Zero zero;
-    const Traversal<HyperTreeGrid<dim>, Zero, Needs{.keys = true, .positions = true}> walk(grid,
-                                                                                           zero);
-    project(walk, Exact{}, [&](const auto& s) {
+    const ZeroField<HyperTreeGrid<dim>> zero;
+    const auto hierarchy = erase(grid, zero);
+    const engine::Walk<float> walk(hierarchy, {.positions = true});
+    engine::project(walk, Exact{}, [&](const auto& view) {
         std::array<Point, max_corners> x;
-        walk.positions(s, x);
+        walk.corners(view, nullptr, x.data());
         Point centre{0, 0, 0};
-        const auto n = static_cast<std::size_t>(s.corner_count());
+        const std::size_t n = view.corner_count();
         for (std::size_t k = 0; k < n; ++k) centre = centre + (1.0 / double(n)) * x[k];
-        values.at(static_cast<std::size_t>(grid.index(s.element))) = f(centre);
+        values.at(static_cast<std::size_t>(grid.index(element_in(grid, view)))) = f(centre);
     });
     return values;
 }
@@ -162,11 +164,11 @@ TEST(HyperTreeGrid, SurfacesCarryTheDataOfLeaves) {
         return values[static_cast<std::size_t>(grid.index(e))];
     });
     const HierarchicalIndicator indicator(grid, field);
-    const Surface<3, HyperTreeGrid<3>::Element> surface =
-        isosurface(grid, field, 0.7, Exact{}, indicator).surface;
+    const Surface<3> surface = isosurface(grid, field, 0.7, Exact{}, indicator).surface;
+    const auto elements = surface.elements.as<HyperTreeGrid<3>::Element>();
     ASSERT_GT(surface.simplices.size(), 500U);
     for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        const auto& e = surface.elements[surface.element_of[t]];
+        const auto& e = elements[surface.element_of[t]];
         ASSERT_EQ(grid.split(e), nullptr);
         EXPECT_EQ(field.leaf_value(e), values[static_cast<std::size_t>(grid.index(e))]);
         EXPECT_NEAR(field.leaf_value(e), 0.7, 0.6);
@@ -194,14 +196,14 @@ void expect_laws_beside_a_mask(vtkHyperTreeGrid& trees, unsigned seed) {
     expect_sound_grid(grid, field);
 
     std::vector<std::array<Point, 2>> masked;  // boxes of leaves: first and last corner
-    using Zero = ZeroField<HyperTreeGrid<dim>>;
-    const Zero zero;
-    const Traversal<HyperTreeGrid<dim>, Zero, Needs{.keys = true, .positions = true}> walk(grid,
-                                                                                           zero);
-    for_each_element(walk, [&](const auto& s, const Split& split) {
-        if (split.rule != nullptr || grid.hidden(s.element) == Hidden::not_at_all) return;
+    const ZeroField<HyperTreeGrid<dim>> zero;
+    const auto hierarchy = erase(grid, zero);
+    const engine::Walk<float> walk(hierarchy, {.positions = true});
+    engine::for_each_element(walk, false, [&](const auto& view, const engine::Split& split) {
+        if (split.rule != nullptr) return;
+        if (grid.hidden(element_in(grid, view)) == Hidden::not_at_all) return;
         std::array<Point, max_corners> x;
-        walk.positions(s, x);
+        walk.corners(view, nullptr, x.data());
         masked.push_back({x[0], x[(std::size_t{1} << dim) - 1]});
     });
     ASSERT_GT(masked.size(), 100U);
@@ -221,7 +223,9 @@ void expect_laws_beside_a_mask(vtkHyperTreeGrid& trees, unsigned seed) {
             isosurface(grid, field, 0.0, indicator, {.threshold = threshold, .verify = true})
                 .surface;
         EXPECT_GT(surface.simplices.size(), 20U);
-        for (const Element& e : surface.elements) EXPECT_EQ(grid.hidden(e), Hidden::not_at_all);
+        for (const Element& e : surface.elements.template as<Element>()) {
+            EXPECT_EQ(grid.hidden(e), Hidden::not_at_all);
+        }
         // Sides of simplices, each in one direction; those on the boundary are told.
         using Side = std::array<std::uint32_t, dim - 1>;
         std::map<Side, int> sides;

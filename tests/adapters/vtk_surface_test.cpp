@@ -63,7 +63,7 @@ TEST(SharedPolyData, LiesInTheArraysOfTheSurface) {
             EXPECT_EQ(corner[i], surface.simplices[static_cast<std::size_t>(t)][i]);
         }
     }
-    Surface<3, int> empty;
+    Surface<3> empty;
     EXPECT_EQ(share_poly_data(empty)->GetNumberOfPolys(), 0);
 }
 

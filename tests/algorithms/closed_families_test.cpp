@@ -6,6 +6,7 @@
 
 #include <nestgrid/adapters/lattice.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
+#include <walk/walk.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"
@@ -15,30 +16,38 @@ using namespace nestgrid_test;
 
 namespace {
 
+using namespace engine;
+
 const std::vector<double> epsilons(six_thresholds.begin(), six_thresholds.end());
 
 /// Inspects every element that is met, leaves too, for the level 0.
-struct Inspection {
-    const HierarchicalIndicator* indicator;
-    double threshold;
-    TraversalCounts counts{};
+class Inspection final : public Visitor<double> {
+public:
+    using View = ElementView<double>;
 
-    template <class State>
-    Decision inspect(const State& s, const Split& split) {
-        const auto values = std::span(s.value).first(static_cast<std::size_t>(s.corner_count()));
+    Inspection(const HierarchicalIndicator& indicator, double threshold)
+        : indicator_{&indicator}, criterion_{&indicator, threshold} {}
+
+    Decision inspect(const View& view, const Split& split) override {
+        const std::span values(view.value, view.corner_count());
         const double bound =
-            split.rule == nullptr ? 0.0 : double{indicator->bound(*split.rule, split.keys)};
+            split.rule == nullptr ? 0.0 : indicator_->bound(*split.rule, split.keys);
         ++counts.calls;
         if (-std::ranges::max(values) > bound) return {Visit::skip};
         if (std::ranges::min(values) - std::nextafter(0.0, -1.0) > bound) return {Visit::skip};
         ++counts.visited;
         if (split.rule == nullptr) return {Visit::stop};
-        const NodeMask stops = Threshold<HierarchicalIndicator>{
-            indicator, threshold}({*split.rule, split.keys, s.level + 1, split.outside});
+        const NodeMask stops =
+            criterion_.holds({*split.rule, split.keys, view.level + 1, split.outside});
         return {stops == split.rule->all() ? Visit::stop : Visit::descend, stops};
     }
-    template <class State>
-    void extract(const State&) {}
+    void extract(const View&) override {}
+
+    TraversalCounts counts;
+
+private:
+    const HierarchicalIndicator* indicator_;
+    Threshold criterion_;
 };
 
 /// Leaves are not inspected one by one, but counted as if they were.
@@ -46,14 +55,17 @@ template <class Grid, class Field>
 void expect_counts_of_inspection(const TraversalCounts& counts, const Grid& grid,
                                  const Field& field, const HierarchicalIndicator& indicator,
                                  double threshold) {
-    Inspection inspection{&indicator, threshold};
-    Traversal<Grid, Field, Needs{.keys = true}>(grid, field, indicator.hanging()).run(inspection);
+    Inspection inspection(indicator, threshold);
+    const auto hierarchy = erase(grid, field);
+    Walk<double>(hierarchy, {.keys = true}, indicator.hanging()).run(inspection);
     EXPECT_EQ(counts.calls, inspection.counts.calls);
     EXPECT_EQ(counts.visited, inspection.counts.visited);
 }
 
 /// Below an element no value lies further from those at its corners than the bound.
-struct Bounded {
+template <class Real>
+struct Bounded final : Visitor<Real> {
+    using View = ElementView<Real>;
     struct Above {
         NodeKey path;
         double least;
@@ -61,21 +73,21 @@ struct Bounded {
         double bound;
     };
     const HierarchicalIndicator* indicator;
-    std::vector<Above> above{};
+    std::vector<Above> above;
     std::size_t split = 0;
     std::size_t compared = 0;
 
-    template <class State>
-    static bool lies_below(const State& s, const Above& element) {
-        for (const State* at = s.father; at != nullptr; at = at->father) {
+    explicit Bounded(const HierarchicalIndicator& by) : indicator{&by} {}
+
+    static bool lies_below(const View& view, const Above& element) {
+        for (const View* at = view.father; at != nullptr; at = at->father) {
             if (at->path == element.path) return true;
         }
         return false;
     }
-    template <class State>
-    Decision inspect(const State& s, const Split& of) {
-        while (!above.empty() && !lies_below(s, above.back())) above.pop_back();
-        const auto values = std::span(s.value).first(static_cast<std::size_t>(s.corner_count()));
+    Decision inspect(const View& view, const Split& of) override {
+        while (!above.empty() && !lies_below(view, above.back())) above.pop_back();
+        const std::span values(view.value, view.corner_count());
         const auto [least, greatest] = std::ranges::minmax(values);
         for (const Above& element : above) {
             EXPECT_LE(greatest - element.greatest, element.bound);
@@ -83,22 +95,22 @@ struct Bounded {
             ++compared;
         }
         if (of.rule != nullptr) {
-            const double bound{indicator->bound(*of.rule, of.keys)};
-            above.push_back({s.path, least, greatest, bound});
+            above.push_back({view.path, least, greatest, indicator->bound(*of.rule, of.keys)});
             ++split;
         }
         return {};
     }
-    template <class State>
-    void extract(const State&) {}
+    void extract(const View&) override {}
 };
 
 template <class Grid, class Field>
 void expect_bounds_hold(const Grid& grid, const Field& field,
                         const HierarchicalIndicator& indicator) {
-    Bounded bounded{&indicator};
-    constexpr Needs all{.keys = true, .positions = true, .closed = true};  // for the paths
-    Traversal<Grid, Field, all>(grid, field, indicator.hanging()).run(bounded);
+    using Real = typename Field::value_type;
+    Bounded<Real> bounded(indicator);
+    const auto hierarchy = erase(grid, field);
+    const Needs all{.keys = true, .positions = true, .closed = true};  // for the paths
+    Walk<Real>(hierarchy, all, indicator.hanging()).run(bounded);
     EXPECT_EQ(bounded.compared > 0, bounded.split > 0);
 }
 

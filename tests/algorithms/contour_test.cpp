@@ -18,6 +18,7 @@
 #include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
+#include <nestgrid/shape_functions.hpp>
 
 using namespace nestgrid;
 
@@ -262,13 +263,20 @@ struct OneCellField {
 };
 
 /// Says that the level set may be anywhere.
-struct Everywhere {
-    double offset_bound(NodeKey) const { return 0; }
-    double bound(std::span<const NodeKey>) const { return std::numeric_limits<double>::infinity(); }
-    const HangingNodes* hanging() const { return nullptr; }
-    std::uint64_t epoch() const { return epoch_; }
-    bool stops_conform() const { return true; }
-    std::uint64_t epoch_ = 0;
+class Everywhere final : public Bounds {
+public:
+    explicit Everywhere(std::uint64_t epoch) : epoch_{epoch} {}
+
+    double offset_bound(NodeKey) const override { return 0; }
+    double bound(const Rule&, std::span<const NodeKey>) const override {
+        return std::numeric_limits<double>::infinity();
+    }
+    const HangingNodes* hanging() const override { return nullptr; }
+    std::uint64_t epoch() const override { return epoch_; }
+    bool stops_conform() const override { return true; }
+
+private:
+    std::uint64_t epoch_;
 };
 
 /// The reference shape cut into tetrahedra.

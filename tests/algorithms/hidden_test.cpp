@@ -4,10 +4,11 @@
 // Hidden elements: nothing is drawn in them, and beside them what would be drawn without.
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/project.hpp>
 #include <nestgrid/any_grid.hpp>
 #include <nestgrid/check_grid.hpp>
+#include <walk/project.hpp>
 
 #include "closedness.hpp"
 #include "forest.hpp"
@@ -58,11 +59,12 @@ private:
 };
 
 /// The simplices of elements that are shown, by the positions of their corners.
-template <int dim, class Surface>
-std::vector<Point> shown(const HidingForest<dim>& grid, const Surface& surface) {
+template <int dim>
+std::vector<Point> shown(const HidingForest<dim>& grid, const Surface<dim>& surface) {
     std::vector<Point> corners;
+    const auto elements = surface.elements.template as<typename HidingForest<dim>::Element>();
     for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        if (grid.hidden(surface.elements[surface.element_of[t]]) != Hidden::not_at_all) continue;
+        if (grid.hidden(elements[surface.element_of[t]]) != Hidden::not_at_all) continue;
         for (const auto v : surface.simplices[t]) corners.push_back(surface.vertices[v]);
     }
     return corners;
@@ -140,9 +142,10 @@ TEST(Hidden, LeavesConstrainNoNode) {
         found = true;
         EXPECT_EQ(derive_hanging_nodes(grid).size(), 0U);
         const ForestField<2> field(grid, [](const Point& x) { return x[0]; });
-        const Traversal<HidingForest<2>, ForestField<2>, Needs{.keys = true}> walk(grid, field);
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<double> walk(hierarchy, {.keys = true});
         std::size_t leaves = 0;
-        project(walk, Exact{}, [&](const auto&) { ++leaves; });
+        engine::project(walk, Exact{}, [&](const auto&) { ++leaves; });
         EXPECT_EQ(leaves, 4U);
     }
     EXPECT_TRUE(found);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <indicators/packed_entries.hpp>
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/any_grid.hpp>
 #include <nestgrid/check_grid.hpp>
@@ -64,7 +65,7 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
         const auto draw = [&](const auto& grid, const auto& field, const auto& criterion) {
             return isosurfaces(grid, field, isovalues, criterion, indicator);
         };
-        const Threshold<HierarchicalIndicator> by_offset{&indicator, threshold * range};
+        const Threshold by_offset{&indicator, threshold * range};
         const auto check = [&](const auto& criterion) {
             const auto a = draw(known, known_field, criterion);
             const auto b = draw(unknown, unknown_field, criterion);
@@ -226,7 +227,7 @@ void expect_same_walks(const Samples& n, const SampledField& data) {
     const HierarchicalIndicator indicator(known, known_field);
     for (const double threshold : {0.0, 0.003, 0.02, 0.1}) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
-        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold * data.range};
+        const Threshold criterion{&indicator, threshold * data.range};
         const auto a = isosurface(known, known_field, data.isovalue, criterion, indicator);
         const auto b = isosurface(unknown, unknown_field, data.isovalue, criterion, indicator);
         EXPECT_GT(a.surface.simplices.size(), 0U);
@@ -262,7 +263,7 @@ struct SmallField {
 
     template <class Sink>
     void extract(double threshold, Sink sink) const {
-        const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+        const Threshold criterion{&indicator, threshold};
         std::vector<Sink> sinks;
         sinks.push_back(std::move(sink));
         extract_isosurfaces(grid, field, std::span<const double>(&data.isovalue, 1),
@@ -281,7 +282,7 @@ TEST(KnownBisections, StreamTheSameTriangles) {
     for (const double threshold : c.thresholds) {
         std::vector<std::array<Point, 3>> stream;
         const auto put = [&](const std::array<Point, 3>& x) { stream.push_back(x); };
-        c.extract(threshold, SimplexStream<3, decltype(put)>(put));
+        c.extract(threshold, SimplexStream<3>(put));
         const auto surface = c.surface(threshold, true);
         ASSERT_EQ(stream.size(), surface.simplices.size());
         EXPECT_GT(stream.size(), 100U);
@@ -311,19 +312,26 @@ TEST(KnownBisections, FillASoupWithTheSameTriangles) {
 }
 
 /// Bounds that are too small, near the leaves or here and there, which hides some of what is there.
-struct TooSmall {
-    const HierarchicalIndicator& of;
-    float least;
-    unsigned one_in;  // or 0: nowhere else
-    double offset_bound(NodeKey node) const { return of.stop(node); }
-    float bound(std::span<const NodeKey> nodes) const {
-        const float bound = of.bound(nodes);
-        const bool hides = one_in != 0 && (nodes[0] * 0x9e3779b97f4a7c15ULL >> 40U) % one_in == 0;
-        return bound < least || hides ? 0 : bound;
+class TooSmall final : public Bounds {
+public:
+    /// \param one_in in how many nodes there is one whose bound is 0; or 0: nowhere else
+    TooSmall(const HierarchicalIndicator& of, double least, unsigned one_in)
+        : of_{&of}, least_{least}, one_in_{one_in} {}
+
+    double offset_bound(NodeKey node) const override { return of_->stop(node); }
+    double bound(const Rule& rule, std::span<const NodeKey> nodes) const override {
+        const double bound = of_->bound(rule, nodes);
+        const bool hides = one_in_ != 0 && (nodes[0] * 0x9e3779b97f4a7c15ULL >> 40U) % one_in_ == 0;
+        return bound < least_ || hides ? 0 : bound;
     }
-    const HangingNodes* hanging() const { return of.hanging(); }
-    std::uint64_t epoch() const { return of.epoch(); }
-    bool stops_conform() const { return true; }
+    const HangingNodes* hanging() const override { return of_->hanging(); }
+    std::uint64_t epoch() const override { return of_->epoch(); }
+    bool stops_conform() const override { return true; }
+
+private:
+    const HierarchicalIndicator* of_;
+    double least_;
+    unsigned one_in_;
 };
 
 TEST(KnownBisections, DrawNoMoreThanIsEntered) {
@@ -336,13 +344,11 @@ TEST(KnownBisections, DrawNoMoreThanIsEntered) {
         const LatticeField known_field(known, std::span<const float>(data.values));
         const LatticeField unknown_field(unknown, std::span<const float>(data.values));
         const HierarchicalIndicator indicator(known, known_field);
-        const std::array all{TooSmall{indicator, static_cast<float>(data.range), 0},
-                             TooSmall{indicator, 0, 8}};
+        const std::array all{TooSmall{indicator, data.range, 0}, TooSmall{indicator, 0, 8}};
         for (std::size_t i = 0; i < all.size(); ++i) {
             const TooSmall& bounds = all[i];
             for (const double threshold : {0.0, 0.003, 0.02}) {
-                const Threshold<HierarchicalIndicator> criterion{&indicator,
-                                                                 threshold * data.range};
+                const Threshold criterion{&indicator, threshold * data.range};
                 const auto draw = [&](const auto& grid, const auto& field, const auto& by) {
                     return isosurface(grid, field, data.isovalue, criterion, by);
                 };
@@ -406,21 +412,25 @@ TEST(KnownBisections, AskForEightNodesWhatTheyAskForOne) {
     const double least = std::numeric_limits<double>::denorm_min();
     for (const double epsilon : {exact, std::nextafter(exact, 0), std::nextafter(exact, 1), 0.0,
                                  least, -least, 1e300, std::nan("")}) {
-        const Threshold<HierarchicalIndicator> criterion{&indicator, epsilon};
+        const Threshold criterion{&indicator, epsilon};
+        const auto packed = Pack<float>::all(float_below(epsilon));
         for (NodeKey first = 0; first + pack <= grid.node_count(); ++first) {
             std::array<NodeKey, pack> nodes;
             for (std::size_t i = 0; i < pack; ++i) nodes[i] = first + i;
             for (const HierarchicalIndicator* by : {&indicator, &another}) {
-                const auto known = by->look_up(nodes.data());
-                const auto holds = criterion.packed().holds(nodes.data(), *by, known).numbers();
+                const auto known = engine::look_up(by->entries(), nodes.data());
+                const auto holds = at_most(known.stop(), packed).numbers();
                 for (std::size_t i = 0; i < pack; ++i) {
                     const std::span<const NodeKey> one(&nodes[i], 1);
-                    const NodeMask mask = criterion({grid.rule(0), one, 1, 0});
+                    const NodeMask mask = criterion.holds({grid.rule(0), one, 1, 0});
                     ASSERT_EQ(holds[i], mask != 0 ? ~0U : 0U) << epsilon;
                     ASSERT_EQ(known.bound().numbers()[i], by->bound(nodes[i]));
                 }
             }
         }
+        // An indicator that is not the one of the bounds is asked for one node at a time.
+        expect_same(isosurface(grid, field, 0.37, criterion, indicator),
+                    isosurface(grid, field, 0.37, criterion, another));
     }
 }
 

@@ -78,19 +78,21 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, ClosedSurface,
                          [](const auto& test) { return dimensions_name(test.param); });
 
 /// The indicator with its stopping number in the place of the bound.
-struct StopAsBound {
-    static constexpr bool saturated = true;
-    const HierarchicalIndicator& good;
+class StopAsBound final : public Bounds {
+public:
+    explicit StopAsBound(const HierarchicalIndicator& good) : good_{&good} {}
 
-    double stop(NodeKey node) const { return good.stop(node); }
-    double offset_bound(NodeKey node) const { return good.offset_bound(node); }
-    double bound(std::span<const NodeKey> nodes) const {
+    double offset_bound(NodeKey node) const override { return good_->offset_bound(node); }
+    double bound(const Rule&, std::span<const NodeKey> nodes) const override {
         double largest = 0;
-        for (const NodeKey node : nodes) largest = std::max<double>(largest, good.stop(node));
+        for (const NodeKey node : nodes) largest = std::max(largest, good_->stop(node));
         return largest;
     }
-    const HangingNodes* hanging() const { return good.hanging(); }
-    std::uint64_t epoch() const { return good.epoch(); }
+    const HangingNodes* hanging() const override { return good_->hanging(); }
+    std::uint64_t epoch() const override { return good_->epoch(); }
+
+private:
+    const HierarchicalIndicator* good_;
 };
 
 TEST(Bound, StoppingNumberInItsPlaceOpensHolesInNoise) {
@@ -101,19 +103,19 @@ TEST(Bound, StoppingNumberInItsPlaceOpensHolesInNoise) {
     const LatticeField field(grid, std::span<const float>(data.values));
     const HierarchicalIndicator indicator(grid, field);
     const auto sound = isosurface(grid, field, data.isovalue, indicator, {});
-    const auto holed = isosurface(grid, field, data.isovalue, StopAsBound{indicator}, {});
+    const auto holed = isosurface(grid, field, data.isovalue, Threshold{&indicator, 0},
+                                  StopAsBound{indicator}, {});
     EXPECT_EQ(surface_report(sound.surface).open_edges, 0U);
     EXPECT_LT(holed.surface.simplices.size(), sound.surface.simplices.size());
     EXPECT_GT(surface_report(holed.surface).open_edges, 0U);
 }
 
 /// The offsets before saturation: each node's own.
-class Unsaturated {
+class OwnOffsets final : public Indicator, public Bounds {
 public:
-    static constexpr bool saturated = false;
-    Unsaturated(const LatticeBisection<3>& grid,
-                const LatticeField<LatticeBisection<3>, float>& field,
-                const HierarchicalIndicator& good)
+    OwnOffsets(const LatticeBisection<3>& grid,
+               const LatticeField<LatticeBisection<3>, float>& field,
+               const HierarchicalIndicator& good)
         : good_{&good}, offset_(grid.node_count(), 0.0) {
         grid.for_each_star_row([&](const StarRow& row) {
             for (std::size_t i = 0; !row.parents.empty() && i < row.count; ++i) {
@@ -128,11 +130,14 @@ public:
             }
         });
     }
-    double stop(NodeKey node) const { return offset_[static_cast<std::size_t>(node)]; }
-    double offset_bound(NodeKey node) const { return stop(node); }
-    double bound(std::span<const NodeKey> nodes) const { return good_->bound(nodes); }
-    const HangingNodes* hanging() const { return nullptr; }
-    std::uint64_t epoch() const { return 0; }
+    double stop(NodeKey node) const override { return offset_[static_cast<std::size_t>(node)]; }
+    bool saturated() const override { return false; }
+    double offset_bound(NodeKey node) const override { return stop(node); }
+    double bound(const Rule& rule, std::span<const NodeKey> nodes) const override {
+        return good_->bound(rule, nodes);
+    }
+    const HangingNodes* hanging() const override { return nullptr; }
+    std::uint64_t epoch() const override { return 0; }
 
 private:
     const HierarchicalIndicator* good_;
@@ -153,10 +158,12 @@ TEST(Saturation, WithoutItAGyroidIsLostWhole) {
                             0.5, 3};
     const LatticeField field(grid, std::span<const float>(data.values));
     const HierarchicalIndicator indicator(grid, field);
-    const Unsaturated unsaturated(grid, field, indicator);
+    const OwnOffsets offsets(grid, field, indicator);
     const double threshold = 1e-4;  // the centre of the cube is interpolated to rounding
     const auto sound = isosurface(grid, field, data.isovalue, indicator, {.threshold = threshold});
-    const auto lost = isosurface(grid, field, data.isovalue, unsaturated, {.threshold = threshold});
+    const Threshold unsaturated{&offsets, threshold};
+    const auto lost = isosurface(grid, field, data.isovalue, Unsaturated{unsaturated}, offsets);
+    EXPECT_THROW(isosurface(grid, field, data.isovalue, unsaturated, offsets), InvalidInput);
     EXPECT_GT(sound.surface.simplices.size(), 10000U);
     EXPECT_EQ(lost.surface.simplices.size(), 0U);
 }

@@ -298,8 +298,9 @@ TEST(Isosurface, CarriesTheElementOfEveryTriangle) {
     const auto& surface = result.surface;
     ASSERT_EQ(surface.element_of.size(), surface.simplices.size());
     EXPECT_EQ(surface.elements.size(), result.counts.extracted);
+    const auto elements = surface.elements.as<LatticeBisection<3>::Element>();
     for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        const auto& element = surface.elements[surface.element_of[t]];
+        const auto& element = elements[surface.element_of[t]];
         std::array<Point, 4> x;
         grid.corner_positions(element, x);
         for (const std::uint32_t v : surface.simplices[t]) {

@@ -55,15 +55,15 @@ TYPED_TEST(SeriesOn, StreamsTrianglesWithoutHeap) {
             const std::size_t before = allocated_bytes();
             std::size_t most = before;
             std::size_t simplices = 0;
-            const auto see = [&](const auto&) {
+            constexpr int dim = TypeParam::dimension;
+            const auto see = [&](const typename SimplexStream<dim>::Simplex&) {
                 ++simplices;
                 most = std::max(most, allocated_bytes());
             };
-            using Sink = SimplexStream<TypeParam::dimension, decltype(see)>;
             const double isovalue = c.data.isovalue;
-            const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+            const Threshold criterion{&indicator, threshold};
             extract_isosurfaces(c.grid, c.field, std::span<const double>(&isovalue, 1),
-                                std::vector<Sink>{Sink(see)}, criterion, indicator);
+                                std::vector{SimplexStream<dim>(see)}, criterion, indicator);
             EXPECT_GT(simplices, 10U);
             EXPECT_LT(most - before, limit) << "threshold " << threshold;
         }

@@ -9,6 +9,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/any_grid.hpp>
 
+#include "count_leaves.hpp"
 #include "sample_grids.hpp"
 
 using namespace nestgrid;
@@ -50,10 +51,8 @@ void expect_same_through_any(const Grid& grid) {
     const NodeField<Grid, double> field(grid, values);
     const AnyGrid<Grid::dimension> any(grid);
     const AnyField<double> any_field(grid, field);
-    CountLeaves count;
-    const Traversal<AnyGrid<Grid::dimension>, AnyField<double>> walk(any, any_field);
-    walk.run(count);
-    EXPECT_EQ(count.leaves, grid.leaf_count());
+    const auto hierarchy = erase(any, any_field);
+    EXPECT_EQ(count_leaves(engine::Walk<double>(hierarchy, {})), grid.leaf_count());
 }
 
 TEST(StoredSurfaces, WalkTheSameThroughAnyGrid) {

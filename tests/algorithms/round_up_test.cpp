@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <indicators/packed_round_up.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 
 using namespace nestgrid;
@@ -46,6 +47,21 @@ TEST(RoundUp, GivesTheLeastNumberNotBelow) {
         rounded += static_cast<double>(distance_above(a, b)) != distance;
     }
     EXPECT_GT(rounded, 10000);
+}
+
+TEST(RoundDown, GivesTheGreatestBfloat16NotAbove) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::mt19937 random(3);
+    for (int round = 0; round < 100000; ++round) {
+        const double x = std::abs(double{number(random)}) * (1 + 1e-9);
+        const std::uint16_t below = bfloat16_below(x);
+        EXPECT_LE(static_cast<double>(bfloat16_value(below)), x);
+        EXPECT_GT(static_cast<double>(bfloat16_value(static_cast<std::uint16_t>(below + 1))), x);
+    }
+    EXPECT_EQ(bfloat16_below(0.0), 0);
+    EXPECT_EQ(bfloat16_below(-0.0), 0);
+    EXPECT_EQ(bfloat16_below(infinity), bfloat16_infinity);
+    EXPECT_EQ(bfloat16_below(1e300), bfloat16_infinity - 1);
 }
 
 TEST(RoundUp, GivesTheSameOfSeveralAtOnce) {

@@ -8,6 +8,9 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <walk/for_each_element.hpp>
+#include <walk/frontier.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"
@@ -23,7 +26,7 @@ template <class Grid, class Field>
 void expect_same_from_threads(const Grid& grid, const Field& field,
                               const std::vector<double>& isovalues, double threshold) {
     const HierarchicalIndicator indicator(grid, field);
-    const Threshold<HierarchicalIndicator> criterion{&indicator, threshold};
+    const Threshold criterion{&indicator, threshold};
     const IsosurfaceOptions everything{
         .normals = Grid::dimension == 3, .cap = true, .reference = true, .verify = true};
     for (const IsosurfaceOptions& options : {everything, IsosurfaceOptions{}}) {
@@ -34,7 +37,7 @@ void expect_same_from_threads(const Grid& grid, const Field& field,
             ASSERT_EQ(together.size(), alone.size());
             for (std::size_t i = 0; i < alone.size(); ++i) expect_same(alone[i], together[i]);
         }
-        const auto triangles = [&](const auto& executor) {
+        const auto triangles = [&](const Executor& executor) {
             const auto at = [&](double) { return criterion; };
             return find_threshold(grid, field, isovalues[0], at, indicator, 1000000, options,
                                   executor)
@@ -71,9 +74,10 @@ void expect_same_indicators(const Grid& grid, const Field& field, const Hierarch
     EXPECT_EQ(one.finest_level(), other.finest_level());
     EXPECT_EQ(one.stops_conform(), other.stops_conform());
     EXPECT_EQ(one.hanging_violation(), other.hanging_violation());
-    const Traversal<Grid, Field, Needs{.keys = true}> walk(grid, field, one.hanging());
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<typename Field::value_type> walk(hierarchy, {.keys = true}, one.hanging());
     std::size_t differ = 0;
-    for_each_element(walk, [&](const auto&, const Split& split) {
+    engine::for_each_element(walk, false, [&](const auto&, const engine::Split& split) {
         for (const NodeKey key : split.keys) {
             differ += one.stop(key) != other.stop(key) || one.bound(key) != other.bound(key);
         }
@@ -154,14 +158,12 @@ struct SphereIn {
 
 TEST(ThreadsOnStreams, HandOutTheSameTrianglesInTheSameOrder) {
     const SphereIn s;
-    const auto triangles = [&](const auto& executor) {
+    const auto triangles = [&](const Executor& executor) {
         std::vector<std::array<Point, 3>> all;
         const auto keep = [&](const std::array<Point, 3>& x) { all.push_back(x); };
-        using Sink = SimplexStream<3, decltype(keep)>;
         extract_isosurfaces(s.grid, s.field, std::span<const double>(&s.data.isovalue, 1),
-                            std::vector<Sink>{Sink(keep)},
-                            Threshold<HierarchicalIndicator>{&s.indicator, 0.01}, s.indicator, {},
-                            executor);
+                            std::vector{SimplexStream<3>(keep)}, Threshold{&s.indicator, 0.01},
+                            s.indicator, {}, executor);
         return all;
     };
     const auto alone = triangles(SequentialExecutor{});
@@ -177,14 +179,13 @@ void expect_same_in_parts(const Grid& grid, const std::vector<SampledField>& fie
         const HierarchicalIndicator indicator(grid, field);
         using Soup = SimplexSoup<Grid::dimension, double>;
         const std::vector<double> isovalues{data.isovalue, data.isovalue + 0.05 * data.range};
-        const auto soups = [&](const auto& executor) {
+        const auto soups = [&](const Executor& executor) {
             std::vector<std::vector<typename Soup::Simplex>> all(2);
             std::vector<Soup> sinks;
             for (auto& soup : all) sinks.emplace_back(soup);
-            const auto reports =
-                extract_isosurfaces(grid, field, isovalues, std::move(sinks),
-                                    Threshold<HierarchicalIndicator>{&indicator, 0.01 * data.range},
-                                    indicator, {}, executor);
+            const auto reports = extract_isosurfaces(grid, field, isovalues, std::move(sinks),
+                                                     Threshold{&indicator, 0.01 * data.range},
+                                                     indicator, {}, executor);
             EXPECT_EQ(reports.size(), 2U);
             return all;
         };
@@ -202,17 +203,92 @@ TEST(ThreadsOnSoups, FillPartsThatAreTheWhole) {
     expect_same_in_parts(LatticeOctree<3>({.samples = n}), sampled_fields(n));
 }
 
+/// Puts the parts it takes behind each other, elements too.
+class SoupWithElements final : public SimplexSink<3> {
+public:
+    explicit SoupWithElements(Soup<3>& soup) : all_{&soup} {}
+
+    void take(const Soup<3>& part) override {
+        const auto append = [](const auto& from, auto& to) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        const auto elements = static_cast<std::uint32_t>(all_->elements.size());
+        append(part.simplices, all_->simplices);
+        for (const std::uint32_t e : part.element_of) all_->element_of.push_back(elements + e);
+        append(part.reference, all_->reference);
+        all_->elements.append(part.elements);
+        append(part.shape_of, all_->shape_of);
+        append(part.level_of, all_->level_of);
+    }
+    bool keeps_elements() const override { return true; }
+
+private:
+    Soup<3>* all_;
+};
+
+template <class Grid>
+std::vector<NodeKey> corner_keys(const Grid& grid, const Elements& elements, Shape shape) {
+    std::vector<NodeKey> keys;
+    const std::size_t corners = topology(shape).corners;
+    for (const ElementOf<Grid>& e : elements.as<ElementOf<Grid>>()) {
+        keys.resize(keys.size() + corners);
+        grid.corner_keys(e, std::span(keys).last(corners));
+    }
+    return keys;
+}
+
+template <class Grid>
+void expect_same_elements_in_soups(const SampledField& data, const Samples& n) {
+    const Grid grid({.samples = n});
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    const Threshold criterion{&indicator, 0.01 * data.range};
+    const std::span<const double> isovalue(&data.isovalue, 1);
+    for (const bool reference : {false, true}) {
+        const IsosurfaceOptions options{.reference = reference};
+        const auto s =
+            isosurface(grid, field, data.isovalue, criterion, indicator, options).surface;
+        EXPECT_GT(s.simplices.size(), 100U);
+        std::vector<std::array<Point, 3>> corners;
+        for (const auto& [a, b, c] : s.simplices) {
+            corners.push_back({s.vertices[a], s.vertices[b], s.vertices[c]});
+        }
+        const auto expect_same_with = [&](const Executor& executor) {
+            Soup<3> soup;
+            extract_isosurfaces(grid, field, isovalue, std::vector{SoupWithElements(soup)},
+                                criterion, indicator, options, executor);
+            EXPECT_EQ(soup.simplices, corners);
+            EXPECT_EQ(soup.element_of, s.element_of);
+            expect_same_bits(soup.reference, s.reference, "reference");
+            EXPECT_EQ(corner_keys(grid, soup.elements, s.shape_of[0]),
+                      corner_keys(grid, s.elements, s.shape_of[0]));
+            EXPECT_EQ(soup.shape_of, s.shape_of);
+            EXPECT_EQ(soup.level_of, s.level_of);
+        };
+        expect_same_with(SequentialExecutor{});
+        expect_same_with(ThreadExecutor(2));
+    }
+}
+
+TEST(ThreadsOnSoups, TellTheSameElements) {
+    const Samples n{33, 33, 33};
+    for (const SampledField& data : sampled_fields(n)) {
+        SCOPED_TRACE(data.name);
+        expect_same_elements_in_soups<LatticeBisection<3>>(data, n);
+        expect_same_elements_in_soups<LatticeOctree<3>>(data, n);
+    }
+}
+
 TEST(ThreadsOnSoups, KeepWhatAStreamHandsOut) {
     const SphereIn s;
-    const Threshold<HierarchicalIndicator> criterion{&s.indicator, 0.01};
+    const Threshold criterion{&s.indicator, 0.01};
     const std::span<const double> isovalue(&s.data.isovalue, 1);
     std::vector<SimplexSoup<3, double>::Simplex> streamed;
     const auto keep = [&](const std::array<Point, 3>& x) {
         streamed.push_back(
             {x[0][0], x[0][1], x[0][2], x[1][0], x[1][1], x[1][2], x[2][0], x[2][1], x[2][2]});
     };
-    using Stream = SimplexStream<3, decltype(keep)>;
-    extract_isosurfaces(s.grid, s.field, isovalue, std::vector<Stream>{Stream(keep)}, criterion,
+    extract_isosurfaces(s.grid, s.field, isovalue, std::vector{SimplexStream<3>(keep)}, criterion,
                         s.indicator, {});
     std::vector<SimplexSoup<3, double>::Simplex> soup;
     std::vector<SimplexSoup<3, double>> sinks;
@@ -223,61 +299,85 @@ TEST(ThreadsOnSoups, KeepWhatAStreamHandsOut) {
     EXPECT_EQ(soup, streamed);
 }
 
-/// A sink without anything that is optional.
-template <class Element>
-class PlainSink {
+/// Puts the parts it takes behind each other.
+class CollectingSink final : public MeshSink<3> {
 public:
-    explicit PlainSink(Surface<3, Element>& surface) : all_{surface} {}
+    explicit CollectingSink(Surface<3>& surface) : all_{&surface} {}
 
-    void add_vertex(const Point& x, std::span<const double> attributes) {
-        all_.add_vertex(x, attributes);
+    void take(const Surface<3>& part) override {
+        const auto append = [](const auto& from, auto& to) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        const auto elements = static_cast<std::uint32_t>(all_->elements.size());
+        append(part.vertices, all_->vertices);
+        append(part.attributes, all_->attributes);
+        append(part.simplices, all_->simplices);
+        for (const std::uint32_t e : part.element_of) all_->element_of.push_back(elements + e);
+        append(part.reference, all_->reference);
+        all_->elements.append(part.elements);
+        append(part.shape_of, all_->shape_of);
+        append(part.level_of, all_->level_of);
+        append(part.boundary, all_->boundary);
     }
-    Point position(std::uint32_t vertex) const { return all_.position(vertex); }
-    void add_element(const Element& element, Shape shape, int level) {
-        all_.add_element(element, shape, level);
+    Point position(std::uint32_t vertex) const override { return all_->vertices[vertex]; }
+    bool keeps_elements() const override { return true; }
+    void set_normals(std::span<const Point> normals) override {
+        all_->normals.assign(normals.begin(), normals.end());
     }
-    void add_simplex(const std::array<std::uint32_t, 3>& vertices,
-                     std::span<const Point> reference) {
-        all_.add_simplex(vertices, reference);
-    }
-    void add_boundary(const std::array<std::uint32_t, 2>& vertices) {
-        all_.add_boundary(vertices);
-    }
-    void set_normal(std::uint32_t vertex, const Point& unit) { all_.set_normal(vertex, unit); }
 
 private:
-    SurfaceSink<3, Element> all_;
+    Surface<3>* all_;
+};
+
+/// A sink without anything that is optional.
+class PlainSink final : public MeshSink<3> {
+public:
+    explicit PlainSink(Surface<3>& surface) : all_{surface} {}
+
+    void take(const Surface<3>& part) override { all_.take(part); }
+    Point position(std::uint32_t vertex) const override { return all_.position(vertex); }
+
+private:
+    CollectingSink all_;
 };
 
 template <class Grid>
-void expect_same_in_plain_sinks(const Grid& grid, const SampledField& data) {
+void expect_same_in_sinks(const Grid& grid, const SampledField& data) {
     const LatticeField field(grid, std::span<const float>(data.values));
     const HierarchicalIndicator indicator(grid, field);
-    const Threshold<HierarchicalIndicator> criterion{&indicator, 0.01 * data.range};
+    const Threshold criterion{&indicator, 0.01 * data.range};
     const std::span<const double> isovalue(&data.isovalue, 1);
     const IsosurfaceOptions everything{.normals = true, .cap = true, .reference = true};
     for (const IsosurfaceOptions& options : {everything, IsosurfaceOptions{}}) {
         const auto alone = isosurface(grid, field, data.isovalue, criterion, indicator, options);
         EXPECT_GT(alone.surface.simplices.size(), 100U);
-        const auto expect_same_with = [&](const auto& executor) {
-            using Element = ElementOf<Grid>;
-            Surface<3, Element> surface;
-            auto results = extract_isosurfaces(
-                grid, field, isovalue, std::vector<PlainSink<Element>>{PlainSink(surface)},
-                criterion, indicator, options, executor);
+        const auto expect_same_with = [&](const Executor& executor) {
+            Surface<3> surface;
+            auto results =
+                extract_isosurfaces(grid, field, isovalue, std::vector{CollectingSink(surface)},
+                                    criterion, indicator, options, executor);
             results[0].surface = std::move(surface);
             expect_same(alone, results[0]);
+
+            Surface<3> plain;
+            extract_isosurfaces(grid, field, isovalue, std::vector{PlainSink(plain)}, criterion,
+                                indicator, options, executor);
+            EXPECT_EQ(plain.vertices, alone.surface.vertices);
+            EXPECT_EQ(plain.simplices, alone.surface.simplices);
+            EXPECT_EQ(plain.reference.size(), alone.surface.reference.size());
+            EXPECT_TRUE(plain.normals.empty() && plain.element_of.empty());
+            EXPECT_EQ(plain.elements.size() + plain.shape_of.size() + plain.level_of.size(), 0U);
         };
         expect_same_with(SequentialExecutor{});
         expect_same_with(ThreadExecutor(2));
     }
 }
 
-TEST(ThreadsOnPlainSinks, FillThemTheSame) {
+TEST(ThreadsOnMeshSinks, FillThemTheSame) {
     const Samples n{17, 17, 17};
     const SampledField data = sampled_fields(n)[0];
-    expect_same_in_plain_sinks(LatticeBisection<3>({.samples = n}), data);
-    expect_same_in_plain_sinks(LatticeOctree<3>({.samples = n}), data);
+    expect_same_in_sinks(LatticeBisection<3>({.samples = n}), data);
+    expect_same_in_sinks(LatticeOctree<3>({.samples = n}), data);
 }
 
 TEST(ThreadsOnBudgets, FindTheSameThreshold) {
@@ -289,13 +389,17 @@ TEST(ThreadsOnBudgets, FindTheSameThreshold) {
     EXPECT_EQ(one.triangles, two.triangles);
 }
 
-struct ThrowsBelow {
-    static constexpr bool saturated = true;
-    int level;
-    NodeMask operator()(const NewNodes& nodes) const {
-        if (nodes.level > level) throw GridError("too deep");
+class ThrowsBelow final : public Criterion {
+public:
+    explicit ThrowsBelow(int level) : level_{level} {}
+    NodeMask holds(const NewNodes& nodes) const override {
+        if (nodes.level > level_) throw GridError("too deep");
         return 0;
     }
+    bool saturated() const override { return true; }
+
+private:
+    int level_;
 };
 
 TEST(ThreadsThatStop, CancelOrPassOnWhatWasThrown) {
@@ -316,23 +420,26 @@ TEST(ThreadsThatStop, CancelOrPassOnWhatWasThrown) {
 
 /// Counts what it is shown, by element.
 template <class Grid>
-struct Recorder {
-    using Walk = Traversal<Grid, ZeroField<Grid>, Needs{}>;
+struct Recorder final : engine::TaskVisitor<float> {
+    using View = engine::ElementView<float>;
     int finest;
-    std::vector<std::uint64_t> extracted{};
+    std::vector<std::uint64_t> extracted;
     std::uint64_t calls = 0;
 
-    Decision look(const typename Walk::State& s, const Split&) const {
-        return {s.level >= finest ? Visit::stop : Visit::descend, 0};
+    explicit Recorder(int level) : finest{level} {}
+
+    engine::Decision look(const View& view, const engine::Split&) override {
+        return {view.level >= finest ? Visit::stop : Visit::descend, 0};
     }
-    Decision inspect(const typename Walk::State& s, const Split& split) {
+    engine::Decision inspect(const View& view, const engine::Split& split) override {
         ++calls;
-        return look(s, split);
+        return look(view, split);
     }
-    void undo() { --calls; }
-    void restart() { calls = 0; }
-    void extract(const typename Walk::State& s) {
-        extracted.push_back(std::uint64_t{s.element.low} << 8U | s.element.level);
+    void undo() override { --calls; }
+    void restart() override { calls = 0; }
+    void extract(const View& view) override {
+        const auto& e = nestgrid::detail::element_of<ElementOf<Grid>>(view.element());
+        extracted.push_back(std::uint64_t{e.low} << 8U | e.level);
     }
 };
 
@@ -340,13 +447,14 @@ TEST(Frontiers, CutAWalkIntoPartsThatMissNothing) {
     const LatticeOctree<3> grid({.samples = {17, 17, 33}});
     const ZeroField<LatticeOctree<3>> zero;
     using R = Recorder<LatticeOctree<3>>;
-    const R::Walk walk(grid, zero);
+    const auto hierarchy = erase(grid, zero);
+    const engine::Walk<float> walk(hierarchy, {});
     for (const int finest : {0, 2, 9}) {
         R whole{finest};
         walk.run(whole);
         for (const std::size_t wanted : {1U, 3U, 50U, 100000U}) {
             R above{finest};
-            const Frontier frontier(walk, above, wanted);
+            const engine::Frontier<float> frontier(walk, above, wanted);
             for (const std::size_t parts : {1U, 2U, 7U}) {
                 R in_parts{finest};
                 in_parts.calls = above.calls;

@@ -27,6 +27,7 @@
 
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
+#include <walk/walk.hpp>
 
 #ifdef NESTGRID_WITH_OPENVDB
 #include "openvdb_mesh.hpp"
@@ -48,23 +49,34 @@ vtkNew<vtkImageData> make_image(const std::vector<float>& samples, int n) {
     return image;
 }
 
-/// The leaves of the tetrahedra.
-struct Leaves {
-    std::vector<vtkIdType> corners;
-    nestgrid::Decision inspect(const auto&, const nestgrid::Split&) { return {}; }
-    void extract(const auto& s) {
+/// Keeps the corners of the leaves of the tetrahedra.
+class Leaves final : public nestgrid::engine::Visitor<float> {
+public:
+    using View = nestgrid::engine::ElementView<float>;
+
+    explicit Leaves(const nestgrid::engine::Walk<float>& walk) : walk_{&walk} {}
+
+    nestgrid::engine::Decision inspect(const View&, const nestgrid::engine::Split&) override {
+        return {};
+    }
+    void extract(const View& view) override {
         std::array<nestgrid::NodeKey, nestgrid::max_corners> key;
-        grid->corner_keys(s.element, key);
-        if (s.orientation < 0) std::swap(key[0], key[1]);
+        walk_->corners(view, key.data(), nullptr);
+        if (view.orientation < 0) std::swap(key[0], key[1]);
         for (std::size_t i = 0; i < 4; ++i) corners.push_back(static_cast<vtkIdType>(key[i]));
     }
-    const Tetrahedra* grid;
+
+    std::vector<vtkIdType> corners;
+
+private:
+    const nestgrid::engine::Walk<float>* walk_;
 };
 
 vtkNew<vtkUnstructuredGrid> make_unstructured(const Tetrahedra& grid, const Samples& field,
                                               const std::vector<float>& samples) {
-    Leaves leaves{{}, &grid};
-    const nestgrid::Traversal<Tetrahedra, Samples, nestgrid::Needs{}> walk(grid, field);
+    const auto hierarchy = nestgrid::erase(grid, field);
+    const nestgrid::engine::Walk<float> walk(hierarchy, {});
+    Leaves leaves(walk);
     walk.run(leaves);
     const auto count = static_cast<vtkIdType>(leaves.corners.size() / 4);
     vtkNew<vtkPoints> points;

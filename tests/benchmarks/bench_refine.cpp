@@ -18,6 +18,9 @@
 #include "alberta_bisection.hpp"
 #endif
 
+#include <nestgrid/detail/erase.hpp>
+
+#include "count_leaves.hpp"
 #include "sample_grids.hpp"
 
 using namespace nestgrid;
@@ -85,13 +88,11 @@ void measure_ten_million(const std::string& name, Grid grid, int steps) {
     print(name + "_build_seconds", now() - begin);
     const std::vector<float> values(grid.node_count(), 1);
     const NodeField<Grid, float> field(grid, std::span<const float>(values));
-    const Traversal<Grid, NodeField<Grid, float>, Needs{.keys = true, .positions = true}> walk(
-        grid, field);
-    CountLeaves count;
+    const auto hierarchy = erase(grid, field);
+    const engine::Walk<float> walk(hierarchy, {.keys = true, .positions = true});
     const double start = now();
-    walk.run(count);
-    print(name + "_traversal_ns_per_leaf",
-          (now() - start) * 1e9 / static_cast<double>(count.leaves));
+    const auto leaves = static_cast<double>(count_leaves(walk));
+    print(name + "_traversal_ns_per_leaf", (now() - start) * 1e9 / leaves);
     print(name + "_resident_peak_gib", resident_peak_gib());
 }
 

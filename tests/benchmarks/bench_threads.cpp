@@ -15,15 +15,13 @@ namespace {
 
 using Soup = nestgrid::SimplexSoup<3, float>;
 
-template <class Executor>
 void fill(BuckySamples& bucky, float threshold, std::vector<Soup::Simplex>& soup,
-          const Executor& executor) {
+          const nestgrid::Executor& executor) {
     soup.clear();
     const double isovalue = bucky_isovalue;
     std::vector<Soup> sinks;
     sinks.emplace_back(soup);
-    const nestgrid::Threshold<nestgrid::HierarchicalIndicator> criterion{&bucky.indicator,
-                                                                         threshold};
+    const nestgrid::Threshold criterion{&bucky.indicator, threshold};
     nestgrid::extract_isosurfaces(bucky.grid, bucky.field, std::span<const double>(&isovalue, 1),
                                   std::move(sinks), criterion, bucky.indicator, {}, executor);
 }

@@ -36,6 +36,7 @@
 
 #include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <walk/walk.hpp>
 
 #include "open_edges.hpp"
 #include "sample_grids.hpp"
@@ -74,32 +75,35 @@ struct Leaves {
     std::map<std::pair<Point, int>, std::size_t> by_centre;  // and level
 };
 
-struct Collect {
-    using Field = NodeField<Grid, double>;
-    using Walk = Traversal<Grid, Field, Needs{.keys = true, .positions = true}>;
-    const Walk* walk;
-    Leaves* leaves;
-    std::map<NodeKey, std::size_t> number{};
+class Collect final : public engine::Visitor<double> {
+public:
+    using View = engine::ElementView<double>;
 
-    Decision inspect(const Walk::State&, const Split&) { return {}; }
-    void extract(const Walk::State& s) {
+    Collect(const engine::Walk<double>& walk, Leaves& leaves) : walk_{&walk}, leaves_{&leaves} {}
+
+    engine::Decision inspect(const View&, const engine::Split&) override { return {}; }
+    void extract(const View& view) override {
         std::array<NodeKey, max_corners> key;
         std::array<Point, max_corners> x;
-        walk->keys(s, key);
-        walk->positions(s, x);
+        walk_->corners(view, key.data(), x.data());
         std::array<std::size_t, 8> corners;
         Point centre{0, 0, 0};
         for (std::size_t i = 0; i < 8; ++i) {
-            const auto [at, is_new] = number.insert({key[i], leaves->nodes.size()});
+            const auto [at, is_new] = number_.insert({key[i], leaves_->nodes.size()});
             corners[i] = at->second;
             centre = centre + 0.125 * x[i];
             if (!is_new) continue;
-            leaves->nodes.push_back(x[i]);
-            leaves->values.push_back(s.value[i]);
+            leaves_->nodes.push_back(x[i]);
+            leaves_->values.push_back(view.value[i]);
         }
-        leaves->by_centre[{centre, s.level}] = leaves->hexahedra.size();
-        leaves->hexahedra.push_back(corners);
+        leaves_->by_centre[{centre, view.level}] = leaves_->hexahedra.size();
+        leaves_->hexahedra.push_back(corners);
     }
+
+private:
+    const engine::Walk<double>* walk_;
+    Leaves* leaves_;
+    std::map<NodeKey, std::size_t> number_;
 };
 
 void print(const char* mesh, const char* field, const char* by, const EdgeCount& row,
@@ -115,7 +119,7 @@ void run_ours(const char* mesh, const char* name, const Grid& grid,
     const double preparation = time_of([&] { indicator.emplace(grid, field); });
     const double range = indicator->greatest() - indicator->least();
     for (const double threshold : {0.0, 0.02 * range}) {
-        Surface<3, Grid::Element> surface;
+        Surface<3> surface;
         const double seconds = time_of([&] {
             surface = isosurface(grid, field, 0.0, *indicator, {.threshold = threshold}).surface;
         });
@@ -246,8 +250,9 @@ void run(const char* mesh, const Grid& grid) {
         for (const Point& x : grid.node_positions()) values.push_back(f(x));
         const NodeField<Grid, double> field(grid, values);
         Leaves leaves;
-        const Collect::Walk walk(grid, field);
-        Collect collect{&walk, &leaves};
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<double> walk(hierarchy, {.keys = true, .positions = true});
+        Collect collect(walk, leaves);
         walk.run(collect);
         run_ours(mesh, name, grid, values);
         run_vtk(mesh, name, leaves);

@@ -22,6 +22,27 @@ using Tetrahedra = nestgrid::LatticeBisection<3>;
 using Samples = nestgrid::LatticeField<Tetrahedra, float>;
 using Triangle = std::array<float, 9>;
 
+/// Writes triangles behind each other.
+class TriangleWriter final : public nestgrid::SimplexSink<3> {
+public:
+    /// \param to where the next one goes; moved on
+    explicit TriangleWriter(Triangle*& to) : to_{&to} {}
+
+    void take(const nestgrid::Soup<3>& part) override {
+        Triangle* to = *to_;
+        for (const auto& corners : part.simplices) {
+            for (std::size_t i = 0; i < to->size(); ++i) {
+                (*to)[i] = static_cast<float>(corners[i / 3][i % 3]);
+            }
+            ++to;
+        }
+        *to_ = to;
+    }
+
+private:
+    Triangle** to_;
+};
+
 /// The samples of a cube, and the triangles drawn from them.
 struct BuckySamples {
     std::vector<float> samples;
@@ -40,30 +61,23 @@ struct BuckySamples {
 
     /// Writes the triangles of any grid and field into `soup`.
     /// \return how many
-    template <class Grid, class Field, class Executor = nestgrid::SequentialExecutor>
+    template <class Grid, class Field>
     std::size_t draw_soup(const Grid& of, const Field& values, float threshold,
                           nestgrid::TraversalCounts* counts = nullptr,
-                          const Executor& executor = {}) {
+                          const nestgrid::Executor& executor = nestgrid::SequentialExecutor{}) {
         return draw_soup_of(of, values, indicator, double{bucky_isovalue}, threshold, counts,
                             executor);
     }
     /// The same of other samples.
-    template <class Grid, class Field, class Executor = nestgrid::SequentialExecutor>
+    template <class Grid, class Field>
     std::size_t draw_soup_of(const Grid& of, const Field& values,
                              const nestgrid::HierarchicalIndicator& by, double isovalue,
                              float threshold, nestgrid::TraversalCounts* counts = nullptr,
-                             const Executor& executor = {}) {
+                             const nestgrid::Executor& executor = nestgrid::SequentialExecutor{}) {
         Triangle* to = soup.data();
-        const auto put = [&to](const std::array<nestgrid::Point, 3>& x) {
-            const auto narrow = [](double number) { return static_cast<float>(number); };
-            *to++ = {narrow(x[0][0]), narrow(x[0][1]), narrow(x[0][2]),
-                     narrow(x[1][0]), narrow(x[1][1]), narrow(x[1][2]),
-                     narrow(x[2][0]), narrow(x[2][1]), narrow(x[2][2])};
-        };
-        using Sink = nestgrid::SimplexStream<3, decltype(put)>;
-        const nestgrid::Threshold<nestgrid::HierarchicalIndicator> criterion{&by, threshold};
+        const nestgrid::Threshold criterion{&by, threshold};
         const auto result = nestgrid::extract_isosurfaces(
-            of, values, std::span<const double>(&isovalue, 1), std::vector<Sink>{Sink(put)},
+            of, values, std::span<const double>(&isovalue, 1), std::vector{TriangleWriter(to)},
             criterion, by, {}, executor);
         if (counts != nullptr) *counts = result.front().counts;
         return static_cast<std::size_t>(to - soup.data());
@@ -82,7 +96,8 @@ struct Bucky : BuckySamples {
     std::vector<typename Handwritten::Node> handwritten_nodes() const {
         std::vector<typename Handwritten::Node> result;
         for (std::size_t i = 0; i < samples.size(); ++i) {
-            result.push_back({samples[i], nestgrid::bfloat16_above(indicator.stop(i)),
+            result.push_back({samples[i],
+                              nestgrid::bfloat16_above(static_cast<float>(indicator.stop(i))),
                               nestgrid::bfloat16_above(indicator.bound(i))});
         }
         return result;

@@ -25,9 +25,10 @@ struct Run {
 };
 
 /// Two surfaces of a series, the first of them counted from `start`.
-template <class Grid, class Field, class E = nestgrid::SequentialExecutor>
+template <class Grid, class Field>
 void time_isosurfaces(const Grid& grid, const Field& field, double threshold,
-                      Clock::time_point start, Run& run, const E& executor = {}) {
+                      Clock::time_point start, Run& run,
+                      const nestgrid::Executor& executor = nestgrid::SequentialExecutor{}) {
     nestgrid::IsosurfaceSeries series(grid, field, executor);
     const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
     const auto& result = series.draw(0.0, options, executor);

@@ -28,8 +28,7 @@ inline constexpr std::array<double, 6> six_thresholds{0, 0.01, 0.1, 0.3, 1, 10};
 inline double uniform(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
 
 /// No open edge inside the domain, a manifold, one orientation.
-template <class Element>
-void expect_closed(const Surface<3, Element>& surface, bool capped = false) {
+inline void expect_closed(const Surface<3>& surface, bool capped = false) {
     const SurfaceReport report = surface_report(surface);
     EXPECT_EQ(report.open_edges, 0U);
     EXPECT_EQ(report.nonmanifold_edges, 0U);
@@ -39,8 +38,7 @@ void expect_closed(const Surface<3, Element>& surface, bool capped = false) {
 }
 
 /// In two dimensions every vertex ends one segment and begins another, or lies on the boundary.
-template <class Element>
-void expect_closed(const Surface<2, Element>& lines, bool capped = false) {
+inline void expect_closed(const Surface<2>& lines, bool capped = false) {
     std::vector<int> begins(lines.vertices.size(), 0), ends(begins), boundary(begins);
     for (const auto& [a, b] : lines.simplices) {
         ++begins[a];

@@ -13,7 +13,7 @@
 #include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/adapters/prism_grid.hpp>
 #include <nestgrid/adapters/red_green.hpp>
-#include <nestgrid/traversal.hpp>
+#include <nestgrid/operations.hpp>
 
 namespace nestgrid_test {
 
@@ -251,19 +251,6 @@ template <class Grid>
 void refine_at_sphere(Grid& grid, int levels) {
     for (int level = 0; level < levels; ++level) refine_at_sphere_once(grid, levels);
 }
-
-/// A visitor that counts leaves.
-struct CountLeaves {
-    std::size_t leaves = 0;
-    template <class State>
-    Decision inspect(const State&, const Split&) {
-        return {};
-    }
-    template <class State>
-    void extract(const State&) {
-        ++leaves;
-    }
-};
 
 /// Values of a function at all nodes.
 template <class Grid, class Function>

@@ -5,58 +5,51 @@
 // it visible to the thread sanitizer.
 #pragma once
 
-#include <algorithm>
-#include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <vector>
 
+#include <nestgrid/algorithms/executor.hpp>
+
 namespace nestgrid_test {
 
-class ThreadExecutor {
+class ThreadExecutor final : public nestgrid::Executor {
 public:
     explicit ThreadExecutor(std::size_t threads) : threads_{threads} {}
 
-    std::size_t concurrency() const { return threads_; }
+    std::size_t concurrency() const override { return threads_; }
 
-    template <class Work, class Consume>
-    void run(std::size_t count, Work&& work, Consume&& consume) const {
-        using Result = std::decay_t<decltype(work(count))>;
+    void run(std::size_t count, const std::function<void(std::size_t)>& work,
+             const std::function<void(std::size_t)>& consume) const override {
         std::mutex mutex;
-        std::vector<std::optional<Result>> done(count);
+        std::vector<bool> done(count, false);
         std::size_t begun = 0;
         std::size_t consumed = 0;
         bool consuming = false;
         std::exception_ptr failed;
+        /// Calls a function without the lock.
+        const auto call = [&](std::unique_lock<std::mutex>& lock, const auto& function,
+                              std::size_t i) {
+            std::exception_ptr thrown;
+            lock.unlock();
+            try {
+                function(i);
+            } catch (...) {
+                thrown = std::current_exception();
+            }
+            lock.lock();
+            if (thrown && !failed) failed = thrown;
+        };
         const auto loop = [&] {
             std::unique_lock lock(mutex);
             while (begun < count && !failed) {
                 const std::size_t i = begun++;
-                lock.unlock();
-                std::optional<Result> result;
-                std::exception_ptr thrown;
-                try {
-                    result.emplace(work(i));
-                } catch (...) {
-                    thrown = std::current_exception();
-                }
-                lock.lock();
-                if (thrown && !failed) failed = thrown;
-                done[i] = std::move(result);
+                call(lock, work, i);
+                done[i] = true;
                 while (!consuming && !failed && consumed < count && done[consumed]) {
                     consuming = true;
-                    Result next = *std::move(done[consumed]);
-                    done[consumed].reset();
-                    lock.unlock();
-                    try {
-                        consume(consumed, std::move(next));
-                    } catch (...) {
-                        thrown = std::current_exception();
-                    }
-                    lock.lock();
-                    if (thrown && !failed) failed = thrown;
+                    call(lock, consume, consumed);
                     ++consumed;
                     consuming = false;
                 }

@@ -9,7 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/check_grid.hpp>
-#include <nestgrid/levels.hpp>
+#include <nestgrid/detail/erase.hpp>
+#include <walk/for_each_element.hpp>
 
 #include "mutant.hpp"
 
@@ -349,7 +350,8 @@ TEST(Promises, OfOneShapeAreKept) {
     using Wrong = Square<Shape::triangle>;
     const Wrong grid;
     const ZeroField<Wrong> zero;
-    EXPECT_THROW(count_levels(Traversal<Wrong, ZeroField<Wrong>>(grid, zero)), GridError);
+    const auto hierarchy = erase(grid, zero);
+    EXPECT_THROW(engine::count_levels(engine::Walk<float>(hierarchy, {})), GridError);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, Mutants, testing::Range(0, int(Law::hidden) + 1));

@@ -56,4 +56,68 @@ TEST(CheckGrid, IsSilentOnLattices) {
     }
 }
 
+/// Adds a last bit in some elements, as a solver does that rounds in each.
+class RoundedField {
+public:
+    using value_type = double;
+
+    explicit RoundedField(const Forest<3>& forest) : exact_(forest, wave) {}
+    NodeMask coarse_values(std::size_t i, std::span<double> out) const {
+        return exact_.coarse_values(i, out);
+    }
+    NodeMask new_values(const Forest<3>::Element& e, NodeMask which, std::span<double> out) const {
+        const NodeMask missing = exact_.new_values(e, which, out);
+        for (double& value : out) value = std::nextafter(value, e % 2 == 0 ? 10.0 : -10.0);
+        return missing;
+    }
+
+private:
+    ForestField<3> exact_;
+};
+
+TEST(CheckGrid, TellsBothValuesOfANodeAndTakesATolerance) {
+    std::mt19937 random(1);
+    Forest<3> forest = boxes<3>(random, 2);
+    refine_randomly(forest, random, 40);
+    const RoundedField field(forest);
+    const auto violation = check_grid(forest, field);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->law, Law::value_unique);
+    double one = 0;
+    double other = 0;
+    ASSERT_EQ(
+        std::sscanf(violation->sentence.c_str(),
+                    "the field gives one node two values, %lf and %lf: as node", &one, &other),
+        2)
+        << violation->sentence;
+    EXPECT_NE(one, other);
+    EXPECT_NEAR(one, other, 1e-14);
+    EXPECT_FALSE(check_grid(forest, field, {.node_value_tolerance = 1e-14}));
+}
+
+/// A square whose corners are numbered around.
+class AroundSquare : public Forest<2> {
+public:
+    explicit AroundSquare(Forest<2> forest) : Forest<2>(std::move(forest)) {}
+    CoarseElement<Element> coarse(std::size_t i) const {
+        CoarseElement<Element> result = Forest<2>::coarse(i);
+        std::swap(result.corners[2], result.corners[3]);
+        std::swap(result.ids[2], result.ids[3]);
+        return result;
+    }
+};
+
+TEST(CheckGrid, SaysHowCornersAreNumbered) {
+    Forest<2> forest;
+    for (const double y : {0.0, 1.0}) {
+        for (const double x : {0.0, 1.0}) forest.add_node({x, y, 0});
+    }
+    forest.add_coarse(Shape::quadrilateral, {0, 1, 2, 3}, 1);
+    const AroundSquare square(forest);
+    const auto violation = check_grid(square, ForestField<2>(square, wave));
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->law, Law::coarse_element);
+    EXPECT_NE(violation->sentence.find("tensor order"), std::string::npos) << violation->sentence;
+}
+
 }  // namespace

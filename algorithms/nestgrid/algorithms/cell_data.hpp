@@ -1,19 +1,23 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Data in cells, as finite volume codes have it, as a nodal field: the value at a node is the plain
-// mean of the leaves that have it for a corner. A linear function is reproduced where those leaves
-// lie symmetrically around the node. Nodes that hang get such a mean too, but the traversal puts
-// the interpolant in its place. Hidden leaves count for nothing; nodes of theirs alone get the mean
-// of all others, where nothing is drawn.
+// Turns data in cells, which finite volume codes have, into a nodal field: the value at a node is
+// the plain mean of the leaves that have it for a corner. A linear function is reproduced where
+// those leaves lie symmetrically around the node. Nodes that hang get such a mean too, but the walk
+// puts the interpolant in its place. Hidden leaves count for nothing; a node of hidden leaves alone
+// gets the mean of all other leaves. Nothing is drawn there.
 //
 // Invariant: the mean of equal values is that value, to the last bit, so that plateaus stay flat.
 // Memory: O(nodes), 48 to 96 bytes a node, and 64 to 128 more while it is built.
 #pragma once
 
 #include <concepts>
+#include <utility>
 
-#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/algorithms/detail/for_each_leaf.hpp>
+#include <nestgrid/detail/erase.hpp>
+#include <nestgrid/error.hpp>
+#include <nestgrid/key_table.hpp>
 
 namespace nestgrid {
 
@@ -98,19 +102,13 @@ CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue leaf_val
     if (!offers(grid, Feature::own_keys)) {
         throw InvalidInput("the means of cells need a grid with node keys of its own");
     }
-    const ZeroField<Grid> zero;
-    const Traversal<Grid, ZeroField<Grid>, Needs{.keys = true}> walk(grid, zero);
     KeyTable<NodeKey, Running> running;
-    for_each_element(walk, [&](const auto& s, const Split& split) {
-        if (split.rule != nullptr || is_hidden(grid, *s.context, s.element)) return;
-        const double value = this->leaf_value(s.element);
-        elsewhere_.add(value);
-        std::array<NodeKey, max_corners> keys;
-        walk.keys(s, keys);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(s.corner_count()); ++i) {
-            running.insert(keys[i], {}).first->add(value);
-        }
-    });
+    detail::for_each_leaf(
+        erase(grid, ZeroField<Grid>{}), [&](const Handle& leaf, std::span<const NodeKey> keys) {
+            const double value = this->leaf_value(detail::element_of<Element>(leaf));
+            elsewhere_.add(value);
+            for (const NodeKey key : keys) running.insert(key, {}).first->add(value);
+        });
     means_.reserve(running.size());
     running.for_each([&](NodeKey key, const Running& r) { means_.insert(key, r.mean); });
 }

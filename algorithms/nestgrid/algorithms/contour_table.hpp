@@ -132,6 +132,9 @@ public:
 
 private:
     explicit ContourTable(Shape shape);
+    /// The table of one shape, made when it is asked for first.
+    template <Shape shape>
+    static const ContourTable& table_of();
 
     std::vector<std::uint8_t> alternating_;
     std::vector<std::uint16_t> cut_edges_;

@@ -3,16 +3,15 @@
 //
 // Projection criteria S (paper, sections 2, 4 and 5.1): values that compose.
 //
-// A criterion answers, for the new nodes of one split, at which of them S holds:
-//     NodeMask operator()(const NewNodes& nodes) const;
-//     static constexpr bool saturated = ...;
 // Conjunctions and disjunctions of saturated criteria are saturated: where both hold at a corner,
 // both hold at the new nodes, and likewise where one of them does.
 #pragma once
 
-#include <nestgrid/algorithms/round_up.hpp>
-#include <nestgrid/pack.hpp>
-#include <nestgrid/traversal.hpp>
+#include <concepts>
+#include <span>
+
+#include <nestgrid/keys.hpp>
+#include <nestgrid/rule.hpp>
 
 namespace nestgrid {
 
@@ -24,113 +23,155 @@ struct NewNodes {
     NodeMask outside;  ///< nodes at which no element may stop
 };
 
-template <class C>
-concept Criterion = requires(const C& c, const NewNodes& nodes) {
-    { c(nodes) } -> std::same_as<NodeMask>;
-    { C::saturated } -> std::convertible_to<bool>;
+/// S, a function of nodes.
+class Criterion {
+public:
+    virtual ~Criterion() = default;
+    /// The new nodes at which S holds, one bit each.
+    virtual NodeMask holds(const NewNodes& nodes) const = 0;
+    /// Whether S at any corner of a split element implies S at all its new nodes. Algorithms refuse
+    /// a criterion that is not, unless it insists.
+    virtual bool saturated() const = 0;
+    /// Whether S is a function of nodes only where the grid creates each node on one level.
+    virtual bool needs_one_level_a_node() const { return false; }
+    /// Whether the criterion is to be used although it is not saturated. Then the surface may have
+    /// open edges and lack parts, and no bound is given.
+    virtual bool insists() const { return false; }
+
+protected:
+    Criterion() = default;
+    Criterion(const Criterion&) = default;
+    Criterion& operator=(const Criterion&) = default;
+    Criterion(Criterion&&) = default;
+    Criterion& operator=(Criterion&&) = default;
 };
 
-/// S(x) = (eta(x) <= epsilon) for an indicator that stores eta by node.
-template <class Indicator>
-struct Threshold {
-    static constexpr bool saturated = Indicator::saturated;
-
-    const Indicator* indicator;
-    double epsilon;
-
-    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const {
-        if constexpr (requires { indicator->largest_stop(nodes.rule, nodes.keys); }) {
-            if (indicator->largest_stop(nodes.rule, nodes.keys) <= epsilon) {
-                return nodes.rule.all() & ~nodes.outside;
-            }
-        }
-        if constexpr (requires { indicator->stops_at_most(nodes.keys, epsilon); }) {
-            return indicator->stops_at_most(nodes.keys, epsilon) & ~nodes.outside;
-        }
+/// A number eta for every node, to be compared with a threshold.
+class Indicator {
+public:
+    virtual ~Indicator() = default;
+    /// eta of a node, in the units of the threshold.
+    virtual double stop(NodeKey node) const = 0;
+    /// Whether eta at every corner of a split element is at least eta at all its new nodes.
+    virtual bool saturated() const { return true; }
+    /// The new nodes of a split with eta <= epsilon, one bit each.
+    virtual NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> keys,
+                                   double epsilon) const {
         NodeMask mask = 0;
-        for (std::size_t i = 0; i < nodes.keys.size(); ++i) {
-            if (indicator->stop(nodes.keys[i]) <= epsilon) mask |= NodeMask{1} << i;
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            if (stop(keys[i]) <= epsilon) mask |= NodeMask{1} << i;
         }
-        return mask & ~nodes.outside;
+        return mask;
     }
-    /// The same of eight nodes.
-    struct Packed {
-        const Indicator* indicator;
-        Pack<float> epsilon;
 
-        /// At which of them, none of them outside.
-        /// \param known what `by` knows of them
-        template <class Known>
-            requires std::same_as<decltype(std::declval<Known>().stop()), Pack<float>>
-        NESTGRID_INLINE Pack<std::uint32_t> holds(const NodeKey* nodes, const Indicator& by,
-                                                  const Known& known) const {
-            return at_most(indicator == &by ? known.stop() : indicator->look_up(nodes).stop(),
-                           epsilon);
-        }
-    };
-    Packed packed() const { return {indicator, Pack<float>::all(float_below(epsilon))}; }
+protected:
+    Indicator() = default;
+    Indicator(const Indicator&) = default;
+    Indicator& operator=(const Indicator&) = default;
+    Indicator(Indicator&&) = default;
+    Indicator& operator=(Indicator&&) = default;
+};
+
+/// S(x) = (eta(x) <= epsilon). The indicator must outlive the criterion.
+class Threshold final : public Criterion {
+public:
+    Threshold(const Indicator* indicator, double epsilon)
+        : indicator_{indicator}, epsilon_{epsilon} {}
+
+    const Indicator* indicator() const { return indicator_; }
+    double epsilon() const { return epsilon_; }
+    NodeMask holds(const NewNodes& nodes) const override {
+        return indicator_->stops_at_most(nodes.rule, nodes.keys, epsilon_) & ~nodes.outside;
+    }
+    bool saturated() const override { return indicator_->saturated(); }
+
+private:
+    const Indicator* indicator_;
+    double epsilon_;
 };
 
 /// S(x) = (level of x > deepest), section 4. Saturated, because no node is created below a
-/// deeper one, wherever each node is created on one level only; combine it with a Threshold on
-/// grids that have nodes outside the domain.
-struct DeepestLevel {
-    static constexpr bool saturated = true;
-
-    int deepest;
-
-    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const {
-        return nodes.level > deepest ? nodes.rule.all() & ~nodes.outside : NodeMask{0};
+/// deeper one, wherever each node is created on one level only; for other grids take
+/// NodeLevels::deeper_than (node_levels.hpp). Combine it with a Threshold on grids that have nodes
+/// outside the domain.
+class DeepestLevel final : public Criterion {
+public:
+    explicit DeepestLevel(int deepest) : deepest_{deepest} {}
+    NodeMask holds(const NewNodes& nodes) const override {
+        return nodes.level > deepest_ ? nodes.rule.all() & ~nodes.outside : NodeMask{0};
     }
+    bool saturated() const override { return true; }
+    bool needs_one_level_a_node() const override { return true; }
+
+private:
+    int deepest_;
 };
 
 /// S false everywhere: the projection is the identity.
-struct Exact {
-    static constexpr bool saturated = true;
-    NESTGRID_INLINE NodeMask operator()(const NewNodes&) const { return 0; }
+class Exact final : public Criterion {
+public:
+    NodeMask holds(const NewNodes&) const override { return 0; }
+    bool saturated() const override { return true; }
 };
 
-template <Criterion A, Criterion B>
-struct Both {
-    static constexpr bool saturated = A::saturated && B::saturated;
-    A a;
-    B b;
-    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const {
-        const NodeMask first = a(nodes);
-        return first == 0 ? first : first & b(nodes);
+template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
+class Both final : public Criterion {
+public:
+    Both(const A& a, const B& b) : a_{a}, b_{b} {}
+    NodeMask holds(const NewNodes& nodes) const override {
+        const NodeMask first = a_.holds(nodes);
+        return first == 0 ? first : first & b_.holds(nodes);
     }
+    bool saturated() const override { return a_.saturated() && b_.saturated(); }
+    bool needs_one_level_a_node() const override {
+        return a_.needs_one_level_a_node() || b_.needs_one_level_a_node();
+    }
+    bool insists() const override { return a_.insists() || b_.insists(); }
+
+private:
+    A a_;
+    B b_;
 };
 
-template <Criterion A, Criterion B>
-struct Either {
-    static constexpr bool saturated = A::saturated && B::saturated;
-    A a;
-    B b;
-    NESTGRID_INLINE NodeMask operator()(const NewNodes& nodes) const { return a(nodes) | b(nodes); }
+template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
+class Either final : public Criterion {
+public:
+    Either(const A& a, const B& b) : a_{a}, b_{b} {}
+    NodeMask holds(const NewNodes& nodes) const override {
+        return a_.holds(nodes) | b_.holds(nodes);
+    }
+    bool saturated() const override { return a_.saturated() && b_.saturated(); }
+    bool needs_one_level_a_node() const override {
+        return a_.needs_one_level_a_node() || b_.needs_one_level_a_node();
+    }
+    bool insists() const override { return a_.insists() || b_.insists(); }
+
+private:
+    A a_;
+    B b_;
 };
 
-template <Criterion A, Criterion B>
+/// Insists on a criterion that is not saturated.
+template <std::derived_from<Criterion> S>
+class Unsaturated final : public Criterion {
+public:
+    explicit Unsaturated(const S& criterion) : criterion_{criterion} {}
+    NodeMask holds(const NewNodes& nodes) const override { return criterion_.holds(nodes); }
+    bool saturated() const override { return false; }
+    bool insists() const override { return true; }
+
+private:
+    S criterion_;
+};
+
+template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
 Both<A, B> operator&&(const A& a, const B& b) {
     return {a, b};
 }
 
-template <Criterion A, Criterion B>
+template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
 Either<A, B> operator||(const A& a, const B& b) {
     return {a, b};
 }
-
-namespace detail {
-
-/// A criterion that is asked for eight nodes at once, where it can be.
-template <class S>
-auto packed_criterion(const S& criterion) {
-    if constexpr (requires { criterion.packed(); }) {
-        return criterion.packed();
-    } else {
-        return Nothing{};
-    }
-}
-
-}  // namespace detail
 
 }  // namespace nestgrid

@@ -24,198 +24,194 @@
 // it is built nothing more where the grid knows stars, else 12, and 4 for each node of each split.
 #pragma once
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <concepts>
+#include <functional>
 #include <limits>
 #include <memory>
 
 #include <nestgrid/algorithms/criterion.hpp>
-#include <nestgrid/algorithms/indicator_walk.hpp>
+#include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
-#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/detail/erase.hpp>
+#include <nestgrid/hanging.hpp>
+#include <nestgrid/key_table.hpp>
 
 namespace nestgrid {
 
-class HierarchicalIndicator {
+/// How far U may be from what is known of it, at every node: what guides the search.
+class Bounds {
 public:
-    static constexpr bool saturated = true;
+    virtual ~Bounds() = default;
+    /// At a node of the finest level that is interpolated, U and P_S U differ by at most this.
+    virtual double offset_bound(NodeKey node) const = 0;
+    /// On an element with these new nodes U stays within corner values +- this.
+    virtual double bound(const Rule& rule, std::span<const NodeKey> nodes) const = 0;
+    /// Nodes that hang, where the grid does not say so itself; or null.
+    virtual const HangingNodes* hanging() const = 0;
+    virtual std::uint64_t epoch() const = 0;  ///< of the grid this was computed on
+    /// Whether elements that stop conform on a grid without hanging nodes.
+    virtual bool stops_conform() const { return false; }
+    /// A level on which no element has a finer neighbour, or -1 where none is known.
+    virtual int finest_level() const { return -1; }
+    /// Whether every node is known to be created on one level of the hierarchy only.
+    virtual bool one_level_a_node() const { return false; }
 
+protected:
+    Bounds() = default;
+    Bounds(const Bounds&) = default;
+    Bounds& operator=(const Bounds&) = default;
+    Bounds(Bounds&&) = default;
+    Bounds& operator=(Bounds&&) = default;
+};
+
+/// The error of a leaf: not negative. Called by several threads where the executor has several.
+using LeafErrors = std::function<double(const Handle& leaf)>;
+
+namespace detail {
+
+/// Stop and bound of a node as bfloat16, rounded up.
+struct IndicatorEntry {
+    std::uint16_t stop;
+    std::uint16_t bound;
+};
+
+/// The entries of all nodes.
+struct IndicatorEntries {
+    std::unique_ptr<IndicatorEntry[]> dense;  ///< by node, where keys are dense; else null
+    KeyTable<NodeKey, IndicatorEntry> sparse;
+
+    NESTGRID_INLINE IndicatorEntry at(NodeKey node) const {
+        if (dense != nullptr) return dense[static_cast<std::size_t>(node)];
+        return at_sparse(node);
+    }
+    NESTGRID_NOINLINE IndicatorEntry at_sparse(NodeKey node) const {
+        const IndicatorEntry* e = sparse.find(node);
+        return e == nullptr ? IndicatorEntry{} : *e;
+    }
+};
+
+/// What a preroll learns beside the entries. All of it is a least or a greatest, so that the order
+/// does not count.
+struct PrerollFacts {
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -std::numeric_limits<double>::infinity();
+    double hanging_violation = 0;
+    std::size_t largest_split = 0;  ///< number of new nodes
+    int finest_level = 0;
+    bool all_divided = true;       ///< every rule divides all edges and faces
+    bool one_level_a_node = true;  ///< every node is created on one level only
+
+    void add(const PrerollFacts& other);
+    /// \throw InvalidInput where the value is not a number, infinite, or beyond the limit
+    void add_value(double value, double limit) {
+        if (!(std::abs(value) <= limit)) refuse(value);
+        least = std::min(least, value);
+        greatest = std::max(greatest, value);
+    }
+
+private:
+    [[noreturn]] static void refuse(double value);
+};
+
+template <class T>
+concept AnyHierarchy =
+    std::derived_from<T, Hierarchy<float>> || std::derived_from<T, Hierarchy<double>>;
+
+}  // namespace detail
+
+class HierarchicalIndicator final : public Indicator, public Bounds {
+public:
     /// Walks the whole hierarchy; component 0 of the field counts.
     /// \throw InvalidInput where a value is not a number, infinite, or beyond a quarter of the
     ///        range of its type
+    /// \param executor of several threads, or of one; the result does not depend on it
+    template <class Grid, class Field>
+        requires(!detail::AnyHierarchy<Grid>)
+    HierarchicalIndicator(const Grid& grid, const Field& field,
+                          const Executor& executor = SequentialExecutor{})
+        : HierarchicalIndicator(erase(grid, field), LeafErrors{}, executor) {}
     /// \param leaf_error errors of leaves in the place of offsets, such as a Kelly or residual
     ///        estimate; then thresholds have their unit. Called as double(const Element&) for every
-    ///        leaf; not negative
-    /// \param executor of several threads, all of which call leaf_error, or of one (executor.hpp);
-    ///        the result does not depend on it
+    ///        leaf
     /// \throw InvalidInput also where an error is negative or not a number
-    template <class Grid, class Field, class LeafError, Executor E = SequentialExecutor>
+    template <class Grid, class Field, class LeafError>
         requires(std::is_invocable_r_v<double, const LeafError&, const ElementOf<Grid>&>)
     HierarchicalIndicator(const Grid& grid, const Field& field, const LeafError& leaf_error,
-                          const E& executor = {})
-        : epoch_{nestgrid::epoch(grid)}, own_errors_{true} {
-        sweep(grid, field, leaf_error, executor);
-    }
-    template <class Grid, class Field, Executor E = SequentialExecutor>
-    HierarchicalIndicator(const Grid& grid, const Field& field, const E& executor = {})
-        : epoch_{nestgrid::epoch(grid)} {
-        sweep(grid, field, detail::Nothing{}, executor);
-    }
+                          const Executor& executor = SequentialExecutor{})
+        : HierarchicalIndicator(
+              erase(grid, field),
+              [&leaf_error](const Handle& leaf) {
+                  return static_cast<double>(leaf_error(detail::element_of<ElementOf<Grid>>(leaf)));
+              },
+              executor) {}
+    /// The same for a hierarchy; leaf_errors may be empty.
+    HierarchicalIndicator(const Hierarchy<float>& hierarchy, const LeafErrors& leaf_errors,
+                          const Executor& executor);
+    HierarchicalIndicator(const Hierarchy<double>& hierarchy, const LeafErrors& leaf_errors,
+                          const Executor& executor);
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
-    NESTGRID_INLINE float stop(NodeKey node) const { return bfloat16_value(entry(node).stop); }
-
-    /// Of some nodes, those whose stop is at most `limit`, one bit each.
-    NESTGRID_INLINE NodeMask stops_at_most(std::span<const NodeKey> nodes, double limit) const {
-        if (!(limit >= 0)) return 0;
-        const auto most = static_cast<std::uint16_t>(
-            std::bit_cast<std::uint32_t>(float_below(limit)) >> 16U);  // in the order of numbers
+    double stop(NodeKey node) const override { return bfloat16_value(entries_.at(node).stop); }
+    NodeMask stops_at_most(const Rule& rule, std::span<const NodeKey> nodes,
+                           double epsilon) const override {
+        if (!(epsilon >= 0)) return 0;
+        const std::uint16_t most = bfloat16_below(epsilon);
+        if (rule.inside != no_new_node && entries_.at(nodes[rule.inside]).stop <= most) {
+            return rule.all();
+        }
         NodeMask mask = 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
-            mask |= NodeMask{entry(nodes[i]).stop <= most} << i;
+            mask |= NodeMask{entries_.at(nodes[i]).stop <= most} << i;
         }
         return mask;
     }
 
-    /// U and P_S U differ by at most this at a node of the finest level that is interpolated.
-    double offset_bound(NodeKey node) const { return own_errors_ ? bound(node) : stop(node); }
-
+    double offset_bound(NodeKey node) const override {
+        return own_errors_ ? bound(node) : stop(node);
+    }
     /// The bound of a node, for the intersection test.
-    NESTGRID_INLINE float bound(NodeKey node) const { return bfloat16_value(entry(node).bound); }
-
-    /// The largest bound of some nodes, eta_H(E) for the new nodes of an element E.
-    NESTGRID_INLINE float bound(std::span<const NodeKey> nodes) const {
+    float bound(NodeKey node) const { return bfloat16_value(entries_.at(node).bound); }
+    double bound(const Rule& rule, std::span<const NodeKey> nodes) const override {
+        if (rule.inside != no_new_node) return bound(nodes[rule.inside]);
         std::uint16_t largest = 0;
-        for (const NodeKey node : nodes) largest = std::max(largest, entry(node).bound);
+        for (const NodeKey node : nodes) largest = std::max(largest, entries_.at(node).bound);
         return bfloat16_value(largest);
     }
 
-    /// These will be asked for soon.
-    NESTGRID_INLINE void prefetch([[maybe_unused]] std::span<const NodeKey> nodes) const {
-#if defined(__GNUC__)
-        if (dense_ == nullptr) {
-            for (const NodeKey node : nodes) sparse_.prefetch(node);
-        } else {
-            for (const NodeKey node : nodes) {
-                __builtin_prefetch(dense_.get() + static_cast<std::size_t>(node));
-            }
-        }
-#endif
+    /// Elements that stop conform on a grid without hanging nodes where each split makes one new
+    /// node at most (bisection): a saturated S stops all elements at it, or none.
+    bool stops_conform() const override { return facts_.largest_split <= 1; }
+    /// The deepest level, where every split divides all edges and faces of its element, so that no
+    /// element of that level has a finer neighbour; else -1.
+    int finest_level() const override { return facts_.all_divided ? facts_.finest_level : -1; }
+    bool one_level_a_node() const override { return facts_.one_level_a_node; }
+    /// Nodes that hang, where the grid did not say so itself: hand them to every walk.
+    const HangingNodes* hanging() const override {
+        return hanging_.size() > 0 ? &hanging_ : nullptr;
     }
-
-    /// The same for the new nodes of one split; where one look tells of them all, it is enough.
-    NESTGRID_INLINE void prefetch(const Rule& rule, std::span<const NodeKey> nodes) const {
-        prefetch(rule.inside == no_new_node ? nodes : nodes.subspan(rule.inside, 1));
-    }
-
-    /// Both of eight nodes.
-    class Known {
-    public:
-        NESTGRID_INLINE explicit Known(const Pack<std::uint32_t>& bits) : bits_{bits} {}
-        NESTGRID_INLINE Pack<float> stop() const { return (bits_ << 16).as<float>(); }
-        NESTGRID_INLINE Pack<float> bound() const {
-            return (bits_ & Pack<std::uint32_t>::all(0xFFFF0000U)).as<float>();
-        }
-
-    private:
-        Pack<std::uint32_t> bits_;  // the stop below the bound
-    };
-    NESTGRID_INLINE Known look_up(const NodeKey* nodes) const {
-        if (dense_ != nullptr) {
-            const Entry* const entry = dense_.get();
-            return Known(Pack<std::uint32_t>::make([&](auto i) NESTGRID_INLINE_LAMBDA {
-                return entry[static_cast<std::size_t>(nodes[i])].bits();
-            }));
-        }
-        return look_up_sparse(nodes);
-    }
-
-    /// The same for the new nodes of one split.
-    NESTGRID_INLINE float bound(const Rule& rule, std::span<const NodeKey> nodes) const {
-        return rule.inside == no_new_node ? bound(nodes) : bound(nodes[rule.inside]);
-    }
-
-    /// The largest stop of the new nodes of one split, where one look tells; else infinity.
-    NESTGRID_INLINE float largest_stop(const Rule& rule, std::span<const NodeKey> nodes) const {
-        if (rule.inside == no_new_node) return std::numeric_limits<float>::infinity();
-        return stop(nodes[rule.inside]);
-    }
-
-    /// Whether elements that stop conform on a grid without hanging nodes, because each split makes
-    /// one new node at most (bisection): a saturated S stops all elements at it, or none.
-    bool stops_conform() const { return facts_.largest_split <= 1; }
-
-    /// The deepest level, where every split divides all edges and faces of its element, so that
-    /// what lies on that level has no finer neighbour; else -1.
-    int finest_level() const { return facts_.all_divided ? facts_.finest_level : -1; }
-
-    /// Nodes that hang, where the grid did not say so itself: hand them to every Traversal.
-    const HangingNodes* hanging() const { return hanging_.size() > 0 ? &hanging_ : nullptr; }
 
     /// The largest difference between the field at a hanging node and its interpolant there, where
-    /// the field gives one. Not 0 up to rounding: constraints were not distributed. The field is
-    /// interpolated there all the same.
+    /// the field gives one. More than rounding says that constraints were not distributed, or that
+    /// elements of degree > 1 are curved there. The field is interpolated there all the same.
     double hanging_violation() const { return facts_.hanging_violation; }
 
     double least() const { return facts_.least; }        ///< of the values at all nodes
     double greatest() const { return facts_.greatest; }  ///< of the values at all nodes
     std::size_t node_count() const { return node_count_; }
-    std::uint64_t epoch() const { return epoch_; }  ///< of the grid this was computed on
+    std::uint64_t epoch() const override { return epoch_; }
 
-    std::size_t memory_bytes() const {
-        return (dense_ == nullptr ? 0 : node_count_ * sizeof(Entry)) + sparse_.memory_bytes() +
-               hanging_.memory_bytes();
-    }
+    std::size_t memory_bytes() const;
+
+    const detail::IndicatorEntries& entries() const { return entries_; }
 
 private:
-    struct Entry {
-        std::uint16_t stop;   // bfloat16, rounded up
-        std::uint16_t bound;  // bfloat16, rounded up
+    template <class Real>
+    void prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
+                 const Executor& executor);
 
-        NESTGRID_INLINE std::uint32_t bits() const {
-            if constexpr (std::endian::native == std::endian::little) {
-                std::uint32_t both;
-                std::memcpy(&both, this, sizeof both);
-                return both;
-            } else {
-                return stop | std::uint32_t{bound} << 16U;
-            }
-        }
-        NESTGRID_INLINE static Entry of(std::uint32_t bits) {
-            return {static_cast<std::uint16_t>(bits), static_cast<std::uint16_t>(bits >> 16U)};
-        }
-    };
-    NESTGRID_INLINE Entry entry(NodeKey node) const {
-        if (dense_ != nullptr) return dense_[static_cast<std::size_t>(node)];
-        return sparse_entry(node);
-    }
-    NESTGRID_NOINLINE Entry sparse_entry(NodeKey node) const {
-        const Entry* e = sparse_.find(node);
-        return e == nullptr ? Entry{} : *e;
-    }
-
-    NESTGRID_NOINLINE Known look_up_sparse(const NodeKey* nodes) const {
-        return Known(Pack<std::uint32_t>::make(
-            [&](auto i) NESTGRID_INLINE_LAMBDA { return sparse_entry(nodes[i]).bits(); }));
-    }
-
-    template <class Grid, class Field, class LeafError, class E>
-    void sweep(const Grid& grid, const Field& field, const LeafError& leaf_error,
-               const E& executor);
-    // indicator_stars.hpp
-    template <class Grid>
-    void add_splits(const Grid& grid);
-    template <class Grid, class Field>
-    void sweep_stars(const Grid& grid, const Field& field);
-    // indicator_levels.hpp
-    class Sweeps;
-    template <class Grid, class Field, class LeafError, class E>
-    void sweep_levels(const Grid& grid, const Field& field, const LeafError& leaf_error,
-                      const E& executor);
-
-    std::unique_ptr<Entry[]> dense_;  // by node, where keys are dense; else null
-    KeyTable<NodeKey, Entry> sparse_;
+    detail::IndicatorEntries entries_;
     HangingNodes hanging_;
     detail::PrerollFacts facts_;
     std::size_t node_count_ = 0;
@@ -223,31 +219,4 @@ private:
     bool own_errors_ = false;  // of leaves, instead of offsets
 };
 
-namespace detail {
-
-template <class Grid, class Field>
-concept KnowsStars = KnowsRows<Field> && requires(const Grid& g) {
-    g.for_each_star_row([](const StarRow&) {});
-};
-
-}  // namespace detail
-
-template <class Grid, class Field, class LeafError, class E>
-void HierarchicalIndicator::sweep(const Grid& grid, const Field& field, const LeafError& leaf_error,
-                                  const E& executor) {
-    static_assert(require_nested_grid<Grid>());
-    static_assert(require_nodal_field<Field, Grid>());
-    if (hanging_nodes_unknown(grid)) hanging_ = derive_hanging_nodes(grid);
-    if constexpr (detail::KnowsStars<Grid, Field> && std::is_same_v<LeafError, detail::Nothing>) {
-        if (knows_stars(grid) && knows_stars(field)) {
-            sweep_stars(grid, field);
-            return;
-        }
-    }
-    sweep_levels(grid, field, leaf_error, executor);
-}
-
 }  // namespace nestgrid
-
-#include <nestgrid/algorithms/indicator_levels.hpp>
-#include <nestgrid/algorithms/indicator_stars.hpp>

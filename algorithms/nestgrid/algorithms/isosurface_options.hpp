@@ -42,14 +42,14 @@ struct IsosurfaceOptions {
     std::function<bool(const TraversalCounts&)> progress{};
 };
 
-template <int dimension, class Element>
+template <int dimension>
 struct Isosurface {
-    Surface<dimension, Element> surface;
+    Surface<dimension> surface;
     TraversalCounts counts;
     /// On every triangle U differs from C by at most this, U being the data interpolated on the
     /// finest grid: what S projected away, and in shapes other than simplices what the flatness of
     /// the triangles adds. Exact as far as triangles lie in their elements, which curved faces of
-    /// deformed elements do not quite allow.
+    /// deformed elements do not quite allow. Infinity under a criterion that is not saturated.
     double error_bound = 0;
     bool cancelled = false;       ///< by options.progress; the surface is then a part
     std::size_t table_bytes = 0;  ///< hash tables used while extracting

@@ -7,25 +7,50 @@
 // one thread, a surface no larger than those before is drawn without any allocation.
 #pragma once
 
-#include <optional>
+#include <memory>
 
 #include <nestgrid/algorithms/isosurface.hpp>
 
 namespace nestgrid {
 
+namespace detail {
+
+/// What a series keeps.
+template <int dimension>
+class SeriesState {
+public:
+    virtual ~SeriesState() = default;
+    virtual const Isosurface<dimension>& draw(const HierarchicalIndicator& indicator,
+                                              double isovalue, const IsosurfaceOptions& options,
+                                              const Executor& executor) = 0;
+};
+
+template <int dimension>
+std::unique_ptr<SeriesState<dimension>> make_series(
+    std::unique_ptr<const Hierarchy<float>> hierarchy, const HierarchicalIndicator& indicator);
+template <int dimension>
+std::unique_ptr<SeriesState<dimension>> make_series(
+    std::unique_ptr<const Hierarchy<double>> hierarchy, const HierarchicalIndicator& indicator);
+
+}  // namespace detail
+
 /// Grid and field must outlive it.
-template <class Grid, class Field>
+template <int dimension>
 class IsosurfaceSeries {
 public:
-    using Result = Isosurface<Grid::dimension, ElementOf<Grid>>;
+    using Result = Isosurface<dimension>;
 
     /// Does the preroll, by the threads of an executor.
     /// \throw InvalidInput, GridError as HierarchicalIndicator
-    template <Executor E = SequentialExecutor>
-    IsosurfaceSeries(const Grid& grid, const Field& field, const E& executor = {})
+    template <class Grid, class Field>
+        requires(Grid::dimension == dimension)
+    IsosurfaceSeries(const Grid& grid, const Field& field,
+                     const Executor& executor = SequentialExecutor{})
         : indicator_{grid, field, executor},
-          criterion_{&indicator_, 0},
-          walk_{grid, field, indicator_.hanging()} {}
+          state_{detail::make_series<dimension>(
+              std::unique_ptr<const Hierarchy<typename Field::value_type>>(
+                  new detail::ErasedHierarchy<Grid, Field>(grid, field)),
+              indicator_)} {}
     IsosurfaceSeries(const IsosurfaceSeries&) = delete;
     IsosurfaceSeries& operator=(const IsosurfaceSeries&) = delete;
 
@@ -33,40 +58,19 @@ public:
 
     /// What isosurface() gives, until the next call.
     /// \throw as isosurface()
-    template <Executor E = SequentialExecutor>
     const Result& draw(double isovalue, const IsosurfaceOptions& options = {},
-                       const E& executor = {}) {
-        const std::span<const double> isovalues(&isovalue, 1);
-        detail::require_drawable(walk_.grid(), isovalues, indicator_);
-        criterion_ =
-            criterion_for(walk_.grid(), walk_.field(), isovalue, indicator_, options, executor);
-        options_ = options;
-        Surface<Grid::dimension, ElementOf<Grid>>& surface = result_.surface;
-        surface.clear();
-        sinks_.clear();
-        sinks_.emplace_back(surface, options.elements);
-        if (visitor_) {
-            visitor_->begin_again(isovalues, sinks_);
-        } else {
-            visitor_.emplace(walk_, isovalues, sinks_, criterion_, indicator_, options_);
-        }
-        result_.cancelled = detail::run_visitor(*visitor_, executor);
-        visitor_->report(0, result_);
-        return result_;
+                       const Executor& executor = SequentialExecutor{}) {
+        return state_->draw(indicator_, isovalue, options, executor);
     }
 
 private:
-    using S = Threshold<HierarchicalIndicator>;
-    using Sink = SurfaceSink<Grid::dimension, ElementOf<Grid>>;
-    using Visitor = detail::IsosurfaceVisitor<Grid, Field, S, HierarchicalIndicator, Sink>;
-
     HierarchicalIndicator indicator_;
-    S criterion_;
-    IsosurfaceOptions options_;
-    typename Visitor::Walk walk_;
-    std::vector<Sink> sinks_;
-    std::optional<Visitor> visitor_;
-    Result result_;
+    std::unique_ptr<detail::SeriesState<dimension>> state_;
 };
+
+template <class Grid, class Field>
+IsosurfaceSeries(const Grid&, const Field&) -> IsosurfaceSeries<Grid::dimension>;
+template <class Grid, class Field>
+IsosurfaceSeries(const Grid&, const Field&, const Executor&) -> IsosurfaceSeries<Grid::dimension>;
 
 }  // namespace nestgrid

@@ -9,8 +9,6 @@
 #include <cstdint>
 #include <limits>
 
-#include <nestgrid/pack.hpp>
-
 namespace nestgrid {
 
 /// The least float that is not below x >= 0.
@@ -62,29 +60,6 @@ inline float sum_above(float a, float b) {
     return raised(s, error > 0);
 }
 
-/// The next floats above x >= 0 where the error is positive.
-template <std::size_t size>
-Pack<float, size> raised(const Pack<float, size>& x, const Pack<float, size>& error) {
-    const auto zero = Pack<float, size>::all(0);
-    const auto raise = without(at_most(zero, error), at_most(error, zero));  // not where it is NaN
-    return (x.template as<std::uint32_t>() - raise).template as<float>();    // minus -1
-}
-/// The same of several at once.
-template <std::size_t size>
-Pack<float, size> distance_above(const Pack<float, size>& a, const Pack<float, size>& b) {
-    const Pack<float, size> greater = max(a, b);
-    const Pack<float, size> less = min(a, b);
-    const Pack<float, size> d = greater - less;
-    const Pack<float, size> b_part = greater - d;
-    return raised(d, (greater - (d + b_part)) + (b_part - less));
-}
-template <std::size_t size>
-Pack<float, size> sum_above(const Pack<float, size>& a, const Pack<float, size>& b) {
-    const Pack<float, size> s = a + b;
-    const Pack<float, size> b_part = s - a;
-    return raised(s, (a - (s - b_part)) + (b - b_part));
-}
-
 inline constexpr std::uint16_t bfloat16_infinity = 0x7F80;
 
 /// Bits of the least bfloat16 that is not below x >= 0; their order is that of the numbers.
@@ -94,11 +69,10 @@ inline std::uint16_t bfloat16_above(float x) {
     return static_cast<std::uint16_t>(up < bfloat16_infinity ? up : bfloat16_infinity);
 }
 
-/// The same of several at once, in the upper halves of numbers; the lower ones are 0.
-template <std::size_t size>
-Pack<std::uint32_t, size> bfloat16_above(const Pack<float, size>& x) {
-    using Bits = Pack<std::uint32_t, size>;
-    return (x.template as<std::uint32_t>() + Bits::all(0xFFFFU)) & Bits::all(0xFFFF0000U);
+/// Bits of the greatest bfloat16 that is not above x >= 0.
+inline std::uint16_t bfloat16_below(double x) {
+    const float positive = float_below(x) + 0.0F;  // 0 where x is -0
+    return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(positive) >> 16U);
 }
 
 inline float bfloat16_value(std::uint16_t bits) {

@@ -34,49 +34,35 @@ struct SurfaceMeasurement {
     SurfaceMeasures total;
 };
 
-namespace detail {
-SurfaceMeasurement measure_triangles(const TriangleView& surface);
-std::vector<double> flux_through(const TriangleView& surface, const SurfaceMeasurement& measured,
-                                 std::size_t first);
-}  // namespace detail
-
 /// Measures a triangle surface, component by component.
-template <class Element>
-SurfaceMeasurement measure_surface(const Surface<3, Element>& surface) {
-    return detail::measure_triangles(detail::view(surface));
-}
+SurfaceMeasurement measure_surface(const Surface<3>& surface);
 
 /// Flux of a vector field through each component, out of U >= C. The field is component `first`,
 /// `first` + 1 and `first` + 2 of the attributes.
 /// \throw InvalidInput where there are not so many attributes
-template <class Element>
-std::vector<double> flux(const Surface<3, Element>& surface, const SurfaceMeasurement& measured,
-                         std::size_t first = 0) {
-    return detail::flux_through(detail::view(surface), measured, first);
-}
+std::vector<double> flux(const Surface<3>& surface, const SurfaceMeasurement& measured,
+                         std::size_t first = 0);
 
 /// Volume of the part of the domain where low <= U < high, under the projection with a threshold:
 /// the difference of two capped surfaces, of which nothing is kept.
 /// \throw InvalidInput unless low <= high
-template <class Grid, class Field, class Indicator>
+template <class Grid, class Field>
 double volume_between(const Grid& grid, const Field& field, double low, double high,
-                      const Indicator& indicator, double threshold = 0) {
+                      const HierarchicalIndicator& indicator, double threshold = 0) {
     static_assert(Grid::dimension == 3, "volumes need a grid of dimension 3");
     if (!(low <= high)) throw InvalidInput("the lower isovalue is not below the upper one");
     Context<Grid> context = make_context(grid);
     const Point origin = detail::call_coarse(grid, context, 0).corners[0];
     std::array<double, 2> volume{0, 0};
     const auto adder = [&origin](double* sum) {
-        return [sum, &origin](const std::array<Point, 3>& x) {
+        return SimplexStream<3>([sum, &origin](const std::array<Point, 3>& x) {
             *sum += dot(x[0] - origin, cross(x[1] - origin, x[2] - origin)) / 6;
-        };
+        });
     };
-    using Sink = SimplexStream<3, decltype(adder(nullptr))>;
     const std::array<double, 2> isovalues{low, high};
-    const Threshold<Indicator> criterion{&indicator, threshold};
     extract_isosurfaces(grid, field, std::span<const double>(isovalues),
-                        std::vector<Sink>{Sink(adder(&volume[0])), Sink(adder(&volume[1]))},
-                        criterion, indicator, {.cap = true});
+                        std::vector{adder(&volume[0]), adder(&volume[1])},
+                        Threshold(&indicator, threshold), indicator, {.cap = true});
     return volume[0] - volume[1];
 }
 

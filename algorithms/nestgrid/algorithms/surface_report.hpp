@@ -32,15 +32,8 @@ struct SurfaceReport {
     }
 };
 
-namespace detail {
-SurfaceReport report_on(const TriangleView& surface);
-}
-
 /// Counts and measures a triangle surface.
 /// \throw InvalidInput where a triangle repeats a vertex or names one that does not exist
-template <class Element>
-SurfaceReport surface_report(const Surface<3, Element>& surface) {
-    return detail::report_on(detail::view(surface));
-}
+SurfaceReport surface_report(const Surface<3>& surface);
 
 }  // namespace nestgrid

@@ -80,6 +80,16 @@ void find_new_corners(Rule& rule) {
 }
 
 /// Fills Child::parent_face of every child.
+void mark_nodes(Rule& rule) {
+    if (rule.new_nodes.size() + topology(rule.parent).corners > 64) return;
+    for (Child& child : rule.children) {
+        child.nodes = 0;
+        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+            child.nodes |= std::uint64_t{1} << child.corner[i];
+        }
+    }
+}
+
 void find_parent_faces(Rule& rule) {
     const std::vector<unsigned> incidence = detail::face_incidence(rule);
     for (Child& child : rule.children) {
@@ -152,6 +162,7 @@ Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_nodes,
     if (auto violation = find_violation(rule)) throw InvalidInput(*violation);
     for (Stencil& s : rule.new_nodes) complete_stencil(rule, s);
     find_new_corners(rule);
+    mark_nodes(rule);
     find_parent_faces(rule);
     count_steps(rule);
     detail::find_parts(rule);

@@ -103,6 +103,11 @@ std::optional<std::string> find_child_violation(const Rule& rule) {
                 return who + " lies outside its father at " + node_name(rule, child.corner[i]);
             }
         }
+        const auto is_new = [&](std::uint8_t node) { return node >= rule.corner_count(); };
+        if (!rule.new_nodes.empty() &&
+            std::none_of(child.corner.begin(), child.corner.begin() + t.corners, is_new)) {
+            return who + " has no new node for a corner";
+        }
         const double volume = detail::signed_reference_measure(child.shape, x);
         if (!(child.orientation * volume > rule_tolerance)) {
             return who + " is inverted or flat under its orientation sign";

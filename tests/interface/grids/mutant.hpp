@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include <nestgrid/derive_hanging.hpp>
+#include <nestgrid/algorithms/hanging_nodes.hpp>
 
 #include "forest.hpp"
 

@@ -20,6 +20,7 @@
 #include <bit>
 
 #include <nestgrid/adapters/lattice.hpp>
+#include <nestgrid/hierarchy.hpp>
 #include <nestgrid/known_bisection.hpp>
 #include <nestgrid/standard_rules.hpp>
 
@@ -180,6 +181,28 @@ private:
     std::array<const Rule*, corners_> rules_{};  // by tag
     Place last_ = 0;                             // of the domain
 };
+
+/// Types of samples whose walk in blocks is compiled in the library. Lattices with other samples
+/// are walked one bisection at a time.
+template <class Sample>
+concept WalkedInBlocks = std::same_as<Sample, float> || std::same_as<Sample, double> ||
+    std::same_as<Sample, std::int8_t> || std::same_as<Sample, std::uint8_t> ||
+    std::same_as<Sample, std::int16_t> || std::same_as<Sample, std::uint16_t> ||
+    std::same_as<Sample, std::int32_t> || std::same_as<Sample, std::uint32_t> ||
+    std::same_as<Sample, std::int64_t> || std::same_as<Sample, std::uint64_t>;
+
+template <int dim, WalkedInBlocks Sample>
+bool knows_blocks(const LatticeBisection<dim>&, const LatticeField<LatticeBisection<dim>, Sample>&,
+                  const HierarchyFacts&) {
+    return true;
+}
+
+/// Hierarchy::bisect() of a lattice; compiled for the types above.
+template <int dim, WalkedInBlocks Sample, class Real>
+void bisect_blocks(const LatticeBisection<dim>& grid,
+                   const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext& context,
+                   const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
+                   int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
 
 }  // namespace nestgrid
 

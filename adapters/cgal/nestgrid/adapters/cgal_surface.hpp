@@ -16,7 +16,7 @@ namespace nestgrid {
 /// A sink (surface.hpp) of a CGAL::Surface_mesh with points of any kernel. Normals become the
 /// vertex property "v:normal"; attributes are not kept.
 template <class SurfacePoint>
-class SurfaceMeshSink {
+class SurfaceMeshSink final : public MeshSink<3> {
 public:
     using Mesh = CGAL::Surface_mesh<SurfacePoint>;
 
@@ -24,27 +24,26 @@ public:
     explicit SurfaceMeshSink(Mesh& mesh)
         : mesh_{&mesh}, first_{static_cast<std::uint32_t>(mesh.number_of_vertices())} {}
 
-    void add_vertex(const Point& x, std::span<const double>) {
-        mesh_->add_vertex(SurfacePoint(x[0], x[1], x[2]));
+    /// \throw GridError where a triangle would make the mesh non-manifold
+    void take(const Surface<3>& part) override {
+        for (const Point& x : part.vertices) mesh_->add_vertex(SurfacePoint(x[0], x[1], x[2]));
+        for (const auto& [a, b, c] : part.simplices) {
+            if (mesh_->add_face(handle(a), handle(b), handle(c)) == Mesh::null_face()) {
+                throw GridError("a triangle would make the surface non-manifold");
+            }
+        }
     }
-    Point position(std::uint32_t vertex) const {
+    Point position(std::uint32_t vertex) const override {
         const SurfacePoint& p = mesh_->point(handle(vertex));
         return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
     }
-    template <class Element>
-    void add_element(const Element&, Shape, int) {}
-    /// \throw GridError where the triangle would make the mesh non-manifold
-    void add_simplex(const std::array<std::uint32_t, 3>& v, std::span<const Point>) {
-        if (mesh_->add_face(handle(v[0]), handle(v[1]), handle(v[2])) == Mesh::null_face()) {
-            throw GridError("a triangle would make the surface non-manifold");
-        }
-    }
-    void add_boundary(const std::array<std::uint32_t, 2>&) {}
-    void set_normal(std::uint32_t vertex, const Point& n) {
+    void set_normals(std::span<const Point> normals) override {
         using Vector = typename CGAL::Kernel_traits<SurfacePoint>::Kernel::Vector_3;
-        const auto normals =
+        const auto to =
             mesh_->template add_property_map<typename Mesh::Vertex_index, Vector>("v:normal").first;
-        normals[handle(vertex)] = Vector(n[0], n[1], n[2]);
+        for (std::uint32_t v = 0; v < normals.size(); ++v) {
+            to[handle(v)] = Vector(normals[v][0], normals[v][1], normals[v][2]);
+        }
     }
 
 private:

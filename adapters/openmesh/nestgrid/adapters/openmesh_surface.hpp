@@ -14,29 +14,30 @@ namespace nestgrid {
 /// A sink (surface.hpp) of an OpenMesh triangle mesh. Normals are requested where they are asked
 /// for; attributes are not kept.
 template <class Mesh>
-class OpenMeshSink {
+class OpenMeshSink final : public MeshSink<3> {
 public:
     /// \param mesh is added to
     explicit OpenMeshSink(Mesh& mesh)
         : mesh_{&mesh}, first_{static_cast<std::uint32_t>(mesh.n_vertices())} {}
 
-    void add_vertex(const Point& x, std::span<const double>) { mesh_->add_vertex(vector(x)); }
-    Point position(std::uint32_t vertex) const {
+    /// \throw GridError where a triangle would make the mesh non-manifold
+    void take(const Surface<3>& part) override {
+        for (const Point& x : part.vertices) mesh_->add_vertex(vector(x));
+        for (const auto& [a, b, c] : part.simplices) {
+            if (!mesh_->add_face(handle(a), handle(b), handle(c)).is_valid()) {
+                throw GridError("a triangle would make the surface non-manifold");
+            }
+        }
+    }
+    Point position(std::uint32_t vertex) const override {
         const auto& p = mesh_->point(handle(vertex));
         return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
     }
-    template <class Element>
-    void add_element(const Element&, Shape, int) {}
-    /// \throw GridError where the triangle would make the mesh non-manifold
-    void add_simplex(const std::array<std::uint32_t, 3>& v, std::span<const Point>) {
-        if (!mesh_->add_face(handle(v[0]), handle(v[1]), handle(v[2])).is_valid()) {
-            throw GridError("a triangle would make the surface non-manifold");
-        }
-    }
-    void add_boundary(const std::array<std::uint32_t, 2>&) {}
-    void set_normal(std::uint32_t vertex, const Point& n) {
+    void set_normals(std::span<const Point> normals) override {
         if (!mesh_->has_vertex_normals()) mesh_->request_vertex_normals();
-        mesh_->set_normal(handle(vertex), vector(n));
+        for (std::uint32_t v = 0; v < normals.size(); ++v) {
+            mesh_->set_normal(handle(v), vector(normals[v]));
+        }
     }
 
 private:

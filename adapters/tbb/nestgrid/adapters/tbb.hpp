@@ -6,16 +6,16 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
-#include <type_traits>
 
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <nestgrid/algorithms/executor.hpp>
+
 namespace nestgrid {
 
-class TbbExecutor {
+class TbbExecutor final : public Executor {
 public:
     /// \param threads how many to use, though no more than oneTBB would; 0: all of these
     explicit TbbExecutor(int threads = 0)
@@ -23,15 +23,12 @@ public:
               threads > 0 ? std::min(threads, tbb::info::default_concurrency())
                           : tbb::info::default_concurrency())} {}
 
-    std::size_t concurrency() const { return static_cast<std::size_t>(arena_->max_concurrency()); }
+    std::size_t concurrency() const override {
+        return static_cast<std::size_t>(arena_->max_concurrency());
+    }
 
-    template <class Work, class Consume>
-    void run(std::size_t count, Work&& work, Consume&& consume) const {
-        using Result = std::decay_t<decltype(work(count))>;
-        struct Task {
-            std::size_t number;
-            std::optional<Result> result;
-        };
+    void run(std::size_t count, const std::function<void(std::size_t)>& work,
+             const std::function<void(std::size_t)>& consume) const override {
         std::size_t next = 0;
         const auto begin = [&](tbb::flow_control& flow) {
             if (next == count) {
@@ -40,19 +37,18 @@ public:
             }
             return next++;
         };
-        const auto draw = [&](std::size_t i) { return std::make_shared<Task>(Task{i, work(i)}); };
-        const auto end = [&](const std::shared_ptr<Task>& task) {
-            consume(task->number, *std::move(task->result));
+        const auto draw = [&](std::size_t i) {
+            work(i);
+            return i;
         };
         // More parts in flight than threads: one that takes long does not hold up the others.
         arena_->execute([&] {
             tbb::parallel_pipeline(
                 4 * concurrency(),
                 tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
-                    tbb::make_filter<std::size_t, std::shared_ptr<Task>>(tbb::filter_mode::parallel,
-                                                                         draw) &
-                    tbb::make_filter<std::shared_ptr<Task>, void>(tbb::filter_mode::serial_in_order,
-                                                                  end));
+                    tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, draw) &
+                    tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order,
+                                                        consume));
         });
     }
 

@@ -15,6 +15,7 @@
 
 #include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
 
 namespace nestgrid {
 

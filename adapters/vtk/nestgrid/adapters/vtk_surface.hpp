@@ -31,7 +31,7 @@ namespace nestgrid {
 /// element in the order of extraction ("element") and its level ("level"); points have the
 /// attributes, and normals where they are asked for ("Normals").
 template <int dimension>
-class PolyDataSink {
+class PolyDataSink final : public MeshSink<dimension> {
 public:
     /// \param attributes names of components 1 ... of the field
     explicit PolyDataSink(std::vector<std::string> attributes = {})
@@ -47,90 +47,79 @@ public:
 
     vtkPolyData* data() const { return data_; }
 
-    void add_vertex(const Point& x, std::span<const double> attributes) {
-        points_->InsertNextPoint(x.data());
-        for (std::size_t i = attributes_.size(); i < attributes.size(); ++i) {
+    void take(const Surface<dimension>& part) override {
+        for (const Point& x : part.vertices) points_->InsertNextPoint(x.data());
+        if (!part.vertices.empty()) {
+            add_attributes(part.attributes, part.attributes.size() / part.vertices.size());
+        }
+        for (std::size_t t = 0; t < part.simplices.size(); ++t) {
+            cells_->InsertNextCell(dimension);
+            for (const std::uint32_t v : part.simplices[t]) {
+                cells_->InsertCellPoint(static_cast<vtkIdType>(v));
+            }
+            const bool known = !part.element_of.empty();
+            const std::uint32_t e = known ? part.element_of[t] : 0;
+            element_->InsertNextValue(known ? elements_ + static_cast<int>(e) : -1);
+            level_->InsertNextValue(known ? part.level_of[e] : 0);
+        }
+        elements_ += static_cast<int>(part.level_of.size());
+    }
+    Point position(std::uint32_t vertex) const override {
+        Point x;
+        points_->GetPoint(static_cast<vtkIdType>(vertex), x.data());
+        return x;
+    }
+    bool keeps_elements() const override { return true; }
+    void set_normals(std::span<const Point> normals) override {
+        const vtkNew<vtkFloatArray> array;
+        array->SetName("Normals");
+        array->SetNumberOfComponents(3);
+        array->SetNumberOfTuples(static_cast<vtkIdType>(normals.size()));
+        for (std::size_t v = 0; v < normals.size(); ++v) {
+            array->SetTuple(static_cast<vtkIdType>(v), normals[v].data());
+        }
+        data_->GetPointData()->SetNormals(array);
+    }
+
+private:
+    /// \param count of attributes, vertex by vertex
+    void add_attributes(std::span<const double> values, std::size_t count) {
+        for (std::size_t i = attributes_.size(); i < count; ++i) {
             attributes_.push_back(vtkSmartPointer<vtkDoubleArray>::New());
             const std::string name =
                 i < names_.size() ? names_[i] : "component " + std::to_string(i + 1);
             attributes_[i]->SetName(name.c_str());
             data_->GetPointData()->AddArray(attributes_[i]);
         }
-        for (std::size_t i = 0; i < attributes.size(); ++i) {
-            attributes_[i]->InsertNextValue(attributes[i]);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            attributes_[i % count]->InsertNextValue(values[i]);
         }
-    }
-    Point position(std::uint32_t vertex) const {
-        Point x;
-        points_->GetPoint(static_cast<vtkIdType>(vertex), x.data());
-        return x;
-    }
-    template <class Element>
-    void add_element(const Element&, Shape, int level) {
-        ++elements_;
-        current_level_ = level;
-    }
-    void add_simplex(const std::array<std::uint32_t, static_cast<std::size_t>(dimension)>& vertices,
-                     std::span<const Point>) {
-        cells_->InsertNextCell(dimension);
-        for (const std::uint32_t v : vertices) cells_->InsertCellPoint(static_cast<vtkIdType>(v));
-        element_->InsertNextValue(elements_ - 1);
-        level_->InsertNextValue(current_level_);
-    }
-    void add_boundary(const std::array<std::uint32_t, static_cast<std::size_t>(dimension - 1)>&) {}
-    void set_normal(std::uint32_t vertex, const Point& unit) {
-        if (data_->GetPointData()->GetNormals() == nullptr) {
-            normals_->SetName("Normals");
-            normals_->SetNumberOfComponents(3);
-            normals_->SetNumberOfTuples(points_->GetNumberOfPoints());
-            data_->GetPointData()->SetNormals(normals_);
-        }
-        normals_->SetTuple(static_cast<vtkIdType>(vertex), unit.data());
     }
 
-private:
     std::vector<std::string> names_;
     vtkSmartPointer<vtkPolyData> data_ = vtkSmartPointer<vtkPolyData>::New();
     vtkSmartPointer<vtkPoints> points_ = vtkSmartPointer<vtkPoints>::New();
     vtkSmartPointer<vtkCellArray> cells_ = vtkSmartPointer<vtkCellArray>::New();
     vtkSmartPointer<vtkIntArray> element_ = vtkSmartPointer<vtkIntArray>::New();
     vtkSmartPointer<vtkIntArray> level_ = vtkSmartPointer<vtkIntArray>::New();
-    vtkSmartPointer<vtkFloatArray> normals_ = vtkSmartPointer<vtkFloatArray>::New();
     std::vector<vtkSmartPointer<vtkDoubleArray>> attributes_;
     int elements_ = 0;
-    int current_level_ = 0;
 };
 
 /// The surface as vtkPolyData with copies of its arrays.
-template <int dimension, class Element>
-vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension, Element>& surface) {
+template <int dimension>
+vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension>& surface) {
     PolyDataSink<dimension> sink;
-    const std::size_t vertices = surface.vertices.size();
-    const std::size_t attributes = vertices == 0 ? 0 : surface.attributes.size() / vertices;
-    for (std::size_t v = 0; v < vertices; ++v) {
-        sink.add_vertex(surface.vertices[v],
-                        std::span(surface.attributes).subspan(v * attributes, attributes));
-    }
-    std::size_t elements = 0;
-    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        if (!surface.element_of.empty() && surface.element_of[t] == elements) {
-            sink.add_element(surface.elements[elements], surface.shape_of[elements],
-                             surface.level_of[elements]);
-            ++elements;
-        }
-        sink.add_simplex(surface.simplices[t], {});
-    }
-    for (std::uint32_t v = 0; v < surface.normals.size(); ++v) {
-        sink.set_normal(v, surface.normals[v]);
-    }
+    sink.take(surface);
+    if (!surface.normals.empty()) sink.set_normals(surface.normals);
     return sink.data();
 }
 
 /// The surface as vtkPolyData on its own arrays: positions, corners of simplices, normals and
 /// attributes ("attributes", one component each). It must outlive the result and stay as it is.
 /// \throw InvalidInput for more vertices, or corners of simplices, than 32 bits number
-template <int dimension, class Element>
-vtkSmartPointer<vtkPolyData> share_poly_data(Surface<dimension, Element>& surface) {
+template <int dimension>
+vtkSmartPointer<vtkPolyData> share_poly_data(Surface<dimension>& surface) {
     constexpr std::size_t limit = std::numeric_limits<std::int32_t>::max();
     if (std::max(surface.vertices.size(), dimension * surface.simplices.size()) > limit) {
         throw InvalidInput("the surface is too large for VTK's arrays of 32 bits");

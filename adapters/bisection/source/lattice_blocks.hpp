@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The walk in blocks over lattices, for the sources that instantiate it.
+#pragma once
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/erased_bisections.hpp>
+
+namespace nestgrid {
+
+template <int dim, WalkedInBlocks Sample, class Real>
+void bisect_blocks(const LatticeBisection<dim>& grid,
+                   const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext&,
+                   const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
+                   int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) {
+    detail::BisectionForwarder<LatticeBisection<dim>, Real> forward(grid, visitor);
+    walk_bisections(grid, field, forward, e, values, level, orientation,
+                    [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+}
+
+}  // namespace nestgrid
+
+#define NESTGRID_INSTANTIATE(dim, Sample, Real)                                           \
+    template void nestgrid::bisect_blocks(                                                \
+        const LatticeBisection<dim>&, const LatticeField<LatticeBisection<dim>, Sample>&, \
+        NoContext&, const LatticeBisection<dim>::Element&, const Real*, int, int,         \
+        detail::ErasedBisectionVisitor<dim, Real>&);

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lattice_blocks.hpp"
+
+namespace nestgrid {
+
+NESTGRID_INSTANTIATE(2, double, double)
+NESTGRID_INSTANTIATE(2, std::int32_t, double)
+NESTGRID_INSTANTIATE(2, std::uint32_t, double)
+NESTGRID_INSTANTIATE(2, std::int64_t, double)
+NESTGRID_INSTANTIATE(2, std::uint64_t, double)
+
+}  // namespace nestgrid

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lattice_blocks.hpp"
+
+namespace nestgrid {
+
+NESTGRID_INSTANTIATE(2, float, float)
+NESTGRID_INSTANTIATE(2, std::int8_t, float)
+NESTGRID_INSTANTIATE(2, std::uint8_t, float)
+NESTGRID_INSTANTIATE(2, std::int16_t, float)
+NESTGRID_INSTANTIATE(2, std::uint16_t, float)
+
+}  // namespace nestgrid

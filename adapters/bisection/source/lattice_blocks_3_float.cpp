@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lattice_blocks.hpp"
+
+namespace nestgrid {
+
+NESTGRID_INSTANTIATE(3, float, float)
+NESTGRID_INSTANTIATE(3, std::int8_t, float)
+NESTGRID_INSTANTIATE(3, std::uint8_t, float)
+NESTGRID_INSTANTIATE(3, std::int16_t, float)
+NESTGRID_INSTANTIATE(3, std::uint16_t, float)
+
+}  // namespace nestgrid

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The sweep that saturates a function of nodes (paper, section 2):
+//     eta*(x) = max( eta(x), eta*(y) for all nodes y made in elements with the corner x ).
+// A parent of y that is a new node of the same split is to y as a corner is.
+//
+// A child that is split again has a new node of its father for a corner (find_violation() of rules
+// sees to it), so that the sweep reaches a node from all finer ones through one split at a time.
+// It goes fine to coarse until nothing changes, because a node may be created on several levels.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include <indicators/node_numbers.hpp>
+#include <indicators/splits_by_level.hpp>
+
+namespace nestgrid::engine {
+
+/// Raises the corners of one split, and the new nodes that are parents of others, to what its new
+/// nodes have.
+/// \param of numbers of the corners and, behind them, of the new nodes
+/// \param below below(node) is the number that a new node hands to its parents
+/// \param raise raise(node, number) raises a node to a number and returns whether that changed it
+/// \param greatest of all new nodes; set
+/// \return whether anything has changed
+template <class Number, class Below, class Raise>
+bool raise_parents(const Rule& rule, std::span<const std::size_t> of, const Below& below,
+                   const Raise& raise, Number& greatest) {
+    using std::max;
+    bool changed = false;
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    const std::span<const std::size_t> made = of.subspan(corners);
+    for (std::size_t n = made.size(); n-- > 0;) {
+        const Number number = below(made[n]);
+        greatest = max(greatest, number);
+        if (rule.steps == 1) continue;
+        const Stencil& stencil = rule.new_nodes[n];
+        for (std::size_t i = 0; i < stencil.count; ++i) {
+            if (stencil.parent[i] < corners) continue;
+            changed |= raise(of[stencil.parent[i]], number);
+        }
+    }
+    for (const std::size_t corner : of.first(corners)) changed |= raise(corner, greatest);
+    return changed;
+}
+
+/// Calls sweep_split(rule, numbers) for all splits, fine to coarse, until it changes nothing.
+/// \param once whether one round is known to be enough
+template <class SweepSplit>
+void sweep(const SplitsByLevel& splits, bool once, const SweepSplit& sweep_split) {
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t level = splits.levels(); level-- > 0;) {
+            splits.for_each(level, [&](const Rule& rule, std::span<const std::size_t> of) {
+                changed |= sweep_split(rule, of);
+            });
+        }
+        changed = changed && !once;
+    }
+}
+
+/// One number per node of a hierarchy, and all splits.
+/// \tparam Number is ordered by <
+template <class Number>
+class NodeMaxima {
+public:
+    /// \param dense how many dense keys there are, or 0
+    /// \param least the number of nodes for which none was set
+    NodeMaxima(std::size_t dense, Number least)
+        : numbers_{dense},
+          values_(numbers_.count(), least),
+          splits_{values_.size()},
+          least_{least} {}
+
+    /// Finds the numbers of nodes by their keys.
+    void find(std::span<const NodeKey> keys, std::span<std::size_t> out) {
+        numbers_.find(keys, out);
+        values_.resize(numbers_.count(), least_);
+    }
+    Number& operator[](std::size_t node) { return values_[node]; }
+    /// \param nodes numbers of the corners and, behind them, of the new nodes
+    void add_split(int level, const Rule& rule, std::span<const std::size_t> nodes) {
+        splits_.add(static_cast<std::size_t>(level), rule, nodes);
+    }
+
+    void saturate() {
+        const auto below = [&](std::size_t node) { return values_[node]; };
+        const auto raise = [&](std::size_t node, const Number& to) {
+            const bool raises = values_[node] < to;
+            if (raises) values_[node] = to;
+            return raises;
+        };
+        sweep(splits_, false, [&](const Rule& rule, std::span<const std::size_t> of) {
+            Number greatest = least_;
+            return raise_parents(rule, of, below, raise, greatest);
+        });
+    }
+
+    /// Moves the numbers out: by key where keys are dense, else in the order of for_each().
+    std::vector<Number> take() { return std::move(values_); }
+    /// Calls function(key, number of the node), where keys are not dense.
+    template <class Function>
+    void for_each(Function&& function) const {
+        numbers_.for_each(function);
+    }
+
+private:
+    NodeNumbers numbers_;
+    std::vector<Number> values_;
+    SplitsByLevel splits_;
+    Number least_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/indicator.hpp>
+
+#include <string>
+
+#include <indicators/preroll.hpp>
+#include <indicators/stars.hpp>
+#include <nestgrid/error.hpp>
+#include <walk/hanging_nodes.hpp>
+
+namespace nestgrid {
+
+namespace detail {
+
+void PrerollFacts::add(const PrerollFacts& other) {
+    least = std::min(least, other.least);
+    greatest = std::max(greatest, other.greatest);
+    if (!(other.hanging_violation <= hanging_violation)) {
+        hanging_violation = other.hanging_violation;
+    }
+    largest_split = std::max(largest_split, other.largest_split);
+    finest_level = std::max(finest_level, other.finest_level);
+    all_divided = all_divided && other.all_divided;
+    one_level_a_node = one_level_a_node && other.one_level_a_node;
+}
+
+void PrerollFacts::refuse(double value) {
+    throw InvalidInput("a value of the field is not a usable number: " + std::to_string(value));
+}
+
+}  // namespace detail
+
+HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy,
+                                             const LeafErrors& leaf_errors,
+                                             const Executor& executor) {
+    prepare(hierarchy, leaf_errors, executor);
+}
+
+HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy,
+                                             const LeafErrors& leaf_errors,
+                                             const Executor& executor) {
+    prepare(hierarchy, leaf_errors, executor);
+}
+
+template <class Real>
+void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
+                                    const Executor& executor) {
+    epoch_ = hierarchy.epoch();
+    own_errors_ = static_cast<bool>(leaf_errors);
+    if (engine::hanging_nodes_unknown(hierarchy)) {
+        hanging_ = engine::derive_hanging_nodes(hierarchy);
+    }
+    if (hierarchy.facts().knows_stars && !own_errors_) {
+        facts_ = engine::sweep_stars(hierarchy, entries_);
+        node_count_ = hierarchy.facts().node_count;
+        return;
+    }
+    const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true}, hanging());
+    engine::Sweeps sweeps(hierarchy.facts().node_count, own_errors_);
+    facts_ = engine::walk_preroll(walk, leaf_errors, sweeps, executor);
+    sweeps.saturate();
+    facts_.one_level_a_node = sweeps.one_level_a_node();
+    node_count_ = sweeps.node_count();
+    sweeps.store(entries_);
+}
+
+std::size_t HierarchicalIndicator::memory_bytes() const {
+    return (entries_.dense == nullptr ? 0 : node_count_ * sizeof(detail::IndicatorEntry)) +
+           entries_.sparse.memory_bytes() + hanging_.memory_bytes();
+}
+
+}  // namespace nestgrid

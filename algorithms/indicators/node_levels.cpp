@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/node_levels.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include <indicators/fine_to_coarse.hpp>
+#include <walk/for_each_element.hpp>
+
+namespace nestgrid {
+
+namespace {
+
+/// Minus the level: what is greater is coarser.
+using Heights = engine::NodeMaxima<std::int16_t>;
+
+constexpr std::int16_t unknown = std::numeric_limits<std::int16_t>::min();
+constexpr std::int16_t outside = 1;
+
+/// Sets the heights of the corners of coarse elements and of the new nodes of a split.
+void add_element(const engine::Walk<float>& walk, const engine::ElementView<float>& view,
+                 const engine::Split& split, Heights& heights) {
+    const std::size_t corners = view.corner_count();
+    std::array<NodeKey, max_corners> keys;
+    std::array<std::size_t, max_corners + max_new_nodes> nodes;
+    walk.corners(view, keys.data(), nullptr);
+    heights.find(std::span(keys).first(corners), nodes);
+    for (std::size_t i = 0; view.level == 0 && i < corners; ++i) heights[nodes[i]] = 0;
+    if (split.rule == nullptr) return;
+    heights.find(split.keys, std::span(nodes).subspan(corners));
+    const auto height = static_cast<std::int16_t>(-view.level - 1);
+    for (std::size_t n = 0; n < split.keys.size(); ++n) {
+        std::int16_t& at = heights[nodes[corners + n]];
+        if (at != outside) at = at == unknown ? height : std::min(at, height);
+        if ((split.outside >> n & 1U) != 0) at = outside;
+    }
+    heights.add_split(view.level, *split.rule, std::span(nodes).first(corners + split.keys.size()));
+}
+
+}  // namespace
+
+NodeLevels::NodeLevels(const Hierarchy<float>& hierarchy) {
+    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true});
+    Heights heights(hierarchy.facts().node_count, unknown);
+    engine::for_each_element(
+        walk, true, [&](const engine::ElementView<float>& view, const engine::Split& split) {
+            add_element(walk, view, split, heights);
+        });
+    heights.saturate();
+    std::vector<std::int16_t> saturated = heights.take();
+    if (hierarchy.facts().node_count != 0) {
+        dense_ = std::move(saturated);
+        std::ranges::replace(dense_, unknown, std::int16_t{0});
+        return;
+    }
+    sparse_.reserve(saturated.size());
+    heights.for_each([&](NodeKey key, std::size_t node) { sparse_.insert(key, saturated[node]); });
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Numbers of nodes, so that arrays can keep data of nodes while a grid is walked.
+#pragma once
+
+#include <span>
+
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid::engine {
+
+/// The keys themselves where keys are dense, else 0, 1, ... in the order the nodes are met.
+class NodeNumbers {
+public:
+    /// \param dense how many dense keys there are, or 0
+    explicit NodeNumbers(std::size_t dense) : dense_{dense} {}
+
+    bool are_keys() const { return dense_ != 0; }
+    /// Above all numbers so far.
+    std::size_t count() const { return are_keys() ? dense_ : sparse_.size(); }
+
+    /// \param out has a place for each key
+    void find(std::span<const NodeKey> keys, std::span<std::size_t> out) {
+        if (are_keys()) {
+            for (std::size_t i = 0; i < keys.size(); ++i)
+                out[i] = static_cast<std::size_t>(keys[i]);
+            return;
+        }
+        for (const NodeKey key : keys) sparse_.prefetch(key);
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            out[i] = *sparse_.insert(keys[i], sparse_.size()).first;
+        }
+    }
+
+    /// Calls function(key, number) for all nodes that were met, where numbers are not keys.
+    template <class Function>
+    void for_each(Function&& function) const {
+        sparse_.for_each(function);
+    }
+
+private:
+    std::size_t dense_;
+    KeyTable<NodeKey, std::size_t> sparse_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The splits that one walk has met, to be swept over level by level.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include <nestgrid/error.hpp>
+#include <nestgrid/rule.hpp>
+
+namespace nestgrid::engine {
+
+/// The splits of a hierarchy by level, each as its rule and the numbers of its corners and new
+/// nodes. Memory: 4 bytes a number, 5 where there are more than 2^32 nodes.
+class SplitsByLevel {
+public:
+    static constexpr std::uint64_t narrow = std::uint64_t{1} << 32U;
+
+    /// \param nodes how many there are; 0 where that is not known yet and no more than 2^32
+    explicit SplitsByLevel(std::size_t nodes) : wide_{nodes > narrow} {}
+
+    /// \throw GridError for more nodes than were said
+    void add(std::size_t level, const Rule& rule, std::span<const std::size_t> nodes) {
+        if (level >= levels_.size()) levels_.resize(level + 1);
+        Level& to = levels_[level];
+        to.rules.push_back(&rule);
+        std::array<std::uint32_t, max_corners + max_new_nodes> low;
+        std::uint64_t all = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            low[i] = static_cast<std::uint32_t>(nodes[i]);
+            all |= nodes[i];
+        }
+        if (all >= narrow && !wide_) throw GridError("the grid has more than 2^32 nodes");
+        to.low.insert(to.low.end(), low.begin(), low.begin() + nodes.size());
+        for (std::size_t i = 0; wide_ && i < nodes.size(); ++i) {
+            to.high.push_back(static_cast<std::uint8_t>(std::uint64_t{nodes[i]} >> 32U));
+        }
+    }
+
+    std::size_t levels() const { return levels_.size(); }
+
+    /// Calls function(rule, numbers) for the splits of elements on a level.
+    template <class Function>
+    void for_each(std::size_t level, Function&& function) const {
+        const Level& from = levels_[level];
+        auto low = from.low.begin();
+        auto high = from.high.begin();
+        std::array<std::size_t, max_corners + max_new_nodes> nodes;
+        for (const Rule* rule : from.rules) {
+            const std::size_t count =
+                static_cast<std::size_t>(rule->corner_count()) + rule->new_nodes.size();
+            for (std::size_t i = 0; i < count; ++i) {
+                std::uint64_t node = *low++;
+                if (wide_) node |= std::uint64_t{*high++} << 32U;
+                nodes[i] = static_cast<std::size_t>(node);
+            }
+            function(*rule, std::span<const std::size_t>(nodes).first(count));
+        }
+    }
+
+private:
+    struct Level {
+        std::deque<const Rule*> rules;
+        std::deque<std::uint32_t> low;
+        std::deque<std::uint8_t> high;
+    };
+    bool wide_;
+    std::vector<Level> levels_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <indicators/sweeps.hpp>
+
+namespace nestgrid::engine {
+
+void Sweeps::leaf(std::span<const NodeKey> corners, float error) {
+    for (const std::size_t at : numbers(corners)) {
+        std::uint16_t& stop = nodes_[at].entry.stop;
+        stop = std::max(stop, bfloat16_above(error));
+    }
+}
+
+void Sweeps::saturate() {
+    sweep(splits_, one_level_ && one_step_,
+          [&](const Rule& rule, std::span<const std::size_t> of) { return sweep_split(rule, of); });
+    for (Node& node : nodes_) node.entry.bound = std::max(node.entry.bound, node.bound());
+}
+
+/// \param of numbers of the corners and, behind them, of the new nodes
+/// \return whether anything has changed
+inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> of) {
+    const auto below = [&](std::size_t node) {
+        return Below{nodes_[node].entry.stop, nodes_[node].bound()};
+    };
+    const auto raise = [&](std::size_t node, const Below& to) {
+        Node& at = nodes_[node];
+        const bool changed = at.entry.stop < to.stop || at.finer < to.bound;
+        at.entry.stop = std::max(at.entry.stop, to.stop);
+        at.finer = std::max(at.finer, to.bound);
+        return changed;
+    };
+    Below greatest;
+    const bool changed = raise_parents(rule, of, below, raise, greatest);
+    if (rule.inside != no_new_node) {
+        Entry& within =
+            nodes_[of[static_cast<std::size_t>(rule.corner_count()) + rule.inside]].entry;
+        within.stop = std::max(within.stop, greatest.stop);
+        within.bound = std::max(within.bound, greatest.bound);
+    }
+    return changed;
+}
+
+void Sweeps::store(detail::IndicatorEntries& entries) const {
+    if (number_of_.are_keys()) {
+        entries.dense = std::make_unique_for_overwrite<Entry[]>(nodes_.size());
+        for (std::size_t i = 0; i < nodes_.size(); ++i) entries.dense[i] = nodes_[i].entry;
+        return;
+    }
+    entries.sparse.reserve(nodes_.size());
+    number_of_.for_each(
+        [&](NodeKey key, std::size_t at) { entries.sparse.insert(key, nodes_[at].entry); });
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The preroll of any hierarchy: sweeps over all splits, fine to coarse, since "a depth first
+// traversal of the hierarchy in the adjustment procedure would not be sufficient" (paper,
+// section 2).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include <indicators/fine_to_coarse.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+
+namespace nestgrid::engine {
+
+/// One split as a preroll meets it.
+struct MetSplit {
+    const Rule* rule;
+    int level;
+    NodeMask outside;               ///< see the operation `outside`
+    std::span<const NodeKey> keys;  ///< of the corners and the new nodes behind them
+};
+
+/// All nodes and splits of a hierarchy, while their entries are computed.
+class Sweeps {
+public:
+    /// \param dense how many dense keys there are, or 0
+    /// \param of_leaves whether `stop` comes from errors of leaves and not from offsets
+    Sweeps(std::size_t dense, bool of_leaves)
+        : number_of_{dense},
+          nodes_(number_of_.count()),
+          splits_{nodes_.size()},
+          of_leaves_{of_leaves} {}
+
+    /// \param offset offset(n) is |U_delta| of new node n, rounded up, 0 where the node hangs
+    template <class Offset>
+    void split(const MetSplit& s, Offset&& offset);
+    /// A leaf and its error, or a coarse leaf and 0.
+    void leaf(std::span<const NodeKey> corners, float error);
+
+    /// Completes the entries. To be called when all splits are known.
+    void saturate();
+
+    std::size_t node_count() const { return nodes_.size(); }
+    /// Whether each node was created on one level only.
+    bool one_level_a_node() const { return one_level_; }
+    /// Puts the entries of all nodes into a table or, where keys are dense, an array.
+    void store(detail::IndicatorEntries& entries) const;
+
+private:
+    using Entry = detail::IndicatorEntry;
+
+    struct Node {
+        float offset = 0;  // |U_delta|, rounded up
+        Entry entry{};
+        std::uint16_t finer = 0;   // largest bound of finer nodes
+        std::uint8_t made_on = 0;  // 1 + level, modulo 255; 0: not known yet
+
+        std::uint16_t bound() const {
+            return bfloat16_above(sum_above(offset, bfloat16_value(finer)));
+        }
+    };
+
+    std::span<const std::size_t> numbers(std::span<const NodeKey> keys) {
+        number_of_.find(keys, numbers_);
+        nodes_.resize(number_of_.count());
+        return std::span(numbers_).first(keys.size());
+    }
+    /// What a new node hands to its parents.
+    struct Below {
+        std::uint16_t stop = 0;
+        std::uint16_t bound = 0;
+
+        friend Below max(const Below& a, const Below& b) {
+            return {std::max(a.stop, b.stop), std::max(a.bound, b.bound)};
+        }
+    };
+    bool sweep_split(const Rule& rule, std::span<const std::size_t> of);
+
+    NodeNumbers number_of_;
+    std::vector<Node> nodes_;
+    SplitsByLevel splits_;
+    bool of_leaves_;
+    bool one_level_ = true;  // each node was created on one level
+    bool one_step_ = true;   // no new node is a parent of another one of its split
+    std::array<std::size_t, max_corners + max_new_nodes> numbers_{};
+};
+
+template <class Offset>
+void Sweeps::split(const MetSplit& s, Offset&& offset) {
+    const Rule& rule = *s.rule;
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    const std::span<const std::size_t> number = numbers(s.keys);
+    one_step_ = one_step_ && rule.steps == 1;
+    const auto level = static_cast<std::uint8_t>(1 + s.level % 255);
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        Node& node = nodes_[number[corners + n]];
+        const bool is_new = node.made_on == 0;
+        one_level_ = one_level_ && (is_new || node.made_on == level);
+        node.made_on = level;
+        if (is_new) node.offset = offset(n);  // every element that makes it has the same parents
+        const std::uint16_t own = (s.outside >> n & 1U) != 0 ? bfloat16_infinity
+                                  : of_leaves_               ? std::uint16_t{0}
+                                                             : bfloat16_above(node.offset);
+        node.entry.stop = std::max(node.entry.stop, own);
+    }
+    splits_.add(static_cast<std::size_t>(s.level), rule, number);
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/triangle_budget.hpp>
+
+#include <limits>
+#include <string>
+
+#include <levels/draw.hpp>
+#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid::detail {
+
+namespace {
+
+constexpr std::uint16_t octave = 128;  // numbers of bfloat16
+
+std::uint16_t halved(std::uint16_t code) {
+    return static_cast<std::uint16_t>(code > octave ? code - octave : 0);
+}
+
+/// Counts triangles at thresholds, which are bfloat16 numbers.
+template <int dimension, class Real>
+class BudgetSearch {
+public:
+    BudgetSearch(const Hierarchy<Real>& hierarchy, double isovalue,
+                 const MakeCriterion& criterion_at, const HierarchicalIndicator& indicator,
+                 std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                 const Executor& executor)
+        : hierarchy_{hierarchy},
+          isovalue_{isovalue},
+          criterion_at_{criterion_at},
+          indicator_{indicator},
+          max_triangles_{max_triangles},
+          options_{options},
+          executor_{executor} {}
+
+    TriangleBudget run() {
+        if (fits(0)) return best_;
+        // The greatest stopping number is at most the range of the data.
+        std::uint16_t within =
+            bfloat16_above(float_above(indicator_.greatest() - indicator_.least()));
+        if (within == 0 || !fits(within)) throw_too_few(within);
+        std::uint16_t beyond = halved(within);
+        while (beyond > 0 && fits(beyond)) {
+            within = beyond;
+            beyond = halved(within);
+        }
+        while (within - beyond > 1) {
+            const auto middle = static_cast<std::uint16_t>((within + beyond) / 2);
+            (fits(middle) ? within : beyond) = middle;
+        }
+        return best_;
+    }
+
+private:
+    std::optional<std::uint64_t> count(std::uint16_t code, std::uint64_t most) const {
+        const std::unique_ptr<const Criterion> criterion = criterion_at_(bfloat16_value(code));
+        return engine::count_simplices<dimension>(hierarchy_, isovalue_, *criterion, indicator_,
+                                                  most, options_, executor_);
+    }
+
+    /// Whether the surface at a threshold keeps within the budget; then it is the best so far.
+    bool fits(std::uint16_t code) {
+        const auto triangles = count(code, max_triangles_);
+        ++best_.trials;
+        best_.extracted += triangles.value_or(max_triangles_ + 1);
+        if (triangles) {
+            best_.threshold = bfloat16_value(code);
+            best_.triangles = *triangles;
+        }
+        return triangles.has_value();
+    }
+
+    [[noreturn]] void throw_too_few(std::uint16_t coarsest) const {
+        const auto triangles = count(coarsest, std::numeric_limits<std::uint64_t>::max());
+        throw InvalidInput("even the coarsest surface has more than " +
+                           std::to_string(max_triangles_) +
+                           " triangles: " + std::to_string(*triangles));
+    }
+
+    const Hierarchy<Real>& hierarchy_;
+    double isovalue_;
+    const MakeCriterion& criterion_at_;
+    const HierarchicalIndicator& indicator_;
+    std::uint64_t max_triangles_;
+    const IsosurfaceOptions& options_;
+    const Executor& executor_;
+    TriangleBudget best_;
+};
+
+}  // namespace
+
+template <int dimension, class Real>
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
+                              const MakeCriterion& criterion_at,
+                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                              const IsosurfaceOptions& options, const Executor& executor) {
+    return BudgetSearch<dimension, Real>(hierarchy, isovalue, criterion_at, indicator,
+                                         max_triangles, options, executor)
+        .run();
+}
+
+template <int dimension, class Real>
+Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
+                        const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
+                        const Executor& executor) {
+    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
+    if (options.max_triangles == 0) return {&indicator, options.threshold};
+    const MakeCriterion everywhere = [&](double threshold) {
+        return std::make_unique<const Threshold>(&indicator, threshold);
+    };
+    const TriangleBudget best = find_threshold<dimension>(
+        hierarchy, isovalue, everywhere, indicator, options.max_triangles, options, executor);
+    return {&indicator, best.threshold};
+}
+
+#define NESTGRID_INSTANTIATE(dimension, Real)                                               \
+    template TriangleBudget find_threshold<dimension>(                                      \
+        const Hierarchy<Real>&, double, const MakeCriterion&, const HierarchicalIndicator&, \
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);                          \
+    template Threshold criterion_for<dimension>(const Hierarchy<Real>&, double,             \
+                                                const HierarchicalIndicator&,               \
+                                                const IsosurfaceOptions&, const Executor&);
+NESTGRID_INSTANTIATE(2, float)
+NESTGRID_INSTANTIATE(2, double)
+NESTGRID_INSTANTIATE(3, float)
+NESTGRID_INSTANTIATE(3, double)
+#undef NESTGRID_INSTANTIATE
+
+}  // namespace nestgrid::detail

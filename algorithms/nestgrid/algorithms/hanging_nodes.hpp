@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The hanging nodes of a grid whose adapter does not know them.
+#pragma once
+
+#include <nestgrid/detail/erase.hpp>
+#include <nestgrid/hanging.hpp>
+
+namespace nestgrid {
+
+/// Walks the whole hierarchy twice. Costs O(nodes) memory while it runs.
+HangingNodes derive_hanging_nodes(const Hierarchy<float>& hierarchy);
+
+template <class Grid>
+    requires(!std::derived_from<Grid, Hierarchy<float>>)
+HangingNodes derive_hanging_nodes(const Grid& grid) {
+    const ZeroField<Grid> zero;
+    const auto hierarchy = erase(grid, zero);
+    return derive_hanging_nodes(static_cast<const Hierarchy<float>&>(hierarchy));
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The contours of what is selected of a batch of blocks as lists without gaps, of cuts, of
+// simplices and of fours. A loop over the cuts of one block ends where no processor predicts it;
+// one over those of many blocks does not.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include <patches/block_contours.hpp>
+
+namespace nestgrid::engine {
+
+/// \tparam pattern of the blocks
+template <const auto& pattern>
+class BlockContourRun {
+    using Contour = BlockContours::Contour;
+    using Front = BlockContours::Front;
+
+public:
+    using Cut = BatchEdge;
+    using Corners = std::array<std::uint16_t, 3>;  // cuts; of a segment the first two
+    struct Four {
+        std::uint16_t first_simplex;
+        std::array<std::uint16_t, 4> cut;
+        std::uint16_t mirrored;  // where it is odd
+        std::array<std::uint16_t, 2> unused;
+    };
+
+    // Of all blocks and of all elements beside them.
+    static constexpr std::size_t most_fours = most_blocks * (pattern.ends + 1);
+    static constexpr std::size_t most_cuts = 4 * most_fours;
+    static constexpr std::size_t most_simplices = 2 * most_fours;
+
+    /// \param id of a block or an element
+    NESTGRID_INLINE void append(const Front& front, const Contour& contour, std::size_t id,
+                                bool mirrored) {
+        const auto slot = static_cast<std::uint16_t>(id % most_blocks);
+        const auto first = static_cast<std::uint16_t>(cut_count);
+        const auto simplex = static_cast<std::uint16_t>(simplex_count);
+        const auto turned = static_cast<std::uint16_t>(mirrored ? 1 : 0);
+        const Eight by_slot{slot, slot, slot, slot, slot, slot, slot, slot};
+        const Eight by_first{first, first, first, first, first, first, first, first};
+        const Eight by_four{simplex, first, first, first, first, turned, 0, 0};
+        const auto* const cuts = front.cuts(contour);
+        const auto* const simplices = front.simplices(contour, mirrored);
+        const auto* const fours = front.fours(contour);
+        constexpr std::size_t cuts_at_once = 12;
+        constexpr std::size_t simplices_at_once = 8;
+        constexpr std::size_t fours_at_once = 2;
+        const auto put_cuts = [&](std::size_t from) NESTGRID_INLINE_LAMBDA {
+            widen<2 * cuts_at_once, most_blocks>(cuts + from, cut_.data() + cut_count + from,
+                                                 by_slot);
+        };
+        const auto put_simplices = [&](std::size_t from) NESTGRID_INLINE_LAMBDA {
+            widen<3 * simplices_at_once, 1>(simplices + from,
+                                            simplex_.data() + simplex_count + from, by_first);
+        };
+        const auto put_fours = [&](std::size_t from) NESTGRID_INLINE_LAMBDA {
+            widen<8 * fours_at_once, 1>(fours + from, four_.data() + four_count + from, by_four);
+        };
+        put_cuts(0);
+        put_simplices(0);
+        put_fours(0);
+        for (std::size_t i = cuts_at_once; i < contour.cut_count; i += cuts_at_once) put_cuts(i);
+        for (std::size_t i = fours_at_once; i < contour.four_count; i += fours_at_once) {
+            put_fours(i);
+        }
+        if (contour.simplex_count > simplices_at_once) put_simplices(simplices_at_once);
+        cut_count += contour.cut_count;
+        simplex_count += contour.simplex_count;
+        four_count += contour.four_count;
+    }
+    /// An element of which no other part is there.
+    NESTGRID_NOINLINE void append_alone(const BlockContours& contours, unsigned bits,
+                                        const std::array<std::uint16_t, 4>& places, bool mirrored);
+
+    std::size_t cut_count = 0;
+    std::size_t simplex_count = 0;
+    std::size_t four_count = 0;
+
+    NESTGRID_INLINE std::span<const Cut> cuts() const { return {cut_.data(), cut_count}; }
+    NESTGRID_INLINE std::span<const Four> fours() const { return {four_.data(), four_count}; }
+    NESTGRID_INLINE std::span<const Corners> simplices() const {
+        return {simplex_.data(), simplex_count};
+    }
+    /// Divides one of the fours along either diagonal.
+    /// \param other than the one between its first cut and the third
+    NESTGRID_INLINE void divide(const Four& four, bool other) {
+        // The second triangle behind the first; in a mirror the first two corners change places.
+        static constexpr std::array<std::array<std::uint8_t, 6>, 4> order{
+            {{0, 1, 2, 2, 3, 0}, {1, 0, 2, 3, 2, 0}, {1, 2, 3, 3, 0, 1}, {2, 1, 3, 0, 3, 1}}};
+        const auto& of = order[(other ? 2U : 0U) + four.mirrored % 2U];
+        Corners* const to = &simplex_[four.first_simplex];
+        to[0] = {four.cut[of[0]], four.cut[of[1]], four.cut[of[2]]};
+        to[1] = {four.cut[of[3]], four.cut[of[4]], four.cut[of[5]]};
+    }
+
+private:
+    static_assert(pattern.ends <= 8);
+#if defined(__GNUC__)
+    using Eight [[gnu::vector_size(16)]] = std::uint16_t;
+#else
+    using Eight = std::array<std::uint16_t, 8>;
+#endif
+
+    /// Numbers of eight bits become numbers of sixteen.
+    template <std::size_t count, std::uint16_t factor, class From, class To>
+    NESTGRID_INLINE static void widen(const From* from, To* to, const Eight& more) {
+        static_assert(count % 8 == 0);
+        const auto* const source = reinterpret_cast<const unsigned char*>(from);
+        auto* const target = reinterpret_cast<unsigned char*>(to);
+        unrolled<count / 8>([&](auto part) NESTGRID_INLINE_LAMBDA {
+            Eight wide;
+#if defined(__GNUC__)
+            using Narrow [[gnu::vector_size(8)]] = std::uint8_t;
+            Narrow narrow;
+            std::memcpy(&narrow, source + 8 * part, sizeof(narrow));
+            wide = __builtin_convertvector(narrow, Eight) * factor + more;
+#else
+            for (std::size_t i = 0; i < 8; ++i) {
+                wide[i] = static_cast<std::uint16_t>(source[8 * part + i] * factor + more[i]);
+            }
+#endif
+            std::memcpy(target + 16 * part, &wide, sizeof(wide));
+        });
+    }
+
+    // What is behind the last one has no meaning.
+    std::array<Cut, most_cuts + 32> cut_;
+    std::array<Corners, most_simplices + 16> simplex_;
+    std::array<Four, most_fours + 8> four_;
+};
+
+template <const auto& pattern>
+void BlockContourRun<pattern>::append_alone(const BlockContours& contours, unsigned bits,
+                                            const std::array<std::uint16_t, 4>& places,
+                                            bool mirrored) {
+    const BlockContours::Piece& piece = contours.piece(bits);
+    std::array<std::uint16_t, 4> cut{};
+    for (std::size_t i = 0; i < piece.count; ++i) {
+        cut[i] = static_cast<std::uint16_t>(cut_count);
+        cut_[cut_count++] = {places[piece.cut[i].low], places[piece.cut[i].high]};
+    }
+    const Four four{static_cast<std::uint16_t>(simplex_count),
+                    cut,
+                    mirrored ? std::uint16_t{1} : std::uint16_t{0},
+                    {}};
+    divide(four, false);
+    if (piece.count == 4) four_[four_count++] = four;
+    simplex_count += piece.count == 4 ? 2 : 1;
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of the sign patterns of a block of simplices: of its ends, or of larger parts that are
+// not divided, one after the other, with every cut edge named once; and of a simplex alone. Where
+// some parts are divided and what is left has many nodes, a block is taken as two halves: tables of
+// all that may be would be eight times as large.
+#pragma once
+
+#include <bit>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <nestgrid/algorithms/contour_table.hpp>
+#include <nestgrid/block_batch.hpp>
+
+namespace nestgrid::engine {
+
+/// Cuts are numbered within a contour.
+class BlockContours {
+public:
+    struct Cut {
+        std::uint8_t low;   ///< node with U < C, or its row in a batch
+        std::uint8_t high;  ///< node with U >= C
+    };
+    /// The one loop of one element, whose corners take the place of nodes: a segment, a triangle,
+    /// or four cuts in a row that may be cut along either diagonal.
+    struct Piece {
+        std::uint8_t count = 0;
+        std::array<Cut, 4> cut{};
+        std::array<std::uint8_t, 4> face{};  ///< of the element, behind a cut; contour_table.hpp
+    };
+    struct Contour {
+        std::uint32_t first_cut = 0;
+        std::uint32_t first_simplex = 0;
+        std::uint32_t first_four = 0;
+        std::uint8_t cut_count = 0;
+        std::uint8_t simplex_count = 0;
+        std::uint8_t parts = 0;      ///< that have a loop, each by its first end, one bit each
+        std::uint8_t depth : 4 = 0;  ///< of the deepest of them
+        std::uint8_t four_count : 4 = 0;
+    };
+    /// Cuts that are the corners of a triangle, of those from one to the next.
+    using Corners = std::array<std::uint8_t, 3>;
+    /// Two triangles and the four cuts they have, of which any diagonal will do.
+    struct Four {
+        std::uint8_t first_simplex;  ///< of the contour, and the next one
+        std::array<std::uint8_t, 4> cut;
+        std::uint8_t mirrored;  ///< against the block
+        std::array<std::uint8_t, 2> unused;
+    };
+
+    /// The contours of certain parts, which fill a block, a half of one, or are a simplex.
+    class Front {
+    public:
+        /// Bit i of `signs` says that node i, of an element corner i, has U >= C.
+        NESTGRID_INLINE const Contour& at(std::size_t signs) const {
+            return contours_[number_[signs & nodes_]];
+        }
+        // More may be read than there are.
+        /// In the order in which the parts come to them.
+        NESTGRID_INLINE const Cut* cuts(const Contour& c) const {
+            return cuts_.data() + c.first_cut;
+        }
+        /// In the order of the parts; of a mirror behind those that are not.
+        NESTGRID_INLINE const Corners* simplices(const Contour& c, bool mirrored) const {
+            // No branch, for no processor would predict it.
+            return simplices_.data() + c.first_simplex + (c.simplex_count & (mirrored ? ~0U : 0U));
+        }
+        NESTGRID_INLINE const Four* fours(const Contour& c) const {
+            return fours_.data() + c.first_four;
+        }
+
+    private:
+        friend class BlockContours;
+
+        std::size_t nodes_ = 0;  // of the parts, one bit each
+        std::vector<std::uint16_t> number_;
+        std::vector<Contour> contours_;
+        std::vector<Cut> cuts_;
+        std::vector<Corners> simplices_;
+        std::vector<Four> fours_;
+    };
+
+    /// The table of a pattern of bisections, made when it is first asked for.
+    template <const auto& pattern>
+    static const BlockContours& of() {
+        static const BlockContours table{Of<pattern>{}};
+        return table;
+    }
+
+    /// Of an element alone.
+    const Front& alone() const { return alone_; }
+    /// Of a block, in which certain parts are not divided.
+    /// \param undivided of parts 2 ... ends - 1, one bit each
+    /// \return null where it must be taken as two halves
+    NESTGRID_INLINE const Front* block(std::size_t undivided) const { return block_[undivided]; }
+    /// The same of its part 2 or 3.
+    NESTGRID_INLINE const Front& half(std::size_t part, unsigned undivided) const {
+        return half_[part - 2][number_of_half(part, undivided)];
+    }
+    /// Of a simplex. Bit i of `signs` says that its corner i has U >= C.
+    const Piece& piece(unsigned signs) const { return pieces_[signs]; }
+    /// The signs at the corners of a part of a block.
+    template <class Part>
+    static unsigned signs_of(const Part& part, std::size_t corners, unsigned signs) {
+        unsigned bits = 0;
+        for (std::size_t i = 0; i < corners; ++i) bits |= (signs >> part.corner[i] & 1U) << i;
+        return bits;
+    }
+
+private:
+    template <const auto& pattern>
+    struct Of {};
+    template <const auto& pattern>
+    explicit BlockContours(Of<pattern>);
+
+    template <const auto& pattern>
+    struct Maker;
+
+    /// Of blocks of which parts are not divided.
+    static constexpr std::size_t most_nodes_ = 7;
+
+    /// The part, and the two in it.
+    static constexpr std::size_t number_of_half(std::size_t part, unsigned undivided) {
+        return (undivided >> (part - 2) & 1U) | (undivided >> (2 * part - 2) & 3U) << 1U;
+    }
+    static Piece make_piece(Shape shape, unsigned signs);
+
+    std::array<Piece, 16> pieces_;
+    Front alone_;
+    std::vector<std::unique_ptr<const Front>> blocks_;
+    std::array<const Front*, 64> block_{};
+    std::array<std::array<Front, 8>, 2> half_;
+};
+
+template <const auto& pattern>
+struct BlockContours::Maker {
+    using Block = std::remove_cvref_t<decltype(pattern)>;
+    static constexpr unsigned all = (1U << pattern.corners) - 1;
+
+    const BlockContours& table;
+    Front front{};
+    Contour contour{};
+    std::array<std::array<std::uint8_t, 16>, 16> number{};  // of a cut, plus 1
+
+    /// One bit each.
+    template <class Parts>
+    static std::size_t nodes_of(const Parts& parts) {
+        std::size_t nodes = 0;
+        for (const auto& [part, end] : parts) {
+            for (std::size_t i = 0; i < pattern.corners; ++i) {
+                nodes |= std::size_t{1} << pattern.part[part].corner[i];
+            }
+        }
+        return nodes;
+    }
+    void begin() {
+        contour = {};
+        number = {};
+        contour.first_cut = static_cast<std::uint32_t>(front.cuts_.size());
+        contour.first_simplex = static_cast<std::uint32_t>(front.simplices_.size());
+        contour.first_four = static_cast<std::uint32_t>(front.fours_.size());
+    }
+    /// \param first_row of the nodes in a batch
+    void add(unsigned signs, const typename Block::Part& part, std::size_t end,
+             std::size_t first_row) {
+        const unsigned bits = signs_of(part, pattern.corners, signs);
+        if (bits == 0 || bits == all) return;
+        const Piece& piece = table.piece(bits);
+        std::array<std::uint8_t, 4> cut{};
+        for (std::size_t i = 0; i < piece.count; ++i) {
+            const std::size_t low = part.corner[piece.cut[i].low];
+            const std::size_t high = part.corner[piece.cut[i].high];
+            std::uint8_t& known = number[low][high];
+            if (known == 0) {
+                front.cuts_.push_back({static_cast<std::uint8_t>(first_row + low),
+                                       static_cast<std::uint8_t>(first_row + high)});
+                known = ++contour.cut_count;
+            }
+            cut[i] = static_cast<std::uint8_t>(known - 1);
+        }
+        if (piece.count == 4) {
+            front.fours_.push_back({contour.simplex_count, cut, part.mirrored, {}});
+            contour.four_count = static_cast<std::uint8_t>(contour.four_count + 1) & 15U;
+        }
+        add_corners({cut[0], cut[1], cut[2]}, part.mirrored);
+        if (piece.count == 4) add_corners({cut[2], cut[3], cut[0]}, part.mirrored);
+        contour.parts |= static_cast<std::uint8_t>(1U << end);
+        contour.depth = std::max<std::uint8_t>(contour.depth, part.depth) & 15U;
+    }
+    void add_corners(Corners corners, bool mirrored) {
+        if (mirrored) std::swap(corners[0], corners[1]);
+        front.simplices_.push_back(corners);
+        ++contour.simplex_count;
+    }
+    void finish(std::size_t signs) {
+        front.number_[signs] = static_cast<std::uint16_t>(front.contours_.size());
+        for (std::size_t i = 0; i < contour.simplex_count; ++i) {
+            Corners corners = front.simplices_[contour.first_simplex + i];
+            std::swap(corners[0], corners[1]);
+            front.simplices_.push_back(corners);
+        }
+        front.contours_.push_back(contour);
+    }
+    /// \param parts and the first ends in them
+    /// \param first_row of their nodes in a batch
+    template <class Parts>
+    Front make(const Parts& parts, std::size_t first_row) {
+        front.nodes_ = nodes_of(parts);
+        front.number_.resize(front.nodes_ + 1);
+        for (std::size_t signs = 0; signs <= front.nodes_; ++signs) {
+            if ((signs & ~front.nodes_) != 0) continue;
+            begin();
+            for (const auto& [part, end] : parts) {
+                add(static_cast<unsigned>(signs), pattern.part[part], end, first_row);
+            }
+            finish(signs);
+        }
+        front.cuts_.resize(front.cuts_.size() + 4 * pack);
+        front.simplices_.resize(front.simplices_.size() + 3 * pack);
+        front.fours_.resize(front.fours_.size() + pack);
+        front.contours_.shrink_to_fit();
+        front.cuts_.shrink_to_fit();
+        front.simplices_.shrink_to_fit();
+        front.fours_.shrink_to_fit();
+        return std::move(front);
+    }
+};
+
+template <const auto& pattern>
+BlockContours::BlockContours(Of<pattern>) {
+    using Made = Maker<pattern>;
+    const Shape shape = pattern.corners == 3 ? Shape::triangle : Shape::tetrahedron;
+    for (unsigned bits = 1; bits < Made::all; ++bits) pieces_[bits] = make_piece(shape, bits);
+
+    using Parts = std::vector<std::pair<std::size_t, std::size_t>>;  // and the first ends in them
+    alone_ = Made{*this}.make(Parts{{1, 0}}, BatchPlaces<pattern>::block_rows);
+
+    if constexpr (pattern.height > 0) {
+        static_assert(pattern.part_sets <= 64);
+        const auto parts_of = [](std::size_t first, std::size_t end, unsigned undivided) {
+            Parts parts;
+            for (; first < end; ++first) {
+                const std::size_t p = pattern.part_above(first, undivided);
+                const bool is_first = p >= pattern.ends || pattern.first_end(p) == first;
+                if (is_first) parts.emplace_back(p, first);
+            }
+            return parts;
+        };
+        std::map<Parts, const Front*> known;
+        for (unsigned undivided = 0; undivided < pattern.part_sets; ++undivided) {
+            for (const std::size_t half : {std::size_t{2}, std::size_t{3}}) {
+                Front& front = half_[half - 2][number_of_half(half, undivided)];
+                if (!front.number_.empty()) continue;
+                front = Made{*this}.make(parts_of((half - 2) * pattern.ends / 2,
+                                                  (half - 1) * pattern.ends / 2, undivided),
+                                         0);
+            }
+            const Parts parts = parts_of(0, pattern.ends, undivided);
+            const std::size_t nodes = Made::nodes_of(parts);
+            if (undivided != 0 && static_cast<std::size_t>(std::popcount(nodes)) > most_nodes_) {
+                continue;
+            }
+            const Front*& front = known[parts];
+            if (front == nullptr) {
+                blocks_.push_back(std::make_unique<const Front>(Made{*this}.make(parts, 0)));
+                front = blocks_.back().get();
+            }
+            block_[undivided] = front;
+        }
+    }
+}
+
+inline BlockContours::Piece BlockContours::make_piece(Shape shape, unsigned signs) {
+    Piece piece;
+    const ContourLoop& from = ContourTable::of(shape).plain(signs)->loop[0];
+    piece.count = from.count;
+    for (std::size_t i = 0; i < from.count; ++i) {
+        const auto& [a, b] = topology(shape).edge[from.edge[i]];
+        const bool falls = (signs >> a & 1U) != 0;
+        piece.cut[i] = {falls ? b : a, falls ? a : b};
+        piece.face[i] = from.face[i];
+    }
+    return piece;
+}
+
+}  // namespace nestgrid::engine

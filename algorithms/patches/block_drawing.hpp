@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Drawing of what is selected of a batch of blocks of known bisections: all contours of a level are
+// put behind each other, then their vertices are found, and then the simplices are put down. What
+// is drawn, and in which order, is what the plain traversal draws, to the last bit.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <patches/block_contour_run.hpp>
+#include <nestgrid/algorithms/contour_filling.hpp>
+#include <surfaces/soup_builder.hpp>
+#include <surfaces/vertex_numbers.hpp>
+
+namespace nestgrid::engine {
+
+/// \tparam Visitor an IsosurfaceVisitor
+/// \tparam Blocks a BlockBatch, or one whose grid is type-erased
+template <class Visitor, class Blocks>
+class BlockDrawing {
+    static constexpr const auto& pattern_ = Blocks::pattern;
+    static constexpr bool indexed_ = Visitor::Builder::indexed;
+    using Places = BatchPlaces<pattern_>;
+    using Run = BlockContourRun<pattern_>;
+    using Layer = typename Visitor::Layer;
+    using Real = typename Visitor::Value;
+    using Number = typename Visitor::Number;
+    using Vertex = std::conditional_t<indexed_, Number, WidePoint>;
+
+public:
+    BlockDrawing(Visitor& visitor, const Blocks& blocks, const BatchSelection& selection)
+        : visitor_{&visitor},
+          blocks_{&blocks},
+          selection_{&selection},
+          contours_{&BlockContours::of<pattern_>()} {}
+
+    /// \return in how many leaves of blocks there is anything to draw
+    unsigned draw() {
+        std::array<std::uint8_t, 2 * most_blocks> parts{};  // by number
+        for (Layer& layer : visitor_->layers_) {
+            visitor_->layer_ = &layer;
+            layer_ = &layer;
+            set_signs();
+            count_ = 0;
+            for (std::size_t i = 0; i < selection_->count; ++i) {
+                const std::size_t id = selection_->id[i];
+                const auto see = [&](const Front& front) NESTGRID_INLINE_LAMBDA {
+                    const auto& contour = front.at(static_cast<std::size_t>(layer.signs[id]));
+                    parts[id] |= contour.parts;
+                    entry_[count_] = {&front, &contour, 0, static_cast<std::uint16_t>(id)};
+                    count_ += contour.parts == 0 ? 0 : 1;
+                };
+                if (!Places::is_block(id)) {
+                    see(contours_->alone());
+                } else if (const auto* block = contours_->block(blocks_->undivided[id])) {
+                    see(*block);
+                } else {
+                    see(contours_->half(2, blocks_->undivided[id]));
+                    see(contours_->half(3, blocks_->undivided[id]));
+                }
+            }
+            if (count_ > 0) draw_entries();
+        }
+        if (!selection_->ends_are_leaves) return 0;
+        unsigned leaves = 0;
+        for (std::size_t b = selection_->first_block; b < selection_->end_of_blocks; ++b) {
+            leaves += count_bits(unsigned{parts[b]} & blocks_->ends[b]);
+        }
+        return leaves;
+    }
+
+private:
+    using Front = BlockContours::Front;
+    struct Entry {  // what the level passes through
+        const Front* front;
+        const BlockContours::Contour* contour;
+        std::uint16_t first_cut;
+        std::uint16_t id;  // in the batch
+    };
+
+    std::span<const Entry> entries() const { return {entry_.data(), count_}; }
+    int level_of(std::size_t id, int depth) const {
+        return Places::is_block(id) ? blocks_->level + depth
+                                    : int{blocks_->element_levels[id % most_blocks]};
+    }
+
+    /// Of each block and element which nodes have U >= C.
+    NESTGRID_INLINE void set_signs() {
+        using Bits = Pack<MaskOf<Real>>;
+        const Pack<Real> least_inside = layer_->packed_least_inside;
+        const auto set = [&](auto rows, std::size_t first_row, std::size_t first, std::size_t end,
+                             std::size_t to) NESTGRID_INLINE_LAMBDA {
+            for (std::size_t b = first / pack * pack; b < end; b += pack) {
+                auto signs = Bits::all(0);
+                unrolled<rows>([&](auto i) NESTGRID_INLINE_LAMBDA {
+                    const auto value = Pack<Real>::load(blocks_->values[first_row + i] + b);
+                    signs =
+                        signs | (at_most(least_inside, value) & Bits::all(MaskOf<Real>{1} << i));
+                });
+                signs.store(layer_->signs.data() + to + b);
+            }
+        };
+        set(std::integral_constant<std::size_t, Places::block_rows>{}, 0, selection_->first_block,
+            selection_->end_of_blocks, 0);
+        set(std::integral_constant<std::size_t, pattern_.corners>{}, Places::block_rows, 0,
+            blocks_->element_count, most_blocks);
+    }
+
+    /// The parts of a block that are meant to be drawn, each by its first end, one bit each.
+    NESTGRID_INLINE unsigned parts_meant(std::size_t id) const {
+        if (!Places::is_block(id)) return 1;
+        const auto stops = static_cast<std::size_t>(blocks_->stops[id]);
+        return (selection_->ends_are_leaves ? unsigned{blocks_->ends[id]} : 0U) |
+               pattern_.first_ends[stops % pattern_.part_sets] |
+               static_cast<unsigned>(stops / pattern_.part_sets);
+    }
+
+    /// function(part, bits) for those that are drawn; bits: at which corners U >= C. An element is
+    /// its part 1.
+    template <class Function>
+    void for_each_part(const Entry& entry, Function&& function) const {
+        const auto signs = static_cast<unsigned>(layer_->signs[entry.id]);
+        if (!Places::is_block(entry.id)) return function(std::size_t{1}, signs);
+        const unsigned meant = parts_meant(entry.id);
+        const unsigned undivided = blocks_->undivided[entry.id];
+        for (std::size_t end = 0; end < pattern_.ends; ++end) {
+            if ((entry.contour->parts & meant & 1U << end) == 0) continue;
+            const std::size_t part = pattern_.part_above(end, undivided);
+            function(part, BlockContours::signs_of(pattern_.part[part], pattern_.corners, signs));
+        }
+    }
+
+    NESTGRID_NOINLINE void draw_entries() {
+        Run run;
+        append_contours(run);
+        if (run.simplex_count == 0) return;
+        layer_->extracted += run.simplex_count - run.four_count;
+        visitor_->count_simplices(run.simplex_count);
+        if (visitor_->counts_only_) return;
+
+        std::array<Vertex, Run::most_cuts> v;
+        if constexpr (indexed_) {
+            find_vertices(run.cuts(), v.data());
+        } else {
+            blocks_->cuts(run.cuts(), layer_->isovalue, v.data());
+        }
+        for (const auto& four : run.fours()) {
+            const auto x = [&](std::size_t i) -> decltype(auto) {
+                if constexpr (indexed_) {
+                    return layer_->sink.position(v[four.cut[i]]);
+                } else {
+                    return (v[four.cut[i]]);
+                }
+            };
+            run.divide(four, !shorter(x(0), x(2), x(1), x(3)));
+        }
+        const auto vertices = std::span<const Vertex>(v).first(run.cut_count);
+        if (!layer_->sink.keeps_elements()) {
+            layer_->sink.add_simplices(vertices, run.simplices());
+        } else {
+            std::array<ExtractedElement, Run::most_fours> elements;
+            std::size_t count = 0;
+            for (const Entry& entry : entries()) {
+                for_each_part(entry, [&](std::size_t part, unsigned bits) {
+                    elements[count++] = {blocks_->element(entry.id, part), Visitor::simplex_shape,
+                                         level_of(entry.id, pattern_.part[part].depth),
+                                         contours_->piece(bits).count == 4 ? 2U : 1U};
+                });
+            }
+            layer_->sink.add_extracted(std::span<const ExtractedElement>(elements).first(count),
+                                       vertices, run.simplices());
+        }
+        if constexpr (indexed_) put_boundaries(run.cuts(), v.data());
+        layer_->sink.flush_if_full();
+    }
+
+    NESTGRID_INLINE void append_contours(Run& run) {
+        for (std::size_t k = 0; k < count_; ++k) {
+            Entry& entry = entry_[k];
+            const std::size_t id = entry.id;
+            const unsigned meant = parts_meant(id);
+            visitor_->deepest_ = std::max(visitor_->deepest_, level_of(id, entry.contour->depth));
+            if (static_cast<double>(blocks_->greatest_bounds[id]) > layer_->error_bound) {
+                raise_error_bound(id, entry.contour->parts & meant);
+            }
+            entry.first_cut = static_cast<std::uint16_t>(run.cut_count);
+            if ((entry.contour->parts & ~meant) == 0) {
+                run.append(*entry.front, *entry.contour, id, blocks_->mirrored(id));
+                continue;
+            }
+            for_each_part(entry, [&](std::size_t part, unsigned bits) {
+                std::array<std::uint16_t, 4> places{};
+                for (std::size_t i = 0; i < pattern_.corners; ++i) {
+                    places[i] =
+                        static_cast<std::uint16_t>(Places::of(id, pattern_.part[part].corner[i]));
+                }
+                run.append_alone(*contours_, bits, places,
+                                 blocks_->mirrored(id) != pattern_.part[part].mirrored);
+            });
+        }
+    }
+
+    /// \param parts drawn, each by its first end, one bit each
+    NESTGRID_NOINLINE void raise_error_bound(std::size_t id, unsigned parts) {
+        const auto raise = [&](Real bound) {
+            layer_->error_bound = std::max(layer_->error_bound, static_cast<double>(bound));
+        };
+        if (!Places::is_block(id)) return raise(blocks_->greatest_bounds[id]);
+        for (std::size_t part = 2; part < 2 * pattern_.ends; ++part) {
+            if ((blocks_->stops[id] >> (part - 2) & 1U) == 0) continue;
+            if ((parts >> pattern_.first_end(part) & 1U) != 0) raise(blocks_->bounds[part][id]);
+        }
+    }
+
+    /// Whether a face of a block or an element lies on one of the element with which the walk of
+    /// blocks began, as those on the boundary of the domain do.
+    NESTGRID_INLINE bool is_on_root_face(std::size_t id) const {
+        SubtreeNode faces = 0;
+        for (std::size_t across = 0; across < pattern_.corners; ++across) {
+            SubtreeNode of_all = root_faces;
+            for (std::size_t i = 0; i < pattern_.corners; ++i) {
+                if (i != across) of_all &= blocks_->in_subtree[0][Places::of(id, i)];
+            }
+            faces |= of_all;
+        }
+        return faces != 0;
+    }
+
+    /// Sides of loops on the boundary of the domain.
+    NESTGRID_INLINE void put_boundaries(std::span<const BatchEdge> cuts, const Number* v) {
+        for (const Entry& entry : entries()) {
+            const std::size_t id = entry.id;
+            if (!is_on_root_face(id) || blocks_->boundary(id, 1) == 0) continue;
+            for_each_part(entry, [&](std::size_t part, unsigned bits) {
+                const auto& piece = contours_->piece(bits);
+                const auto place = [&](std::size_t corner) {
+                    return Places::of(id, pattern_.part[part].corner[corner]);
+                };
+                std::array<Number, 4> corners;
+                for (std::size_t i = 0; i < piece.count; ++i) {
+                    std::size_t cut = entry.first_cut;
+                    while (cuts[cut].low != place(piece.cut[i].low) ||
+                           cuts[cut].high != place(piece.cut[i].high)) {
+                        ++cut;
+                    }
+                    corners[i] = v[cut];
+                }
+                visitor_->put_boundary(corners, piece.count, piece.face,
+                                       blocks_->boundary(id, part));
+            });
+        }
+    }
+
+    // block_vertices.hpp
+    void find_vertices(std::span<const BatchEdge> cuts, Number* v);
+    void add_vertices(std::span<const BatchEdge> cuts);
+    void verify_vertices(std::span<const BatchEdge> cuts, const Number* v);
+
+    Visitor* visitor_;
+    const Blocks* blocks_;
+    const BatchSelection* selection_;
+    const BlockContours* contours_;
+    Layer* layer_ = nullptr;
+    std::size_t count_ = 0;
+    std::array<Entry, 3 * most_blocks + 1> entry_;  // of blocks each half
+};
+
+}  // namespace nestgrid::engine
+
+#include <patches/block_vertices.hpp>

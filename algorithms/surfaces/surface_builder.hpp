@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Puts an indexed surface together: in a Surface, in a part of one that a task draws, or in chunks
+// for a sink.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <nestgrid/algorithms/surface.hpp>
+#include <nestgrid/inlining.hpp>
+#include <nestgrid/keys.hpp>
+
+namespace nestgrid::engine {
+
+/// A vertex on the edge from the lower to the higher of two nodes.
+struct SurfaceCut {
+    Point x;
+    std::array<NodeKey, 2> node;
+    double fraction;                     ///< of the way from the lower to the higher node
+    std::span<const double> attributes;  ///< components 1 ... of the field there
+};
+
+/// A vertex of a part of a surface that other parts may have, too.
+struct SharedVertex {
+    std::uint32_t number;
+    std::array<NodeKey, 2> node;  ///< the one with the lower value first
+    double fraction;              ///< of the way to the other one
+};
+
+/// An element that contributes to a surface.
+struct ExtractedElement {
+    Handle element;
+    Shape shape;
+    int level;
+    std::uint32_t simplices;  ///< how many come from it
+};
+
+/// A surface with vertex numbers of its own, drawn by one task. Vertices that other parts may have
+/// are listed with the nodes they lie between.
+template <int dimension>
+struct SurfacePart {
+    Surface<dimension> surface;
+    std::vector<SharedVertex> shared;  ///< in the order of their numbers
+};
+
+/// Appends simplices whose corners are some of these vertices.
+template <class Corners, std::size_t size>
+void append_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all,
+                      std::vector<std::array<std::uint32_t, size>>& to) {
+    std::array<std::array<std::uint32_t, size>, 64> some;  // memory is written once, in wide words
+    while (!all.empty()) {
+        const std::size_t count = std::min(some.size(), all.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < size; ++k) some[i][k] = vertices[all[i][k]];
+        }
+        to.insert(to.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+        all = all.subspan(count);
+    }
+}
+
+template <int dimension>
+class SurfaceBuilder {
+public:
+    static constexpr bool indexed = true;
+    using Target = Surface<dimension>;
+    using Simplex = typename Target::Simplex;
+
+    /// Fills a surface.
+    /// \param elements whether to keep the elements and which simplex comes from which
+    SurfaceBuilder(Target& surface, bool elements) : surface_{&surface}, elements_{elements} {}
+    /// Fills a part of a surface.
+    SurfaceBuilder(SurfacePart<dimension>& part, bool elements)
+        : surface_{&part.surface}, shared_{&part.shared}, elements_{elements} {}
+    /// Fills a sink in chunks.
+    /// \param chunk the memory of a chunk
+    SurfaceBuilder(MeshSink<dimension>& sink, Target& chunk)
+        : surface_{&chunk}, sink_{&sink}, elements_{sink.keeps_elements()} {}
+
+    /// Adds a vertex, of a part, that other parts may have.
+    void add_shared(const std::array<NodeKey, 2>& node, double fraction, const Point& x,
+                    std::span<const double> attributes) {
+        shared_->push_back({static_cast<std::uint32_t>(surface_->vertices.size()), node, fraction});
+        add_vertex(x, attributes);
+    }
+    void add_vertex(const Point& x, std::span<const double> attributes) {
+        surface_->vertices.push_back(x);
+        for (const double a : attributes) surface_->attributes.push_back(a);
+    }
+    void add_vertices(std::span<const Point> x, std::span<const double> attributes) {
+        surface_->vertices.insert(surface_->vertices.end(), x.begin(), x.end());
+        surface_->attributes.insert(surface_->attributes.end(), attributes.begin(),
+                                    attributes.end());
+    }
+    Point position(std::uint32_t vertex) const {
+        return vertex < taken_ ? sink_->position(vertex) : surface_->vertices[vertex - taken_];
+    }
+    bool keeps_elements() const { return elements_; }
+    void add_element(const Handle& element, Shape shape, int level) {
+        if (!elements_) return;
+        surface_->elements.append(element);
+        surface_->shape_of.push_back(shape);
+        surface_->level_of.push_back(static_cast<std::uint16_t>(level));
+    }
+    NESTGRID_INLINE void add_simplex(const Simplex& vertices, std::span<const Point> reference) {
+        surface_->simplices.push_back(vertices);
+        if (elements_) surface_->element_of.push_back(last_element());
+        for (const Point& x : reference) surface_->reference.push_back(x);
+    }
+    template <class Corners>
+    void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all) {
+        append_simplices(vertices, all, surface_->simplices);
+        if (elements_) surface_->element_of.resize(surface_->simplices.size(), last_element());
+    }
+    /// Adds several elements and all simplices from them, in their order.
+    template <class Corners>
+    void add_extracted(std::span<const ExtractedElement> elements,
+                       std::span<const std::uint32_t> vertices, std::span<const Corners> all) {
+        append_simplices(vertices, all, surface_->simplices);
+        if (!elements_) return;
+        std::size_t simplex = surface_->element_of.size();
+        surface_->element_of.resize(surface_->simplices.size());
+        auto number = static_cast<std::uint32_t>(surface_->level_of.size());
+        for (const ExtractedElement& e : elements) {
+            for (const std::size_t end = simplex + e.simplices; simplex < end; ++simplex) {
+                surface_->element_of[simplex] = number;
+            }
+            ++number;
+            add_element(e.element, e.shape, e.level);
+        }
+    }
+    /// Adds elements, simplices and references of a part whose vertices have these numbers here.
+    void add_part(const Target& part, std::span<const std::uint32_t> numbers) {
+        const auto append = [](const auto& from, auto& to) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        append_simplices(numbers, std::span<const Simplex>(part.simplices), surface_->simplices);
+        append(part.reference, surface_->reference);
+        if (!elements_) return;
+        const auto elements = static_cast<std::uint32_t>(surface_->level_of.size());
+        const std::size_t simplices = surface_->element_of.size();
+        append(part.element_of, surface_->element_of);
+        for (std::uint32_t& e : std::span(surface_->element_of).subspan(simplices)) e += elements;
+        surface_->elements.append(part.elements);
+        append(part.shape_of, surface_->shape_of);
+        append(part.level_of, surface_->level_of);
+    }
+    void add_boundary(const typename Target::Ridge& vertices) {
+        surface_->boundary.push_back(vertices);
+    }
+    /// Hands the chunk to the sink where there is one and the chunk is full.
+    void flush_if_full() {
+        if (sink_ != nullptr && surface_->simplices.size() >= chunk_) flush();
+    }
+    /// Hands the rest to the sink where there is one.
+    void flush() {
+        if (sink_ == nullptr || (surface_->vertices.empty() && surface_->simplices.empty())) return;
+        sink_->take(*surface_);
+        taken_ += static_cast<std::uint32_t>(surface_->vertices.size());
+        surface_->clear();
+    }
+    void set_normals(std::vector<Point>&& normals) {
+        if (sink_ == nullptr) {
+            surface_->normals = std::move(normals);
+        } else {
+            sink_->set_normals(normals);
+        }
+    }
+    /// Forgets everything but the memory.
+    void clear() {
+        surface_->clear();
+        if (shared_ != nullptr) shared_->clear();
+        taken_ = 0;
+    }
+
+private:
+    static constexpr std::size_t chunk_ = 1024;  // simplices
+
+    std::uint32_t last_element() const {
+        return static_cast<std::uint32_t>(surface_->level_of.size() - 1);
+    }
+
+    Target* surface_;
+    std::vector<SharedVertex>* shared_ = nullptr;
+    MeshSink<dimension>* sink_ = nullptr;
+    std::uint32_t taken_ = 0;  // vertices that the sink has
+    bool elements_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The numbers of a surface's vertices by the two nodes they lie between.
+//
+// A flat hash table of 16 bytes a slot, at most five eighths full. A slot holds one word made of
+// the two keys: the keys themselves where both are below 2^32, else a mix of them, which two pairs
+// share as rarely as two nodes share a derived key (keys.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <nestgrid/error.hpp>
+#include <nestgrid/inlining.hpp>
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid::engine {
+
+[[noreturn]] inline void throw_too_many_vertices() {
+    throw GridError("the surface has 2^32 vertices or more");
+}
+
+class VertexNumbers {
+public:
+    using Number = std::uint32_t;
+
+    /// \param small_keys all keys are below 2^32
+    explicit VertexNumbers(bool small_keys = false) : small_keys_{small_keys} {}
+
+    /// What is asked for, the same for all tables with keys of one kind.
+    struct Name {
+        NodeKey word;
+        std::size_t hash;
+    };
+    NESTGRID_INLINE Name name(const KeyPair& nodes) const {
+        const NodeKey word = small_keys_ ? (nodes.low << 32U | nodes.high)
+                                         : detail::mix(detail::mix(nodes.low) + nodes.high);
+        return {word, hash(word)};
+    }
+
+    /// It will be asked for soon.
+    NESTGRID_INLINE void prefetch([[maybe_unused]] const Name& name) const {
+#if defined(__GNUC__)
+        __builtin_prefetch(slots_.data() + (name.hash & mask_));
+#endif
+    }
+
+    /// The number of the vertex between two nodes; make() gives it where it is new.
+    template <class Make>
+    NESTGRID_INLINE Number find(const Name& name, Make&& make) {
+        reserve(1);
+        Slot* slot = place(name);
+        if (slot->round == round_) return slot->number;
+        const Number number = make();
+        *slot = {name.word, number, round_};
+        ++size_;
+        return number;
+    }
+
+    /// For as many more vertices.
+    NESTGRID_INLINE void reserve(std::size_t more) {
+        while (8 * (size_ + more) >= 5 * slots_.size()) grow();
+    }
+    struct Found {
+        Number number;
+        bool is_new;
+    };
+    /// Of a table with room for it: the number of the vertex between two nodes, which is `next`
+    /// where it is new. There is no branch that depends on whether it is.
+    /// \param next greater than the numbers there are
+    NESTGRID_INLINE Found find_or_add(const Name& name, Number next) {
+        Slot* slot = place(name);
+        const bool is_new = slot->round != round_;
+        const Number known = slot->number | (is_new ? ~Number{0} : 0U);
+        *slot = {name.word, std::min(known, next), round_};
+        size_ += is_new ? 1 : 0;
+        return {slot->number, is_new};
+    }
+
+    /// Forgets everything but its memory.
+    void clear() {
+        size_ = 0;
+        if (++round_ != 0) return;
+        for (Slot& slot : slots_) slot.round = 0;
+        round_ = 1;
+    }
+
+    std::size_t memory_bytes() const { return slots_.capacity() * sizeof(Slot); }
+
+private:
+    struct Slot {
+        NodeKey word = 0;
+        Number number = 0;
+        std::uint32_t round = 0;  // in which it was used; what is older counts as empty
+    };
+
+    NESTGRID_INLINE static std::size_t hash(NodeKey word) {
+        auto bits = static_cast<std::uint64_t>(word);
+        bits = (bits ^ bits >> 32U) * 0x9e3779b97f4a7c15ULL;
+        return static_cast<std::size_t>(bits ^ bits >> 32U);
+    }
+    NESTGRID_INLINE Slot* place(const Name& name) {
+        Slot* const slots = slots_.data();
+        std::size_t at = name.hash & mask_;
+        while (slots[at].round == round_ && slots[at].word != name.word) at = (at + 1) & mask_;
+        return slots + at;
+    }
+
+    NESTGRID_NOINLINE void grow() {
+        // Twice the memory of a small table costs nothing, and moving its slots less often does.
+        const std::size_t factor = slots_.size() < (std::size_t{1} << 16U) ? 8 : 2;
+        std::vector<Slot> old(slots_.empty() ? std::size_t{1024} : factor * slots_.size());
+        old.swap(slots_);
+        mask_ = slots_.size() - 1;
+        for (const Slot& slot : old) {
+            if (slot.round == round_) *place({slot.word, hash(slot.word)}) = slot;
+        }
+    }
+
+    std::vector<Slot> slots_;
+    std::size_t mask_ = 0;
+    std::size_t size_ = 0;
+    std::uint32_t round_ = 1;
+    bool small_keys_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <walk/coarse_boundary.hpp>
+
+#include <string>
+
+#include <nestgrid/error.hpp>
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid::engine {
+
+template <class Real>
+std::vector<std::uint8_t> coarse_boundary(const Hierarchy<Real>& hierarchy) {
+    struct Use {
+        std::size_t element;
+        std::uint8_t face;
+        bool once;
+    };
+    const std::unique_ptr<Task> task = hierarchy.open();
+    const int dimension = hierarchy.facts().dimension;
+    std::vector<std::uint8_t> boundary(hierarchy.coarse_count(), 0);
+    KeyTable<NodeKey, Use> faces;
+    Coarse coarse;
+    Family family;
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        hierarchy.coarse(task.get(), i, coarse, family);
+        const Topology& t = topology(coarse.shape);
+        if (t.dimension != dimension) {
+            throw GridError("coarse element " + std::to_string(i) + " is a " + std::string(t.name) +
+                            ", but the grid has dimension " + std::to_string(dimension));
+        }
+        for (std::uint8_t f = 0; f < t.faces; ++f) {
+            NodeKey sum = 0;
+            for (std::size_t k = 0; k < t.face[f].corners; ++k) {
+                sum += coarse_key(coarse.ids[t.face[f].corner[k]]);
+            }
+            const auto [use, is_new] = faces.insert(mean_key(sum, t.face[f].corners), {i, f, true});
+            if (!is_new) use->once = false;
+        }
+    }
+    faces.for_each([&](const NodeKey&, const Use& use) {
+        if (use.once) boundary[use.element] |= static_cast<std::uint8_t>(1U << use.face);
+    });
+    return boundary;
+}
+
+template std::vector<std::uint8_t> coarse_boundary(const Hierarchy<float>&);
+template std::vector<std::uint8_t> coarse_boundary(const Hierarchy<double>&);
+
+}  // namespace nestgrid::engine

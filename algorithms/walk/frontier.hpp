@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A walk cut into tasks: subtrees of one level, in the order in which one walk meets them.
+//
+// Invariants:
+//   - an entry is an element on the frontier's level, or one above it that is extracted; every
+//     element of interest lies above the frontier or below exactly one entry;
+//   - the elements above the frontier are kept in preorder, so that a task finds its entries by
+//     walking down to them from the coarse grid and skips all other elements. The frontier stores
+//     the place of an element and nothing else; fathers, keys and values come from the walk.
+// Memory: 20 bytes for each element above the frontier and on it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+/// A visitor whose walk can be cut into tasks.
+template <class Real>
+class TaskVisitor : public Visitor<Real> {
+public:
+    /// Takes the last inspect() back, because a task will repeat it.
+    virtual void undo() = 0;
+    /// Takes all calls back.
+    virtual void restart() = 0;
+    /// Decides like inspect(), without counting the element.
+    virtual Decision look(const ElementView<Real>& view, const Split& split) = 0;
+
+protected:
+    TaskVisitor() = default;
+    ~TaskVisitor() = default;
+    TaskVisitor(const TaskVisitor&) = default;
+    TaskVisitor& operator=(const TaskVisitor&) = default;
+    TaskVisitor(TaskVisitor&&) = default;
+    TaskVisitor& operator=(TaskVisitor&&) = default;
+};
+
+template <class Real>
+class Frontier {
+public:
+    /// Takes the first level with enough entries, or the last one with any.
+    /// \param visitor decides about the elements above the frontier as in an ordinary walk
+    /// \throw GridError where the coarse grid has 2^32 elements or more
+    Frontier(const Walk<Real>& walk, TaskVisitor<Real>& visitor, std::size_t wanted);
+
+    std::size_t entry_count() const { return entries_; }
+
+    /// Shows a visitor the entries first ... last - 1 and all elements below them.
+    /// \param walk the one that the frontier was made with
+    void run(const Walk<Real>& walk, std::size_t first, std::size_t last,
+             TaskVisitor<Real>& visitor) const;
+
+private:
+    class Enumeration;
+    class Part;
+
+    struct Item {
+        std::uint32_t coarse;
+        std::uint32_t first_entry;  ///< the first one below the item, or the item itself
+        std::uint32_t next;         ///< the item behind its subtree
+        std::uint16_t head;         ///< level of the first of the copies that lead to the item
+        std::uint16_t level;
+        bool entry;
+    };
+
+    void close_subtrees();
+    /// The coarse element above an entry.
+    std::size_t item_of_coarse(std::size_t entry) const;
+
+    std::vector<Item> items_;
+    std::size_t entries_ = 0;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The depth-first traversal (paper, section 3) with the adaptive projection of eq. (2).
+//
+// Invariants:
+//   - a new node's value is the interpolant where S holds or the node hangs, else U itself;
+//   - U is asked for only where it is used, the children only when they are entered;
+//   - what the walk knows of an element lies in the frame of its father's split, one frame a level.
+// Consequences: memory is O(depth), allocated when a level is first reached and never in the loop;
+// two elements that share a node see the same bits there, because every mean is a symmetric
+// function of its arguments (mean.hpp).
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <nestgrid/hanging.hpp>
+#include <walk/visitor.hpp>
+
+namespace nestgrid::engine {
+
+/// What a walk carries along.
+struct Needs {
+    bool values = true;      ///< otherwise all values are undefined and the field is never asked
+    bool keys = true;        ///< keys of new nodes, and of corners by Walk::corners()
+    bool positions = false;  ///< positions by Walk::corners()
+    bool closed = false;     ///< closed edges and faces; needs the other three
+};
+
+/// The nodes of one split, and the children.
+template <class Real>
+struct Frame {
+    std::vector<Real> value;        ///< of the corners, then of the new nodes
+    std::vector<NodeKey> key;       ///< likewise
+    std::vector<Point> position;    ///< likewise
+    std::vector<Real> child_value;  ///< at the corners of the child that the walk is at
+    Family family;
+    std::unique_ptr<ClosingSplit<Real>> closing;
+};
+
+/// The memory of one walk: a frame a level, and the grid's own state.
+template <class Real>
+class WalkStack {
+public:
+    /// Frame of the split of an element on a level.
+    Frame<Real>& frame(int level) {
+        const auto at = static_cast<std::size_t>(level);
+        while (frames_.size() <= at) frames_.emplace_back();
+        return frames_[at];
+    }
+    std::size_t memory_bytes() const;
+
+    std::unique_ptr<Task> task;
+    // The coarse element that the walk is below.
+    Coarse coarse;
+    Family family;
+    std::vector<Real> value;
+    std::array<NodeKey, max_corners> key{};
+
+private:
+    std::deque<Frame<Real>> frames_;
+};
+
+/// Walks a hierarchy. Construction looks at the coarse grid once. Several threads may walk.
+template <class Real>
+class Walk {
+public:
+    using View = ElementView<Real>;
+
+    /// \param hanging nodes that hang, where the grid does not say so itself; may be null
+    /// \throw GridError where a coarse element has a shape of another dimension than the grid
+    Walk(const Hierarchy<Real>& hierarchy, const Needs& needs,
+         const HangingNodes* hanging = nullptr);
+
+    const Hierarchy<Real>& hierarchy() const { return *hierarchy_; }
+    std::size_t components() const { return components_; }
+
+    void run(Visitor<Real>& visitor) const { run(visitor, 0, hierarchy_->coarse_count()); }
+    /// Visits the coarse elements first ... last - 1 and all below them, in order.
+    void run(Visitor<Real>& visitor, std::size_t first, std::size_t last) const;
+    /// Visits an element and all below it.
+    void walk_below(const View& view, Visitor<Real>& visitor) const;
+
+    /// Keys and positions of the corners; each pointer may be null.
+    void corners(const View& view, NodeKey* keys, Point* positions) const;
+    /// Positions of the ends of a maximal edge.
+    std::array<Point, 2> positions(const MaximalEdge<Real>& edge) const;
+    /// Faces on the boundary of the domain, one bit each.
+    unsigned boundary(const View& view) const;
+    /// Gradients of component 0 at the corners, where the field offers them.
+    void gradients(const View& view, std::span<Point> out) const;
+
+private:
+    using Stack = WalkStack<Real>;
+
+    bool make_coarse(std::size_t i, Stack& stack, View& view) const;
+    void visit(const View& view, Visitor<Real>& visitor) const;
+    void descend(const View& view, const Split& split, NodeMask interpolated,
+                 Visitor<Real>& visitor) const;
+    void project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
+                 Frame<Real>& frame) const;
+    void project_positions(const View& view, const Rule& rule, NodeMask mean,
+                           Frame<Real>& frame) const;
+    const ClosingSplit<Real>* close(const View& view, const Split& split, NodeMask mean,
+                                    Frame<Real>& frame) const;
+    void visit_children(const View& view, const Rule& rule, NodeMask interpolated,
+                        const ClosingSplit<Real>* closing, Frame<Real>& frame,
+                        Visitor<Real>& visitor) const;
+    View make_child(const View& father, const Rule& rule, const Frame<Real>& frame) const;
+    void set_child(const View& father, const Child& as, std::size_t c, Frame<Real>& frame,
+                   View& child) const;
+    void copy_components(const Child& as, const Real* from, Real* to) const;
+    static std::uint8_t boundary_of_child(const View& father, const Child& as);
+    static std::uint8_t interpolated_corners(const View& father, const Child& as,
+                                             NodeMask interpolated);
+
+    std::unique_ptr<Stack> take_stack() const;
+    void give_back(std::unique_ptr<Stack> stack) const;
+
+    const Hierarchy<Real>* hierarchy_;
+    const HangingNodes* hanging_;
+    Needs needs_;
+    std::size_t components_;
+    std::vector<std::uint8_t> boundary_;  // of each coarse element, where the grid does not say
+    bool boundary_faces_;
+    bool own_keys_;
+    bool own_positions_;
+    bool new_positions_;
+    bool constrained_;
+    bool carries_keys_;
+    bool carries_positions_;
+    mutable std::mutex mutex_;
+    mutable std::vector<std::unique_ptr<Stack>> idle_;  // whose memory is free to be used
+};
+
+}  // namespace nestgrid::engine

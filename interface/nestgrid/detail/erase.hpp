@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Makes a Hierarchy of a model of NestedGrid and NodalField. This is what an algorithm costs the
+// compiler for each pair of grid and field.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+
+#include <nestgrid/hierarchy.hpp>
+#include <nestgrid/operations.hpp>
+
+namespace nestgrid {
+
+/// A field that is zero, for algorithms that look at the grid alone.
+template <class Grid>
+struct ZeroField {
+    using value_type = float;
+    NodeMask coarse_values(std::size_t, std::span<float> out) const {
+        std::fill(out.begin(), out.end(), 0.0F);
+        return 0;
+    }
+    NodeMask new_values(const ElementOf<Grid>&, NodeMask, std::span<float> out) const {
+        std::fill(out.begin(), out.end(), 0.0F);
+        return 0;
+    }
+};
+
+namespace detail {
+
+template <class Grid>
+HierarchyFacts facts_of_grid(const Grid& grid) {
+    HierarchyFacts facts;
+    facts.dimension = Grid::dimension;
+    for (const Feature feature : {Feature::own_keys, Feature::dense_keys, Feature::own_positions,
+                                  Feature::new_positions, Feature::constrained, Feature::masked,
+                                  Feature::outside, Feature::boundary_faces, Feature::hidden}) {
+        if (may_offer<Grid>(feature) && offers(grid, feature)) {
+            facts.features |= static_cast<unsigned>(feature);
+        }
+    }
+    facts.node_count = dense_key_count(grid);
+    if constexpr (requires { grid.conforming(); }) facts.conforming = grid.conforming();
+    if constexpr (requires { grid.whole(); }) facts.fills_rows = grid.whole();
+    facts.only_shape = only_shape<Grid>();
+    return facts;
+}
+
+template <class Grid, class Field>
+class ErasedHierarchy final : public Hierarchy<typename Field::value_type> {
+    static_assert(require_nested_grid<Grid>());
+    static_assert(require_nodal_field<Field, Grid>());
+
+public:
+    using Real = typename Field::value_type;
+    using Element = ElementOf<Grid>;
+
+    ErasedHierarchy(const Grid& grid, const Field& field)
+        : Hierarchy<Real>(facts_of(grid, field)), grid_{&grid}, field_{&field} {}
+
+    std::size_t coarse_count() const override { return grid_->coarse_count(); }
+    std::uint64_t epoch() const override { return nestgrid::epoch(*grid_); }
+    Elements make_elements() const override { return Elements::of<Element>(); }
+
+    std::unique_ptr<Task> open() const override {
+        if constexpr (has_context_) return std::make_unique<OpenTask>(*grid_);
+        return nullptr;
+    }
+
+    void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const override {
+        with(task, [&](auto& context) {
+            const CoarseElement<Element> from = call_coarse(*grid_, context, i);
+            coarse.shape = from.shape;
+            coarse.orientation = from.orientation;
+            coarse.corners = from.corners;
+            coarse.ids = from.ids;
+            begin(family, 1);
+            const std::span<Element> kept = places(family, 1);
+            if (!kept.empty()) kept[0] = from.element;
+            describe(context, kept.empty() ? from.element : kept[0], family, 0);
+        });
+    }
+
+    NodeMask coarse_values(Task* task, std::size_t i, std::size_t corners,
+                           Real* out) const override {
+        return with(task, [&](auto& context) {
+            return call_coarse_values(*field_, context, i,
+                                      std::span<Real>(out, corners * components_));
+        });
+    }
+
+    NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
+                   Real* values, NodeMask wanted, Family& family) const override {
+        return with(task, [&](auto& context) {
+            const Element& e = element_of<Element>(element);
+            NodeMask missing = 0;
+            if (which != 0) {
+                missing =
+                    call_new_values(*field_, context, e, which,
+                                    std::span<Real>(values, rule.new_nodes.size() * components_));
+            }
+            const std::size_t count = rule.children.size();
+            begin(family, count);
+            std::array<Element, fits_handle<Element> ? child_capacity<Grid>() : 1> on_stack;
+            std::span<Element> children = places(family, count);
+            if (children.empty()) children = std::span(on_stack).first(count);
+            call_children(*grid_, context, e, children);
+            for (std::size_t c = 0; c < count; ++c) {
+                if ((wanted >> c & 1U) != 0) describe(context, children[c], family, c);
+            }
+            return missing;
+        });
+    }
+
+    NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
+                        Real* values) const override {
+        return with(task, [&](auto& context) {
+            return call_new_values(*field_, context, element_of<Element>(element), which,
+                                   std::span<Real>(values, rule.new_nodes.size() * components_));
+        });
+    }
+
+    void corners(Task* task, const Handle& element, std::size_t count, NodeKey* keys,
+                 Point* positions, unsigned* boundary) const override {
+        with(task, [&](auto& context) {
+            const Element& e = element_of<Element>(element);
+            if constexpr (may_offer<Grid>(Feature::own_keys)) {
+                if (keys != nullptr) {
+                    call_corner_keys(*grid_, context, e, std::span<NodeKey>(keys, count));
+                }
+            }
+            if constexpr (may_offer<Grid>(Feature::own_positions)) {
+                if (positions != nullptr) {
+                    call_corner_positions(*grid_, context, e, std::span<Point>(positions, count));
+                }
+            }
+            if constexpr (may_offer<Grid>(Feature::boundary_faces)) {
+                if (boundary != nullptr) *boundary = call_boundary_faces(*grid_, context, e);
+            }
+        });
+    }
+
+    void new_positions(Task* task, const Handle& element, NodeMask which,
+                       std::span<Point> out) const override {
+        if constexpr (may_offer<Grid>(Feature::new_positions)) {
+            with(task, [&](auto& context) {
+                call_new_positions(*grid_, context, element_of<Element>(element), which, out);
+            });
+        }
+    }
+
+    void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
+        if constexpr (may_have_gradients_) {
+            with(task, [&](auto& context) {
+                call_corner_gradients(*field_, context, element_of<Element>(element), out);
+            });
+        }
+    }
+
+    void star_rows(const std::function<void(const StarRow&)>& function) const override {
+        if constexpr (has_star_rows_) grid_->for_each_star_row(function);
+    }
+    void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const override {
+        if constexpr (KnowsRows<Field>) field_->row_values(first, stride, out);
+    }
+    Point node_position(NodeKey node) const override {
+        if constexpr (requires { grid_->node_position(node); }) return grid_->node_position(node);
+        return {};
+    }
+
+    void bisect(
+        Task* task, const Handle& element, const Real* values, int level, int orientation,
+        ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) const override {
+        if constexpr (may_know_blocks_) {
+            with(task, [&](auto& context) {
+                bisect_blocks(*grid_, *field_, context, element_of<Element>(element), values, level,
+                              orientation, visitor);
+            });
+        }
+    }
+    using Hierarchy<Real>::bisect;
+
+private:
+    static constexpr auto components_ = static_cast<std::size_t>(components_of<Field>());
+    static constexpr bool has_context_ = !std::is_same_v<Context<Grid>, NoContext>;
+    static constexpr bool has_star_rows_ = requires(const Grid& grid) {
+        grid.for_each_star_row([](const StarRow&) {});
+    };
+    static constexpr bool may_have_gradients_ =
+        offers_corner_gradients<Field, Context<Grid>, const Element&, std::span<Point>>;
+    static constexpr bool may_know_blocks_ = requires(
+        const Grid& grid, const Field& field, Context<Grid>& context, const Element& e,
+        const Real* values, ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) {
+        { knows_blocks(grid, field, HierarchyFacts{}) } -> std::same_as<bool>;
+        bisect_blocks(grid, field, context, e, values, 0, 1, visitor);
+    };
+
+    struct OpenTask final : Task {
+        explicit OpenTask(const Grid& grid) : context(make_context(grid)) {}
+        Context<Grid> context;
+    };
+
+    /// Calls function(context) with the context of a task.
+    template <class Function>
+    static decltype(auto) with(Task* task, Function&& function) {
+        if constexpr (has_context_) {
+            return function(static_cast<OpenTask*>(task)->context);
+        } else {
+            NoContext none;
+            return function(none);
+        }
+    }
+
+    static HierarchyFacts facts_of(const Grid& grid, const Field& field) {
+        HierarchyFacts facts = facts_of_grid(grid);
+        facts.components = components_of<Field>();
+        if constexpr (may_have_gradients_) {
+            if (offers_gradients<Grid>(field)) {
+                facts.features |= static_cast<unsigned>(Feature::gradients);
+            }
+        }
+        if constexpr (has_star_rows_ && KnowsRows<Field>) {
+            facts.knows_stars = nestgrid::knows_stars(grid) && nestgrid::knows_stars(field);
+        }
+        if constexpr (has_star_rows_ && requires { grid.node_position(NodeKey{}); }) {
+            facts.knows_star_positions = nestgrid::knows_stars(grid);
+        }
+        if constexpr (may_know_blocks_) facts.knows_blocks = knows_blocks(grid, field, facts);
+        return facts;
+    }
+
+    /// Where the elements of a family are kept that do not fit into handles; else nothing.
+    static std::span<Element> places(Family& family, std::size_t count) {
+        if constexpr (fits_handle<Element>) {
+            return {};
+        } else {
+            if (!family.elements) family.elements = std::make_shared<std::vector<Element>>();
+            auto& elements = *static_cast<std::vector<Element>*>(family.elements.get());
+            if (elements.size() < count) elements.resize(count);
+            return std::span(elements).first(count);
+        }
+    }
+
+    static void begin(Family& family, std::size_t count) {
+        if (family.members.size() < count) family.members.resize(count);
+        family.keys.clear();
+        family.split = family.leaves = family.hidden = 0;
+    }
+
+    /// Sets member c of a family.
+    template <class AnyContext>
+    void describe(AnyContext& context, const Element& e, Family& family, std::size_t c) const {
+        Member& member = family.members[c];
+        set_handle(member.element, e);
+        if constexpr (may_offer<Grid>(Feature::masked)) {
+            if (this->offers(Feature::masked) && call_masked(*grid_, context, e)) return;
+        }
+        const NodeMask bit = NodeMask{1} << c;
+        if constexpr (may_offer<Grid>(Feature::hidden)) {
+            if (this->offers(Feature::hidden)) member.hidden = call_hidden(*grid_, context, e);
+            if (member.hidden == Hidden::wholly) family.hidden |= bit;
+        }
+        member.rule = call_split(*grid_, context, e);
+        if (member.rule == nullptr) {
+            family.leaves |= bit;
+            return;
+        }
+        family.split |= bit;
+        if constexpr (may_offer<Grid>(Feature::own_keys)) {
+            if (this->offers(Feature::own_keys)) {
+                member.first_key = static_cast<std::uint32_t>(family.keys.size());
+                family.keys.resize(family.keys.size() + member.rule->new_nodes.size());
+                call_new_keys(*grid_, context, e, std::span(family.keys).subspan(member.first_key));
+            }
+        }
+        if constexpr (may_offer<Grid>(Feature::constrained)) {
+            if (this->offers(Feature::constrained)) {
+                member.constrained = call_constrained(*grid_, context, e);
+            }
+        }
+        if constexpr (may_offer<Grid>(Feature::outside)) {
+            if (this->offers(Feature::outside)) member.outside = call_outside(*grid_, context, e);
+        }
+    }
+
+    const Grid* grid_;
+    const Field* field_;
+};
+
+}  // namespace detail
+
+/// A grid and a field on it as a Hierarchy; both are borrowed.
+template <class Grid, class Field>
+detail::ErasedHierarchy<Grid, Field> erase(const Grid& grid, const Field& field) {
+    return {grid, field};
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Finds the hanging nodes of a grid whose adapter does not know them.
+//
+// A node that hangs on a leaf would have been created by refining an edge or a face of that leaf,
+// so its parents are known without the node: every leaf probes for nodes with the parents that its
+// edges and faces have, and, where there is one, for those of the parts, recursively. This finds
+// nodes that a test of faces misses, because the coarse leaf touches the finer element in an edge
+// only. Keys may be derived or the grid's own.
+// Costs O(nodes) memory while it runs, and keeps the keys of hanging nodes.
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+
+#include <nestgrid/hanging.hpp>
+#include <nestgrid/key_filter.hpp>
+#include <nestgrid/key_table.hpp>
+
+namespace nestgrid {
+
+namespace detail {
+
+class HangingProbe {
+public:
+    /// The new nodes of a split; `corners` and `nodes` are keys, in the order of the rule.
+    void add_nodes(const Rule& rule, std::span<const NodeKey> corners,
+                   std::span<const NodeKey> nodes) {
+        std::array<NodeKey, max_corners + max_new_nodes> mixed;
+        std::array<NodeKey, max_new_nodes> parents;
+        const auto count = static_cast<std::size_t>(rule.corner_count());
+        for (std::size_t i = 0; i < count; ++i) mixed[i] = mix(corners[i]);
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            parents[n] = derived_key(rule.new_nodes[n], mixed.data());
+            mixed[count + n] = mix(nodes[n]);
+            nodes_.prefetch(parents[n]);
+        }
+        for (std::size_t n = 0; n < nodes.size(); ++n) nodes_.insert(parents[n], nodes[n]);
+    }
+
+    /// Between the last add_nodes() and the first probe_leaf().
+    void finish() {
+        parents_.reset(nodes_.size());
+        nodes_.for_each([&](NodeKey parents, NodeKey) { parents_.add(hash(parents)); });
+    }
+
+    void probe_leaf(Shape shape, std::span<const NodeKey> k) {
+        const Topology& t = topology(shape);
+        std::array<Found, max_edges> middle_of{};
+        bool any = false;
+        for (std::size_t e = 0; e < t.edges; ++e) {
+            const NodeKey a = k[t.edge[e][0]];
+            const NodeKey b = k[t.edge[e][1]];
+            middle_of[e] = middle(a, b);
+            any = any || middle_of[e] != nullptr;
+            probe_parts(a, b, middle_of[e]);
+        }
+        // A face that is divided has an edge that is.
+        for (std::size_t f = 0; any && t.dimension == 3 && f < t.faces; ++f) {
+            const FaceTopology& face = t.face[f];
+            const auto at = [&](int i) { return k[face.tensor_corner(i)]; };
+            const auto between = [&](int i, int j) {
+                return middle_of[edge_between(shape, face.tensor_corner(i), face.tensor_corner(j))];
+            };
+            if (face.corners == 3) {
+                probe_triangle(at(0), at(1), at(2), between(0, 1), between(1, 2), between(2, 0));
+            } else {
+                probe_quadrilateral(at(0), at(1), at(2), at(3), between(0, 1), between(2, 3),
+                                    between(0, 2), between(1, 3));
+            }
+        }
+    }
+
+    HangingNodes take() { return std::move(hanging_); }
+
+private:
+    struct Present {};
+    /// The key of a node that exists, or null.
+    using Found = const NodeKey*;
+
+    /// The node in the middle of others. Own keys may be small numbers, whose sums coincide, so
+    /// each is mixed first.
+    template <class... Keys>
+    Found middle(Keys... of) const {
+        const NodeKey parents = mean_key((mix(of) + ...), sizeof...(of));
+        return parents_.perhaps(hash(parents)) ? nodes_.find(parents) : nullptr;
+    }
+
+    void probe_edge(NodeKey a, NodeKey b) { probe_parts(a, b, middle(a, b)); }
+    /// \param m the node in its middle, or null
+    void probe_parts(NodeKey a, NodeKey b, Found m) {
+        if (m == nullptr) return;
+        hanging_.insert(*m);
+        probe_edge(a, *m);
+        probe_edge(*m, b);
+    }
+
+    /// Bisected or refined into four, along any of its edges.
+    void probe_triangle(NodeKey a, NodeKey b, NodeKey c) {
+        probe_triangle(a, b, c, middle(a, b), middle(b, c), middle(c, a));
+    }
+    void probe_triangle(NodeKey a, NodeKey b, NodeKey c, Found ab, Found bc, Found ca) {
+        if (ab == nullptr && bc == nullptr && ca == nullptr) return;
+        if (!triangles_.insert(mean_key(mix(a) + mix(b) + mix(c), 3), {}).second) return;
+        const auto bisected = [&](Found m, NodeKey p, NodeKey q, NodeKey r) {
+            if (m == nullptr) return;
+            probe_edge(*m, r);
+            probe_triangle(p, *m, r);
+            probe_triangle(*m, q, r);
+        };
+        bisected(ab, a, b, c);
+        bisected(bc, b, c, a);
+        bisected(ca, c, a, b);
+        if (ab == nullptr || bc == nullptr || ca == nullptr) return;
+        probe_edge(*ab, *bc);
+        probe_edge(*bc, *ca);
+        probe_edge(*ca, *ab);
+        probe_triangle(a, *ab, *ca);
+        probe_triangle(*ab, b, *bc);
+        probe_triangle(*ca, *bc, c);
+        probe_triangle(*ab, *bc, *ca);
+    }
+
+    /// Corners in tensor order; refined into four, or halved in one direction.
+    void probe_quadrilateral(NodeKey a, NodeKey b, NodeKey c, NodeKey d) {
+        probe_quadrilateral(a, b, c, d, middle(a, b), middle(c, d), middle(a, c), middle(b, d));
+    }
+    void probe_quadrilateral(NodeKey a, NodeKey b, NodeKey c, NodeKey d, Found ab, Found cd,
+                             Found ac, Found bd) {
+        const bool across = ab != nullptr && cd != nullptr;
+        const bool along = ac != nullptr && bd != nullptr;
+        const Found centre = across && along ? middle(a, b, c, d) : nullptr;
+        if (centre != nullptr) {
+            hanging_.insert(*centre);
+            for (const Found m : {ab, cd, ac, bd}) probe_edge(*m, *centre);
+            probe_quadrilateral(a, *ab, *ac, *centre);
+            probe_quadrilateral(*ab, b, *centre, *bd);
+            probe_quadrilateral(*ac, *centre, c, *cd);
+            probe_quadrilateral(*centre, *bd, *cd, d);
+            return;
+        }
+        if (across) {
+            probe_edge(*ab, *cd);
+            probe_quadrilateral(a, *ab, c, *cd);
+            probe_quadrilateral(*ab, b, *cd, d);
+        }
+        if (along) {
+            probe_edge(*ac, *bd);
+            probe_quadrilateral(a, b, *ac, *bd);
+            probe_quadrilateral(*ac, *bd, c, d);
+        }
+    }
+
+    KeyTable<NodeKey, NodeKey> nodes_;  // by their parents
+    KeyFilter parents_;
+    KeyTable<NodeKey, Present> triangles_;
+    HangingNodes hanging_;
+};
+
+}  // namespace detail
+
+}  // namespace nestgrid

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The seam between grids and algorithms: a grid and a field on it behind virtual functions.
+//
+// Algorithms are compiled once against Hierarchy<float> and Hierarchy<double>. Any model of the
+// concepts in grid.hpp becomes one (detail/erase.hpp), and so does a table in C.
+//
+// Invariants:
+//   - one call enters an element: it returns the values at the new nodes that the walk needs, and
+//     all children with the rules that split them, the keys of their new nodes, and which of these
+//     hang or lie outside;
+//   - one more call returns keys, positions and boundary faces of an element that is extracted;
+//   - all functions are const and reentrant; what a grid must remember lies in the Task.
+// Consequence: the number of virtual calls is that of the elements entered and extracted, not that
+// of the questions asked.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nestgrid/elements.hpp>
+#include <nestgrid/features.hpp>
+#include <nestgrid/keys.hpp>
+#include <nestgrid/rule.hpp>
+
+namespace nestgrid {
+
+/// The grid's own state of one task: a rebuilt entity, a cache. Used by one thread at a time.
+class Task {
+public:
+    virtual ~Task() = default;
+};
+
+/// What is known of an element without entering it.
+struct Member {
+    Handle element;
+    const Rule* rule = nullptr;   ///< that splits the element; null on a leaf
+    NodeMask constrained = 0;     ///< new nodes that hang, where the grid knows them
+    NodeMask outside = 0;         ///< new nodes at which no element may stop
+    std::uint32_t first_key = 0;  ///< in Family::keys, where the grid has keys of its own
+    Hidden hidden = Hidden::not_at_all;
+};
+
+/// The children of one element, or one coarse element. Members that are neither split nor leaves
+/// are masked, or were not asked for; nothing of them is set but the handle.
+struct Family {
+    std::vector<Member> members;
+    NodeMask split = 0;         ///< members that are split, one bit each
+    NodeMask leaves = 0;        ///< members that are not, likewise
+    NodeMask hidden = 0;        ///< members that are hidden wholly, likewise
+    std::vector<NodeKey> keys;  ///< of the new nodes of all members that are split
+    /// Where handles point to, for elements that do not fit into them.
+    std::shared_ptr<void> elements;
+
+    std::span<const NodeKey> new_keys(const Member& member) const {
+        return std::span(keys).subspan(member.first_key, member.rule->new_nodes.size());
+    }
+};
+
+/// An element of the coarse grid.
+struct Coarse {
+    Shape shape = Shape::point;
+    std::int8_t orientation = 1;
+    std::array<Point, max_corners> corners{};
+    std::array<std::uint64_t, max_corners> ids{};
+};
+
+/// What holds of a hierarchy as a whole.
+struct HierarchyFacts {
+    int dimension = 0;
+    int components = 1;                 ///< of the field
+    unsigned features = 0;              ///< the optional operations it has, by Feature
+    std::size_t node_count = 0;         ///< number of dense keys; 0 where keys are not dense
+    bool conforming = false;            ///< no node hangs
+    bool knows_stars = false;           ///< star_rows() and row_values() work
+    bool knows_star_positions = false;  ///< star_rows() and node_position() work
+    bool knows_blocks = false;          ///< bisect() works
+    bool fills_rows = false;            ///< every node is in a star row
+    Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
+
+    bool offers(Feature feature) const { return (features & static_cast<unsigned>(feature)) != 0; }
+};
+
+namespace detail {
+template <int dim, class Real>
+class ErasedBisectionVisitor;
+}
+
+/// A nested grid with a field on it. What it was made of must outlive it.
+/// \tparam Real float or double: the type of the values
+template <class Real>
+class Hierarchy {
+public:
+    using value_type = Real;
+
+    Hierarchy(const Hierarchy&) = delete;
+    Hierarchy& operator=(const Hierarchy&) = delete;
+    virtual ~Hierarchy() = default;
+
+    const HierarchyFacts& facts() const { return facts_; }
+    bool offers(Feature feature) const { return facts_.offers(feature); }
+    virtual std::size_t coarse_count() const = 0;
+    /// Changes with the grid.
+    virtual std::uint64_t epoch() const = 0;
+    /// An empty list for elements of the grid.
+    virtual Elements make_elements() const = 0;
+
+    /// A task's state; null where the grid needs none.
+    virtual std::unique_ptr<Task> open() const = 0;
+
+    /// Coarse element i, alone in its family.
+    virtual void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const = 0;
+    /// Values at the corners of coarse element i, component c of corner k at out[k * components +
+    /// c]. \return the corners without a value
+    virtual NodeMask coarse_values(Task* task, std::size_t i, std::size_t corners,
+                                   Real* out) const = 0;
+    /// Enters an element.
+    /// \param which new nodes whose values are asked for
+    /// \param values likewise of new node n at values[n * components]
+    /// \param wanted children that are asked for, one bit each; the others stay undefined
+    /// \return the nodes without a value
+    virtual NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
+                           Real* values, NodeMask wanted, Family& children) const = 0;
+    /// Values at new nodes alone.
+    virtual NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
+                                Real* values) const = 0;
+    /// What the grid itself says of the corners and faces of an element. Each pointer may be null.
+    /// \param keys where the grid has own keys
+    /// \param positions where it has own positions
+    /// \param boundary faces on the boundary of the domain, where it has boundary_faces
+    virtual void corners(Task* task, const Handle& element, std::size_t count, NodeKey* keys,
+                         Point* positions, unsigned* boundary) const = 0;
+    /// True positions of new nodes, where the grid has new_positions.
+    virtual void new_positions(Task* task, const Handle& element, NodeMask which,
+                               std::span<Point> out) const = 0;
+    /// Gradients of component 0 at the corners, where the field has gradients.
+    virtual void corner_gradients(Task* task, const Handle& element,
+                                  std::span<Point> out) const = 0;
+
+    /// Calls function(row) for all star rows (operations.hpp), where facts().knows_stars.
+    virtual void star_rows(const std::function<void(const StarRow&)>& function) const;
+    /// Values at the nodes first, first + stride, ..., likewise.
+    virtual void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const;
+    /// The position of a node, where facts().knows_star_positions.
+    virtual Point node_position(NodeKey node) const;
+
+    /// Walks the bisections below an element in blocks, where facts().knows_blocks.
+    virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
+                        int orientation, detail::ErasedBisectionVisitor<2, Real>& visitor) const;
+    virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
+                        int orientation, detail::ErasedBisectionVisitor<3, Real>& visitor) const;
+
+protected:
+    explicit Hierarchy(const HierarchyFacts& facts) : facts_{facts} { detail::require_same_keys(); }
+
+    HierarchyFacts facts_;
+};
+
+template <class Real>
+void Hierarchy<Real>::star_rows(const std::function<void(const StarRow&)>&) const {}
+template <class Real>
+void Hierarchy<Real>::row_values(NodeKey, std::size_t, std::span<Real>) const {}
+template <class Real>
+Point Hierarchy<Real>::node_position(NodeKey) const {
+    return {};
+}
+template <class Real>
+void Hierarchy<Real>::bisect(Task*, const Handle&, const Real*, int, int,
+                             detail::ErasedBisectionVisitor<2, Real>&) const {}
+template <class Real>
+void Hierarchy<Real>::bisect(Task*, const Handle&, const Real*, int, int,
+                             detail::ErasedBisectionVisitor<3, Real>&) const {}
+
+}  // namespace nestgrid
