@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "archetype.hpp"
+#include "forests.hpp"
+
+namespace {
+
+using namespace recording;
+
+/// New nodes that are no plain means, one of them with another new node for a parent.
+const Rule& thirds() {
+    static const Rule rule = make_rule("thirds", Shape::triangle,
+                                       {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),
+                                        weighted_mean_of({{0, 0.5}, {2, 0.3}, {3, 0.2}}, 1)},
+                                       {{Shape::triangle, {0, 3, 4}, 1, {}},
+                                        {Shape::triangle, {3, 2, 4}, 1, {}},
+                                        {Shape::triangle, {2, 0, 4}, 1, {}},
+                                        {Shape::triangle, {3, 1, 2}, 1, {}}});
+    return rule;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const auto boxes2 = some_boxes<2>(3, 3, 200);
+    record_all("forest2/boxes", boxes2, subjects_on(boxes2, 3));
+    const auto bisected = refined(kuhn<2>(2), 7, 500);
+    record_options("forest2/bisected", bisected, subjects_on(bisected));
+    Forest<2> red = kuhn<2>(0);
+    std::mt19937 random(9);
+    for (int i = 0; i < 200; ++i) {
+        const auto e = static_cast<std::uint32_t>(random() % red.cells.size());
+        if (red.cells[e].rule == nullptr) red.refine(e, red_triangle_rule());
+    }
+    record_options("forest2/red", red, subjects_on(red));
+    Forest<2> unequal = kuhn<2>(0);
+    for (std::uint32_t e = 0; unequal.cells.size() < 400; ++e) unequal.refine(e, thirds());
+    record_options("forest2/thirds", unequal, subjects_on(unequal));
+    record("forest2/archetype", [](Case& c) {
+        const ArchetypeGrid grid;
+        for (const double isovalue : {0.5, 1.5, 3.0}) {
+            for (const auto& named : all_options()) {
+                c.add(named.name, grid,
+                      draw_alone(grid, ArchetypeField{}, isovalue, named.options));
+            }
+        }
+    });
+    return finish(count, arguments);
+}
