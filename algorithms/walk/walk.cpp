@@ -38,18 +38,6 @@ template <class Real>
 }  // namespace
 
 template <class Real>
-std::size_t WalkStack<Real>::memory_bytes() const {
-    std::size_t bytes = sizeof(*this);
-    for (const Frame<Real>& f : frames_) {
-        bytes += sizeof(f) + (f.value.capacity() + f.child_value.capacity()) * sizeof(Real) +
-                 f.key.capacity() * sizeof(NodeKey) + f.position.capacity() * sizeof(Point) +
-                 f.family.members.capacity() * sizeof(Member) +
-                 f.family.keys.capacity() * sizeof(NodeKey) + (f.closing ? sizeof(*f.closing) : 0);
-    }
-    return bytes;
-}
-
-template <class Real>
 Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const HangingNodes* hanging)
     : hierarchy_{&hierarchy},
       hanging_{hanging},

@@ -51,8 +51,6 @@ public:
         while (frames_.size() <= at) frames_.emplace_back();
         return frames_[at];
     }
-    std::size_t memory_bytes() const;
-
     std::unique_ptr<Task> task;
     // The coarse element that the walk is below.
     Coarse coarse;

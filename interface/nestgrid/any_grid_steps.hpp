@@ -138,9 +138,7 @@ void AnyField<Real, component_count>::bisect(
         throw GridError("an element has the tag " + std::to_string(tag) + ", not 1 to " +
                         std::to_string(dim));
     }
-    detail::BisectionForwarder<detail::TableBisections<dim>, Real> forward(bisections, visitor);
-    walk_bisections(bisections, told_values(), forward, e, value, level, orientation,
-                    [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+    detail::walk_for(visitor, bisections, told_values(), e, value, level, orientation);
 }
 
 }  // namespace nestgrid

@@ -144,8 +144,6 @@ public:
         return {static_cast<const Element*>(all_->data()), all_->size()};
     }
 
-    /// Whether the list can take elements.
-    bool has_type() const { return all_ != nullptr; }
     void append(const Handle& element) { all_->append(element); }
     /// Appends a list of the same grid.
     void append(const Elements& other) {

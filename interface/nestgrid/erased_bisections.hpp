@@ -152,6 +152,16 @@ private:
     ErasedBisectionVisitor<dim, Real>* to_;
 };
 
+/// Walks the bisections below an element, and tells the visitor the counts of the walk at its end.
+template <class Grid, class Field, class Real>
+void walk_for(ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid& grid,
+              const Field& field, const ElementOf<Grid>& e, const Real* values, int level,
+              int orientation) {
+    BisectionForwarder<Grid, Real> forward(grid, visitor);
+    walk_bisections(grid, field, forward, e, values, level, orientation,
+                    [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+}
+
 }  // namespace nestgrid::detail
 
 namespace nestgrid {
@@ -172,9 +182,7 @@ void bisect_blocks(
     const Grid& grid, const Field& field, Context<Grid>&, const ElementOf<Grid>& e,
     const typename Field::value_type* values, int level, int orientation,
     detail::ErasedBisectionVisitor<Grid::dimension, typename Field::value_type>& visitor) {
-    detail::BisectionForwarder<Grid, typename Field::value_type> forward(grid, visitor);
-    walk_bisections(grid, field, forward, e, values, level, orientation,
-                    [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+    detail::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
 }  // namespace nestgrid

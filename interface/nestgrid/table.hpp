@@ -264,10 +264,8 @@ struct FieldTable {
         const Grid& grid = Bridge::grid(table->self);
         using Visitor = ErasedBisectionVisitor<Grid::dimension, Real>;
         Visitor& to = *static_cast<Visitor*>(visitor);
-        BisectionForwarder<Grid, Real> forward(grid, to);
-        walk_bisections(grid, field(self), forward, Bridge::load(e),
-                        static_cast<const Real*>(values), level, orientation,
-                        [&](const auto& walk) { to.end(walk.looked_at(), walk.visited()); });
+        walk_for(to, grid, field(self), Bridge::load(e), static_cast<const Real*>(values), level,
+                 orientation);
         return 0;
     }
 };

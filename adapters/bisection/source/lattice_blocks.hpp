@@ -14,9 +14,7 @@ void bisect_blocks(const LatticeBisection<dim>& grid,
                    const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext&,
                    const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
                    int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) {
-    detail::BisectionForwarder<LatticeBisection<dim>, Real> forward(grid, visitor);
-    walk_bisections(grid, field, forward, e, values, level, orientation,
-                    [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+    detail::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
 }  // namespace nestgrid
