@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include <levels/isosurface_visitor.hpp>
+#include <levels/level_set.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {
@@ -38,55 +38,50 @@ void require_saturated(const Criterion& criterion, const Bounds& bounds) {
     }
 }
 
+template <class Real>
+std::vector<Level<Real>> levels_at(std::span<const double> isovalues) {
+    std::vector<Level<Real>> levels;
+    for (const double isovalue : isovalues) levels.emplace_back(isovalue);
+    return levels;
+}
+
 template <int dimension, class Real>
 std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, double isovalue,
                                              const Criterion& criterion, const Bounds& bounds,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor) {
-    using Visitor = IsosurfaceVisitor<dimension, Real, true>;
+    using Drawing = LevelSet<dimension, Real>;
     require_saturated(criterion, bounds);
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
-    const Walk<Real> walk(hierarchy, Visitor::needs, bounds.hanging());
+    const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
+    const LevelSearch<Real> search(hierarchy, {Level<Real>(isovalue)}, criterion, bounds);
     Surface<dimension> nothing;
-    Visitor visitor(walk, std::span<const double>(&isovalue, 1),
-                    {typename Visitor::Builder(nothing, false)}, criterion, bounds, plain);
-    visitor.count_only(most);
+    Drawing drawing(walk, search, {typename Drawing::Builder(nothing, false)}, plain,
+                    isosurface_attributes);
+    drawing.count_only(most);
     try {
-        visitor.run(executor);
+        drawing.run(executor);
     } catch (const OverLimit&) {
         return std::nullopt;
     }
-    return visitor.simplices();
+    return drawing.simplices();
 }
 
-namespace {
-
-/// \return whether options.progress ended it
-template <class Visitor>
-bool run_visitor(Visitor& visitor, const Executor& executor) {
-    try {
-        visitor.run(executor);
-        return false;
-    } catch (const Cancelled&) {
-        return true;
-    }
-}
-
-/// Draws into builders and reports what is known beside the surfaces.
-template <int dimension, class Real, bool indexed>
-void draw(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
-          std::vector<typename IsosurfaceVisitor<dimension, Real, indexed>::Builder> builders,
-          const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
-          const Executor& executor, std::vector<Isosurface<dimension>>& results) {
-    using Visitor = IsosurfaceVisitor<dimension, Real, indexed>;
-    const Walk<Real> walk(hierarchy, Visitor::needs, bounds.hanging());
-    Visitor visitor(walk, isovalues, std::move(builders), criterion, bounds, options);
-    const bool cancelled = run_visitor(visitor, executor);
-    visitor.flush();
+template <int dimension, class Real>
+void draw_levels(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
+                 std::size_t first_attribute, std::vector<SurfaceBuilder<dimension>> builders,
+                 const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
+                 const Executor& executor, std::vector<Isosurface<dimension>>& results) {
+    using Drawing = LevelSet<dimension, Real>;
+    const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
+    const LevelSearch<Real> search(hierarchy, std::move(levels), criterion, bounds);
+    Drawing drawing(walk, search, std::move(builders), options, first_attribute);
+    const bool cancelled = run_until_cancelled(drawing, executor);
+    drawing.flush();
     for (std::size_t i = 0; i < results.size(); ++i) {
-        visitor.report(i, results[i]);
+        drawing.report(i, results[i]);
         results[i].cancelled = cancelled;
         if (criterion.insists()) {
             results[i].error_bound = std::numeric_limits<double>::infinity();
@@ -94,19 +89,38 @@ void draw(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
     }
 }
 
-}  // namespace
-
 }  // namespace engine
 
 namespace detail {
+
+namespace {
+
+/// Builders that fill sinks, or the surfaces of the results where there are no sinks.
+/// \param chunks memory that the builders fill, one for each surface
+template <int dimension>
+std::vector<engine::SurfaceBuilder<dimension>> make_builders(
+    const SurfaceTargets<dimension>& targets, std::vector<Surface<dimension>>& chunks,
+    bool keeps_elements) {
+    std::vector<engine::SurfaceBuilder<dimension>> builders;
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+        if (!targets.soups.empty()) {
+            builders.emplace_back(*targets.soups[i], chunks[i]);
+        } else if (!targets.meshes.empty()) {
+            builders.emplace_back(*targets.meshes[i], chunks[i]);
+        } else {
+            builders.emplace_back(chunks[i], keeps_elements);
+        }
+    }
+    return builders;
+}
+
+}  // namespace
 
 template <int dimension, class Real>
 std::vector<Isosurface<dimension>> draw_isosurfaces(
     const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
     const SurfaceTargets<dimension>& targets, const Criterion& criterion, const Bounds& bounds,
     const IsosurfaceOptions& options, const Executor& executor) {
-    using engine::SoupBuilder;
-    using engine::SurfaceBuilder;
     engine::require_drawable(hierarchy, isovalues, bounds);
     engine::require_saturated(criterion, bounds);
     const std::size_t count = isovalues.size();
@@ -115,32 +129,17 @@ std::vector<Isosurface<dimension>> draw_isosurfaces(
         throw InvalidInput(std::to_string(count) + " isovalues need as many sinks, not " +
                            std::to_string(sinks));
     }
-    std::vector<Isosurface<dimension>> results(count);
-    if (!targets.soups.empty()) {
-        if (options.normals) throw InvalidInput("a stream of triangles has no normals");
-        std::vector<Soup<dimension>> chunks(count);
-        std::vector<SoupBuilder<dimension>> builders;
-        for (std::size_t i = 0; i < count; ++i) {
-            chunks[i].elements = hierarchy.make_elements();
-            builders.emplace_back(*targets.soups[i], chunks[i]);
-        }
-        engine::draw<dimension, Real, false>(hierarchy, isovalues, std::move(builders), criterion,
-                                             bounds, options, executor, results);
-        return results;
+    if (!targets.soups.empty() && options.normals) {
+        throw InvalidInput("a stream of triangles has no normals");
     }
     std::vector<Surface<dimension>> chunks(count);
-    std::vector<SurfaceBuilder<dimension>> builders;
-    for (std::size_t i = 0; i < count; ++i) {
-        chunks[i].elements = hierarchy.make_elements();
-        if (targets.meshes.empty()) {
-            builders.emplace_back(chunks[i], options.elements);
-        } else {
-            builders.emplace_back(*targets.meshes[i], chunks[i]);
-        }
-    }
-    engine::draw<dimension, Real, true>(hierarchy, isovalues, std::move(builders), criterion,
-                                        bounds, options, executor, results);
-    for (std::size_t i = 0; targets.meshes.empty() && i < count; ++i) {
+    for (Surface<dimension>& chunk : chunks) chunk.elements = hierarchy.make_elements();
+    std::vector<Isosurface<dimension>> results(count);
+    engine::draw_levels<dimension>(hierarchy, engine::levels_at<Real>(isovalues),
+                                   engine::isosurface_attributes,
+                                   make_builders(targets, chunks, options.elements), criterion,
+                                   bounds, options, executor, results);
+    for (std::size_t i = 0; sinks == 0 && i < count; ++i) {
         results[i].surface = std::move(chunks[i]);
     }
     return results;
@@ -152,6 +151,10 @@ std::vector<Isosurface<dimension>> draw_isosurfaces(
     template std::optional<std::uint64_t> engine::count_simplices<dimension>(              \
         const Hierarchy<Real>&, double, const Criterion&, const Bounds&, std::uint64_t,    \
         const IsosurfaceOptions&, const Executor&);                                        \
+    template void engine::draw_levels<dimension>(                                          \
+        const Hierarchy<Real>&, std::vector<engine::Level<Real>>, std::size_t,             \
+        std::vector<engine::SurfaceBuilder<dimension>>, const Criterion&, const Bounds&,   \
+        const IsosurfaceOptions&, const Executor&, std::vector<Isosurface<dimension>>&);   \
     template std::vector<Isosurface<dimension>> detail::draw_isosurfaces<dimension>(       \
         const Hierarchy<Real>&, std::span<const double>, const SurfaceTargets<dimension>&, \
         const Criterion&, const Bounds&, const IsosurfaceOptions&, const Executor&);

@@ -1,14 +1,41 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Drives an IsosurfaceVisitor: what isosurfaces, series and budgets have in common.
+// Drives a LevelSet: what isosurfaces, series, budgets and other level sets have in common.
 #pragma once
 
 #include <optional>
 
+#include <levels/level_set.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
 namespace nestgrid::engine {
+
+/// The first component of the field that an isosurface of component 0 carries along.
+inline constexpr std::size_t isosurface_attributes = 1;
+
+template <class Real>
+std::vector<Level<Real>> levels_at(std::span<const double> isovalues);
+
+/// Draws levels into builders, one a level, and sets what is known beside the surfaces.
+/// \param bounds of the components that the levels are of
+/// \param criterion checked by require_saturated()
+template <int dimension, class Real>
+void draw_levels(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
+                 std::size_t first_attribute, std::vector<SurfaceBuilder<dimension>> builders,
+                 const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
+                 const Executor& executor, std::vector<Isosurface<dimension>>& results);
+
+/// Draws everything. \return whether options.progress ended it
+template <class Drawing>
+bool run_until_cancelled(Drawing& drawing, const Executor& executor) {
+    try {
+        drawing.run(executor);
+        return false;
+    } catch (const Cancelled&) {
+        return true;
+    }
+}
 
 /// \throw InvalidInput where an isovalue is not a number
 /// \throw GridError where the grid has changed since the bounds were computed

@@ -3,7 +3,7 @@
 #include <nestgrid/algorithms/isosurface_series.hpp>
 
 #include <levels/draw.hpp>
-#include <levels/isosurface_visitor.hpp>
+#include <levels/level_set.hpp>
 
 namespace nestgrid::detail {
 
@@ -11,13 +11,13 @@ namespace {
 
 template <int dimension, class Real>
 class Series final : public SeriesState<dimension> {
-    using Visitor = engine::IsosurfaceVisitor<dimension, Real, true>;
+    using Drawing = engine::LevelSet<dimension, Real>;
 
 public:
     Series(std::unique_ptr<const Hierarchy<Real>> hierarchy, const HierarchicalIndicator& indicator)
         : hierarchy_{std::move(hierarchy)},
           criterion_{&indicator, 0},
-          walk_{*hierarchy_, Visitor::needs, indicator.hanging()} {
+          walk_{*hierarchy_, Drawing::needs, indicator.hanging()} {
         result_.surface.elements = hierarchy_->make_elements();
     }
 
@@ -27,23 +27,19 @@ public:
         const std::span<const double> isovalues(&isovalue, 1);
         engine::require_drawable(*hierarchy_, isovalues, indicator);
         criterion_ = criterion_for<dimension>(*hierarchy_, isovalue, indicator, options, executor);
+        search_.emplace(*hierarchy_, engine::levels_at<Real>(isovalues), criterion_, indicator);
         options_ = options;
         result_.surface.clear();
-        builders_.clear();
-        builders_.emplace_back(result_.surface, options.elements);
-        if (visitor_) {
-            visitor_->begin_again(isovalues, builders_, criterion_);
+        std::vector<typename Drawing::Builder> builders;
+        builders.emplace_back(result_.surface, options.elements);
+        if (drawing_) {
+            drawing_->begin(*search_, std::move(builders));
         } else {
-            visitor_ = std::make_unique<Visitor>(walk_, isovalues, builders_, criterion_, indicator,
-                                                 options_);
+            drawing_ = std::make_unique<Drawing>(walk_, *search_, std::move(builders), options_,
+                                                 engine::isosurface_attributes);
         }
-        result_.cancelled = false;
-        try {
-            visitor_->run(executor);
-        } catch (const engine::Cancelled&) {
-            result_.cancelled = true;
-        }
-        visitor_->report(0, result_);
+        result_.cancelled = engine::run_until_cancelled(*drawing_, executor);
+        drawing_->report(0, result_);
         return result_;
     }
 
@@ -52,8 +48,8 @@ private:
     Threshold criterion_;
     IsosurfaceOptions options_;
     engine::Walk<Real> walk_;
-    std::vector<typename Visitor::Builder> builders_;
-    std::unique_ptr<Visitor> visitor_;
+    std::optional<engine::LevelSearch<Real>> search_;
+    std::unique_ptr<Drawing> drawing_;
     Isosurface<dimension> result_;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Drawing of what is selected of a batch of blocks of known bisections: all contours of a level are
-// put behind each other, then their vertices are found, and then the simplices are put down. What
-// is drawn, and in which order, is what the plain traversal draws, to the last bit.
+// Draws what is selected of a batch of blocks of bisections: the contours of a level are put behind
+// each other, then their vertices are found, and then the simplices are put down. What is drawn,
+// and in which order, is what the general walk draws, to the last bit.
 #pragma once
 
 #include <algorithm>
@@ -11,29 +11,37 @@
 #include <cstdint>
 #include <span>
 
-#include <patches/block_contour_run.hpp>
+#include <contours/level.hpp>
 #include <nestgrid/algorithms/contour_filling.hpp>
-#include <surfaces/soup_builder.hpp>
-#include <surfaces/vertex_numbers.hpp>
+#include <patches/block_contour_run.hpp>
+#include <surfaces/level_surface.hpp>
+#include <surfaces/simplex_tally.hpp>
 
 namespace nestgrid::engine {
 
-/// \tparam Visitor an IsosurfaceVisitor
-/// \tparam Blocks a BlockBatch, or one whose grid is type-erased
-template <class Visitor, class Blocks>
+/// What batches are drawn into: a surface for each level. All is borrowed.
+template <int dimension, class Real>
+struct BlockTarget {
+    std::span<const Level<Real>> levels;
+    std::span<LevelSurface<dimension>> surfaces;
+    SimplexTally* tally;
+    int* deepest;  ///< level of the deepest element that was drawn
+};
+
+/// \tparam Blocks a batch of blocks
+template <int dimension, class Real, class Blocks>
 class BlockDrawing {
     static constexpr const auto& pattern_ = Blocks::pattern;
-    static constexpr bool indexed_ = Visitor::Builder::indexed;
+    static constexpr Shape shape_ = dimension == 2 ? Shape::triangle : Shape::tetrahedron;
     using Places = BatchPlaces<pattern_>;
     using Run = BlockContourRun<pattern_>;
-    using Layer = typename Visitor::Layer;
-    using Real = typename Visitor::Value;
-    using Number = typename Visitor::Number;
-    using Vertex = std::conditional_t<indexed_, Number, WidePoint>;
+    using Target = BlockTarget<dimension, Real>;
+    using Surface = LevelSurface<dimension>;
+    using Number = typename Surface::Number;
 
 public:
-    BlockDrawing(Visitor& visitor, const Blocks& blocks, const BatchSelection& selection)
-        : visitor_{&visitor},
+    BlockDrawing(const Target& target, const Blocks& blocks, const BatchSelection& selection)
+        : target_{&target},
           blocks_{&blocks},
           selection_{&selection},
           contours_{&BlockContours::of<pattern_>()} {}
@@ -41,15 +49,15 @@ public:
     /// \return in how many leaves of blocks there is anything to draw
     unsigned draw() {
         std::array<std::uint8_t, 2 * most_blocks> parts{};  // by number
-        for (Layer& layer : visitor_->layers_) {
-            visitor_->layer_ = &layer;
-            layer_ = &layer;
+        for (std::size_t l = 0; l < target_->levels.size(); ++l) {
+            level_ = &target_->levels[l];
+            surface_ = &target_->surfaces[l];
             set_signs();
             count_ = 0;
             for (std::size_t i = 0; i < selection_->count; ++i) {
                 const std::size_t id = selection_->id[i];
                 const auto see = [&](const Front& front) NESTGRID_INLINE_LAMBDA {
-                    const auto& contour = front.at(static_cast<std::size_t>(layer.signs[id]));
+                    const auto& contour = front.at(static_cast<std::size_t>(signs_[id]));
                     parts[id] |= contour.parts;
                     entry_[count_] = {&front, &contour, 0, static_cast<std::uint16_t>(id)};
                     count_ += contour.parts == 0 ? 0 : 1;
@@ -91,7 +99,7 @@ private:
     /// Of each block and element which nodes have U >= C.
     NESTGRID_INLINE void set_signs() {
         using Bits = Pack<MaskOf<Real>>;
-        const Pack<Real> least_inside = layer_->packed_least_inside;
+        const auto least_inside = Pack<Real>::all(level_->least_inside);
         const auto set = [&](auto rows, std::size_t first_row, std::size_t first, std::size_t end,
                              std::size_t to) NESTGRID_INLINE_LAMBDA {
             for (std::size_t b = first / pack * pack; b < end; b += pack) {
@@ -101,7 +109,7 @@ private:
                     signs =
                         signs | (at_most(least_inside, value) & Bits::all(MaskOf<Real>{1} << i));
                 });
-                signs.store(layer_->signs.data() + to + b);
+                signs.store(signs_.data() + to + b);
             }
         };
         set(std::integral_constant<std::size_t, Places::block_rows>{}, 0, selection_->first_block,
@@ -123,7 +131,7 @@ private:
     /// its part 1.
     template <class Function>
     void for_each_part(const Entry& entry, Function&& function) const {
-        const auto signs = static_cast<unsigned>(layer_->signs[entry.id]);
+        const auto signs = static_cast<unsigned>(signs_[entry.id]);
         if (!Places::is_block(entry.id)) return function(std::size_t{1}, signs);
         const unsigned meant = parts_meant(entry.id);
         const unsigned undivided = blocks_->undivided[entry.id];
@@ -138,44 +146,41 @@ private:
         Run run;
         append_contours(run);
         if (run.simplex_count == 0) return;
-        layer_->extracted += run.simplex_count - run.four_count;
-        visitor_->count_simplices(run.simplex_count);
-        if (visitor_->counts_only_) return;
+        surface_->add_extracted(run.simplex_count - run.four_count);
+        target_->tally->add(run.simplex_count);
+        if (surface_->counts_only()) return;
 
-        std::array<Vertex, Run::most_cuts> v;
-        if constexpr (indexed_) {
+        std::array<Number, Run::most_cuts> v;
+        if (surface_->names_vertices()) {
             find_vertices(run.cuts(), v.data());
         } else {
-            blocks_->cuts(run.cuts(), layer_->isovalue, v.data());
+            make_vertices(run.cuts(), v.data());
         }
         for (const auto& four : run.fours()) {
-            const auto x = [&](std::size_t i) -> decltype(auto) {
-                if constexpr (indexed_) {
-                    return layer_->sink.position(v[four.cut[i]]);
-                } else {
-                    return (v[four.cut[i]]);
-                }
-            };
+            const auto x = [&](std::size_t i) { return surface_->position(v[four.cut[i]]); };
             run.divide(four, !shorter(x(0), x(2), x(1), x(3)));
         }
-        const auto vertices = std::span<const Vertex>(v).first(run.cut_count);
-        if (!layer_->sink.keeps_elements()) {
-            layer_->sink.add_simplices(vertices, run.simplices());
-        } else {
-            std::array<ExtractedElement, Run::most_fours> elements;
-            std::size_t count = 0;
-            for (const Entry& entry : entries()) {
-                for_each_part(entry, [&](std::size_t part, unsigned bits) {
-                    elements[count++] = {blocks_->element(entry.id, part), Visitor::simplex_shape,
-                                         level_of(entry.id, pattern_.part[part].depth),
-                                         contours_->piece(bits).count == 4 ? 2U : 1U};
-                });
-            }
-            layer_->sink.add_extracted(std::span<const ExtractedElement>(elements).first(count),
-                                       vertices, run.simplices());
+        std::array<ExtractedElement, Run::most_fours> elements;
+        const std::size_t count =
+            surface_->builder().keeps_elements() ? list_elements(elements) : 0;
+        surface_->builder().add_extracted(std::span<const ExtractedElement>(elements).first(count),
+                                          std::span<const Number>(v).first(run.cut_count),
+                                          run.simplices());
+        if (surface_->names_vertices()) put_boundaries(run.cuts(), v.data());
+        surface_->builder().flush_if_full();
+    }
+
+    /// The elements that are drawn, in order. \return how many
+    std::size_t list_elements(std::array<ExtractedElement, Run::most_fours>& elements) const {
+        std::size_t count = 0;
+        for (const Entry& entry : entries()) {
+            for_each_part(entry, [&](std::size_t part, unsigned bits) {
+                elements[count++] = {blocks_->element(entry.id, part), shape_,
+                                     level_of(entry.id, pattern_.part[part].depth),
+                                     contours_->piece(bits).count == 4 ? 2U : 1U};
+            });
         }
-        if constexpr (indexed_) put_boundaries(run.cuts(), v.data());
-        layer_->sink.flush_if_full();
+        return count;
     }
 
     NESTGRID_INLINE void append_contours(Run& run) {
@@ -183,8 +188,8 @@ private:
             Entry& entry = entry_[k];
             const std::size_t id = entry.id;
             const unsigned meant = parts_meant(id);
-            visitor_->deepest_ = std::max(visitor_->deepest_, level_of(id, entry.contour->depth));
-            if (static_cast<double>(blocks_->greatest_bounds[id]) > layer_->error_bound) {
+            *target_->deepest = std::max(*target_->deepest, level_of(id, entry.contour->depth));
+            if (static_cast<double>(blocks_->greatest_bounds[id]) > surface_->error_bound()) {
                 raise_error_bound(id, entry.contour->parts & meant);
             }
             entry.first_cut = static_cast<std::uint16_t>(run.cut_count);
@@ -207,7 +212,7 @@ private:
     /// \param parts drawn, each by its first end, one bit each
     NESTGRID_NOINLINE void raise_error_bound(std::size_t id, unsigned parts) {
         const auto raise = [&](Real bound) {
-            layer_->error_bound = std::max(layer_->error_bound, static_cast<double>(bound));
+            surface_->raise_error_bound(static_cast<double>(bound));
         };
         if (!Places::is_block(id)) return raise(blocks_->greatest_bounds[id]);
         for (std::size_t part = 2; part < 2 * pattern_.ends; ++part) {
@@ -249,22 +254,35 @@ private:
                     }
                     corners[i] = v[cut];
                 }
-                visitor_->put_boundary(corners, piece.count, piece.face,
-                                       blocks_->boundary(id, part));
+                put_boundary(corners, piece, blocks_->boundary(id, part));
             });
+        }
+    }
+    void put_boundary(const std::array<Number, 4>& corners, const BlockContours::Piece& piece,
+                      unsigned boundary) {
+        for (std::size_t i = 0; i < piece.count; ++i) {
+            if ((boundary >> piece.face[i] & 1U) == 0) continue;
+            typename nestgrid::Surface<dimension>::Ridge ridge;
+            for (std::size_t k = 0; k < ridge.size(); ++k) {
+                ridge[k] = corners[(i + k) % piece.count];
+            }
+            surface_->builder().add_boundary(ridge);
         }
     }
 
     // block_vertices.hpp
     void find_vertices(std::span<const BatchEdge> cuts, Number* v);
+    void make_vertices(std::span<const BatchEdge> cuts, Number* v);
     void add_vertices(std::span<const BatchEdge> cuts);
     void verify_vertices(std::span<const BatchEdge> cuts, const Number* v);
 
-    Visitor* visitor_;
+    const Target* target_;
     const Blocks* blocks_;
     const BatchSelection* selection_;
     const BlockContours* contours_;
-    Layer* layer_ = nullptr;
+    const Level<Real>* level_ = nullptr;
+    Surface* surface_ = nullptr;
+    std::array<MaskOf<Real>, 2 * most_blocks> signs_;  // of what is in the batch
     std::size_t count_ = 0;
     std::array<Entry, 3 * most_blocks + 1> entry_;  // of blocks each half
 };

@@ -11,9 +11,9 @@ namespace nestgrid::engine {
 
 /// The vertices on the cuts, numbered in their order. Each step is a loop of its own, without a
 /// branch that depends on which of them are known.
-template <class Visitor, class Blocks>
-NESTGRID_NOINLINE void BlockDrawing<Visitor, Blocks>::find_vertices(std::span<const BatchEdge> cuts,
-                                                                    Number* v) {
+template <int dimension, class Real, class Blocks>
+NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
+    std::span<const BatchEdge> cuts, Number* v) {
     using InSubtree = SubtreeNodes<pattern_>;
     constexpr std::size_t room = Run::most_cuts + 1;
     const NodeKey* const key = blocks_->keys[0];
@@ -21,7 +21,9 @@ NESTGRID_NOINLINE void BlockDrawing<Visitor, Blocks>::find_vertices(std::span<co
 
     // Which of them the subtrees do not know, and of those the ones that may be known elsewhere.
     std::array<std::uint16_t, room> fresh;
-    const std::size_t fresh_count = layer_->within.find(
+    SubtreeVertices& within = surface_->within();
+    VertexNumbers& numbers = surface_->numbers();
+    const std::size_t fresh_count = within.find(
         cuts.size(),
         [&](std::size_t i) NESTGRID_INLINE_LAMBDA {
             return InSubtree::edge_number(in_subtree[cuts[i].low], in_subtree[cuts[i].high]);
@@ -37,20 +39,21 @@ NESTGRID_NOINLINE void BlockDrawing<Visitor, Blocks>::find_vertices(std::span<co
 
     // Those are looked up; all before them count that are new.
     std::array<VertexNumbers::Name, room> names;
-    layer_->number_of.reserve(shared_count);
+    numbers.reserve(shared_count);
     for (std::size_t k = 0; k < shared_count; ++k) {
         const auto& [low, high] = cuts[fresh[shared[k]]];
-        names[k] = layer_->number_of.name({key[low], key[high]});
-        layer_->number_of.prefetch(names[k]);
+        names[k] = numbers.name({key[low], key[high]});
+        numbers.prefetch(names[k]);
     }
-    const std::span<Number> number = layer_->within.new_numbers();
-    std::fill(number.begin(), number.end(), Visitor::none);
-    if (Visitor::none - layer_->vertex_count < fresh_count) throw_too_many_vertices();
-    Number next = layer_->vertex_count;  // less the shared ones that are known
+    const std::span<Number> number = within.new_numbers();
+    std::fill(number.begin(), number.end(), Surface::none);
+    const Number first_new = surface_->builder().next_vertex();
+    if (Surface::none - first_new < fresh_count) throw_too_many_vertices();
+    Number next = first_new;  // less the shared ones that are known
     for (std::size_t k = 0; k < shared_count; ++k) {
         const std::size_t at = shared[k];
-        const auto found = layer_->number_of.find_or_add(names[k], next + static_cast<Number>(at));
-        number[at] = found.number | (found.is_new ? Visitor::none : 0U);
+        const auto found = numbers.find_or_add(names[k], next + static_cast<Number>(at));
+        number[at] = found.number | (found.is_new ? Surface::none : 0U);
         next -= found.is_new ? 0U : 1U;
     }
 
@@ -58,44 +61,55 @@ NESTGRID_NOINLINE void BlockDrawing<Visitor, Blocks>::find_vertices(std::span<co
     std::array<BatchEdge, room> added;
     std::size_t count = 0;
     for (std::size_t i = 0; i < fresh_count; ++i) {
-        const bool is_new = number[i] == Visitor::none;
-        number[i] = std::min(number[i], layer_->vertex_count + static_cast<Number>(count));
+        const bool is_new = number[i] == Surface::none;
+        number[i] = std::min(number[i], first_new + static_cast<Number>(count));
         added[count] = cuts[fresh[i]];
         count += is_new ? 1 : 0;
     }
     add_vertices(std::span(added).first(count));
-    layer_->within.end({v, cuts.size()});
-    if (visitor_->options_->verify) verify_vertices(cuts, v);
+    within.end({v, cuts.size()});
+    if (surface_->verifies()) verify_vertices(cuts, v);
 }
 
-template <class Visitor, class Blocks>
-NESTGRID_INLINE void BlockDrawing<Visitor, Blocks>::add_vertices(std::span<const BatchEdge> cuts) {
+/// A new vertex on every cut.
+template <int dimension, class Real, class Blocks>
+NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::make_vertices(
+    std::span<const BatchEdge> cuts, Number* v) {
+    const Number first_new = surface_->builder().next_vertex();
+    for (std::size_t i = 0; i < cuts.size(); ++i) v[i] = first_new + static_cast<Number>(i);
+    add_vertices(cuts);
+}
+
+/// Adds new vertices, in order.
+template <int dimension, class Real, class Blocks>
+NESTGRID_INLINE void BlockDrawing<dimension, Real, Blocks>::add_vertices(
+    std::span<const BatchEdge> cuts) {
     std::array<WidePoint, Run::most_cuts> x;
-    blocks_->cuts(cuts, layer_->isovalue, x.data());
-    layer_->vertex_count += static_cast<Number>(cuts.size());
-    if (!visitor_->is_task_) {
-        for (std::size_t i = 0; i < cuts.size(); ++i) layer_->sink.add_vertex(Point(x[i]), {});
-    } else {
-        const NodeKey* const key = blocks_->keys[0];
-        const SubtreeNode* const in_subtree = blocks_->in_subtree[0];
-        constexpr double not_asked_for = 0;  // with normals bisections are not walked
-        for (std::size_t i = 0; i < cuts.size(); ++i) {
-            const auto& [low, high] = cuts[i];
-            if (is_within_root(in_subtree[low], in_subtree[high])) {
-                layer_->sink.add_vertex(Point(x[i]), {});
-            } else {
-                layer_->sink.add_shared({key[low], key[high]}, not_asked_for, Point(x[i]), {});
-            }
+    blocks_->cuts(cuts, level_->value, x.data());
+    auto& builder = surface_->builder();
+    if (!builder.lists_shared()) {
+        for (std::size_t i = 0; i < cuts.size(); ++i) builder.add_vertex(Point(x[i]), {});
+        return;
+    }
+    const NodeKey* const key = blocks_->keys[0];
+    const SubtreeNode* const in_subtree = blocks_->in_subtree[0];
+    constexpr double not_asked_for = 0;  // bisections are not walked in blocks for normals
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        const auto& [low, high] = cuts[i];
+        if (is_within_root(in_subtree[low], in_subtree[high])) {
+            builder.add_vertex(Point(x[i]), {});
+        } else {
+            builder.add_shared({key[low], key[high]}, not_asked_for, Point(x[i]), {});
         }
     }
 }
 
-template <class Visitor, class Blocks>
-NESTGRID_NOINLINE void BlockDrawing<Visitor, Blocks>::verify_vertices(
+template <int dimension, class Real, class Blocks>
+NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::verify_vertices(
     std::span<const BatchEdge> cuts, const Number* v) {
     std::array<WidePoint, Run::most_cuts> x;
-    blocks_->cuts(cuts, layer_->isovalue, x.data());
-    for (std::size_t i = 0; i < cuts.size(); ++i) visitor_->verify(*layer_, v[i], Point(x[i]));
+    blocks_->cuts(cuts, level_->value, x.data());
+    for (std::size_t i = 0; i < cuts.size(); ++i) surface_->verify(v[i], Point(x[i]));
 }
 
 }  // namespace nestgrid::engine

@@ -26,19 +26,7 @@ std::size_t Surface<dimension>::memory_bytes() const {
            bytes(level_of) + bytes(boundary);
 }
 
-template <int dimension>
-void Soup<dimension>::clear() {
-    simplices.clear();
-    element_of.clear();
-    reference.clear();
-    elements.clear();
-    shape_of.clear();
-    level_of.clear();
-}
-
 template struct Surface<2>;
 template struct Surface<3>;
-template struct Soup<2>;
-template struct Soup<3>;
 
 }  // namespace nestgrid

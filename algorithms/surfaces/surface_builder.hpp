@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Puts an indexed surface together: in a Surface, in a part of one that a task draws, or in chunks
-// for a sink.
+// Puts a surface together: in a Surface, in a part of one that a task draws, or in chunks for a
+// sink.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -65,25 +66,43 @@ void append_simplices(std::span<const std::uint32_t> vertices, std::span<const C
 template <int dimension>
 class SurfaceBuilder {
 public:
-    static constexpr bool indexed = true;
     using Target = Surface<dimension>;
     using Simplex = typename Target::Simplex;
+    using Number = std::uint32_t;
 
     /// Fills a surface.
     /// \param elements whether to keep the elements and which simplex comes from which
     SurfaceBuilder(Target& surface, bool elements) : surface_{&surface}, elements_{elements} {}
     /// Fills a part of a surface.
-    SurfaceBuilder(SurfacePart<dimension>& part, bool elements)
-        : surface_{&part.surface}, shared_{&part.shared}, elements_{elements} {}
+    /// \param shared whether elements share vertices, which are then listed in the part
+    SurfaceBuilder(SurfacePart<dimension>& part, bool shared, bool elements)
+        : surface_{&part.surface},
+          shared_{shared ? &part.shared : nullptr},
+          shares_vertices_{shared},
+          elements_{elements} {}
     /// Fills a sink in chunks.
     /// \param chunk the memory of a chunk
     SurfaceBuilder(MeshSink<dimension>& sink, Target& chunk)
-        : surface_{&chunk}, sink_{&sink}, elements_{sink.keeps_elements()} {}
+        : surface_{&chunk}, mesh_{&sink}, chunk_{mesh_chunk_}, elements_{sink.keeps_elements()} {}
+    /// Fills a sink in chunks, in which elements share no vertices.
+    SurfaceBuilder(SimplexSink<dimension>& sink, Target& chunk)
+        : surface_{&chunk},
+          soup_{&sink},
+          chunk_{soup_chunk_},
+          shares_vertices_{false},
+          elements_{sink.keeps_elements()} {}
+
+    /// Whether a vertex that several elements have is one vertex.
+    bool shares_vertices() const { return shares_vertices_; }
+    /// Whether a part is filled whose vertices other parts may have.
+    bool lists_shared() const { return shared_ != nullptr; }
+    /// The number of the next vertex.
+    Number next_vertex() const { return taken_ + static_cast<Number>(surface_->vertices.size()); }
 
     /// Adds a vertex, of a part, that other parts may have.
     void add_shared(const std::array<NodeKey, 2>& node, double fraction, const Point& x,
                     std::span<const double> attributes) {
-        shared_->push_back({static_cast<std::uint32_t>(surface_->vertices.size()), node, fraction});
+        shared_->push_back({static_cast<Number>(surface_->vertices.size()), node, fraction});
         add_vertex(x, attributes);
     }
     void add_vertex(const Point& x, std::span<const double> attributes) {
@@ -95,8 +114,8 @@ public:
         surface_->attributes.insert(surface_->attributes.end(), attributes.begin(),
                                     attributes.end());
     }
-    Point position(std::uint32_t vertex) const {
-        return vertex < taken_ ? sink_->position(vertex) : surface_->vertices[vertex - taken_];
+    Point position(Number vertex) const {
+        return vertex < taken_ ? mesh_->position(vertex) : surface_->vertices[vertex - taken_];
     }
     bool keeps_elements() const { return elements_; }
     void add_element(const Handle& element, Shape shape, int level) {
@@ -110,15 +129,12 @@ public:
         if (elements_) surface_->element_of.push_back(last_element());
         for (const Point& x : reference) surface_->reference.push_back(x);
     }
+    /// Adds several elements, which may be left out where elements are not kept, and all simplices
+    /// from them, in their order.
+    /// \param vertices that the corners of the simplices refer to
     template <class Corners>
-    void add_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all) {
-        append_simplices(vertices, all, surface_->simplices);
-        if (elements_) surface_->element_of.resize(surface_->simplices.size(), last_element());
-    }
-    /// Adds several elements and all simplices from them, in their order.
-    template <class Corners>
-    void add_extracted(std::span<const ExtractedElement> elements,
-                       std::span<const std::uint32_t> vertices, std::span<const Corners> all) {
+    void add_extracted(std::span<const ExtractedElement> elements, std::span<const Number> vertices,
+                       std::span<const Corners> all) {
         append_simplices(vertices, all, surface_->simplices);
         if (!elements_) return;
         std::size_t simplex = surface_->element_of.size();
@@ -133,7 +149,7 @@ public:
         }
     }
     /// Adds elements, simplices and references of a part whose vertices have these numbers here.
-    void add_part(const Target& part, std::span<const std::uint32_t> numbers) {
+    void add_part(const Target& part, std::span<const Number> numbers) {
         const auto append = [](const auto& from, auto& to) {
             to.insert(to.end(), from.begin(), from.end());
         };
@@ -148,25 +164,36 @@ public:
         append(part.shape_of, surface_->shape_of);
         append(part.level_of, surface_->level_of);
     }
+    /// Hands a part whose elements share no vertices to the sink, behind what is here.
+    void hand_over(const Target& part) {
+        flush();
+        if (!part.simplices.empty()) soup_->take(part);
+    }
     void add_boundary(const typename Target::Ridge& vertices) {
         surface_->boundary.push_back(vertices);
     }
     /// Hands the chunk to the sink where there is one and the chunk is full.
     void flush_if_full() {
-        if (sink_ != nullptr && surface_->simplices.size() >= chunk_) flush();
+        if (surface_->simplices.size() >= chunk_) flush();
     }
     /// Hands the rest to the sink where there is one.
     void flush() {
-        if (sink_ == nullptr || (surface_->vertices.empty() && surface_->simplices.empty())) return;
-        sink_->take(*surface_);
-        taken_ += static_cast<std::uint32_t>(surface_->vertices.size());
+        if (surface_->vertices.empty() && surface_->simplices.empty()) return;
+        if (mesh_ != nullptr) {
+            mesh_->take(*surface_);
+            taken_ = next_vertex();
+        } else if (soup_ != nullptr) {
+            soup_->take(*surface_);
+        } else {
+            return;
+        }
         surface_->clear();
     }
     void set_normals(std::vector<Point>&& normals) {
-        if (sink_ == nullptr) {
+        if (mesh_ == nullptr) {
             surface_->normals = std::move(normals);
         } else {
-            sink_->set_normals(normals);
+            mesh_->set_normals(normals);
         }
     }
     /// Forgets everything but the memory.
@@ -177,7 +204,9 @@ public:
     }
 
 private:
-    static constexpr std::size_t chunk_ = 1024;  // simplices
+    // Simplices of a full chunk; one of a soup stays in the nearest cache.
+    static constexpr std::size_t mesh_chunk_ = 1024;
+    static constexpr std::size_t soup_chunk_ = 128;
 
     std::uint32_t last_element() const {
         return static_cast<std::uint32_t>(surface_->level_of.size() - 1);
@@ -185,8 +214,11 @@ private:
 
     Target* surface_;
     std::vector<SharedVertex>* shared_ = nullptr;
-    MeshSink<dimension>* sink_ = nullptr;
-    std::uint32_t taken_ = 0;  // vertices that the sink has
+    MeshSink<dimension>* mesh_ = nullptr;
+    SimplexSink<dimension>* soup_ = nullptr;
+    std::size_t chunk_ = std::numeric_limits<std::size_t>::max();
+    Number taken_ = 0;  // vertices that the sink has
+    bool shares_vertices_ = true;
     bool elements_;
 };
 

@@ -43,6 +43,7 @@ Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const Han
       hanging_{hanging},
       needs_{needs},
       components_{static_cast<std::size_t>(hierarchy.facts().components)},
+      affine_{static_cast<std::size_t>(hierarchy.facts().affine_components)},
       boundary_faces_{hierarchy.offers(Feature::boundary_faces)},
       own_keys_{hierarchy.offers(Feature::own_keys)},
       own_positions_{hierarchy.offers(Feature::own_positions)},
@@ -186,7 +187,8 @@ void Walk<Real>::descend(const View& view, const Split& split, NodeMask interpol
     visit_children(view, rule, interpolated, closing, frame, visitor);
 }
 
-/// Enters the element, and puts P_S U at its corners and new nodes into the frame, eq. (2).
+/// Enters the element, and puts P_S U at its corners and new nodes into the frame, eq. (2). Affine
+/// components are interpolated at every new node, whatever S says.
 template <class Real>
 void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
                          Frame<Real>& frame) const {
@@ -200,9 +202,10 @@ void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, No
     if ((missing & which) != 0) throw_missing(missing & which, view);
     if (!needs_.values) return;
     std::copy_n(view.value, corners * stride, value);
-    for (NodeMask left = mean; left != 0; left &= left - 1) {
+    for (NodeMask left = affine_ != 0 ? rule.all() : mean; left != 0; left &= left - 1) {
         const auto n = static_cast<std::size_t>(std::countr_zero(left));
-        for (std::size_t c = 0; c < stride; ++c) {
+        const std::size_t count = (mean >> n & 1U) != 0 ? stride : affine_;
+        for (std::size_t c = 0; c < count; ++c) {
             value[(corners + n) * stride + c] =
                 detail::interpolate(rule.new_nodes[n], value + c, stride);
         }

@@ -122,6 +122,7 @@ private:
     const HangingNodes* hanging_;
     Needs needs_;
     std::size_t components_;
+    std::size_t affine_;  // how many of them are affine functions of position
     std::vector<std::uint8_t> boundary_;  // of each coarse element, where the grid does not say
     bool boundary_faces_;
     bool own_keys_;

@@ -203,27 +203,36 @@ TEST(ThreadsOnSoups, FillPartsThatAreTheWhole) {
     expect_same_in_parts(LatticeOctree<3>({.samples = n}), sampled_fields(n));
 }
 
+/// Triangles by their corners, and the elements they come from.
+struct SoupOfElements {
+    std::vector<std::array<Point, 3>> triangles;
+    Surface<3> rest;  // everything but vertices and triangles
+};
+
 /// Puts the parts it takes behind each other, elements too.
 class SoupWithElements final : public SimplexSink<3> {
 public:
-    explicit SoupWithElements(Soup<3>& soup) : all_{&soup} {}
+    explicit SoupWithElements(SoupOfElements& soup) : all_{&soup} {}
 
-    void take(const Soup<3>& part) override {
+    void take(const Surface<3>& part) override {
         const auto append = [](const auto& from, auto& to) {
             to.insert(to.end(), from.begin(), from.end());
         };
-        const auto elements = static_cast<std::uint32_t>(all_->elements.size());
-        append(part.simplices, all_->simplices);
-        for (const std::uint32_t e : part.element_of) all_->element_of.push_back(elements + e);
-        append(part.reference, all_->reference);
-        all_->elements.append(part.elements);
-        append(part.shape_of, all_->shape_of);
-        append(part.level_of, all_->level_of);
+        Surface<3>& rest = all_->rest;
+        const auto elements = static_cast<std::uint32_t>(rest.elements.size());
+        for (const auto& [a, b, c] : part.simplices) {
+            all_->triangles.push_back({part.vertices[a], part.vertices[b], part.vertices[c]});
+        }
+        for (const std::uint32_t e : part.element_of) rest.element_of.push_back(elements + e);
+        append(part.reference, rest.reference);
+        rest.elements.append(part.elements);
+        append(part.shape_of, rest.shape_of);
+        append(part.level_of, rest.level_of);
     }
     bool keeps_elements() const override { return true; }
 
 private:
-    Soup<3>* all_;
+    SoupOfElements* all_;
 };
 
 template <class Grid>
@@ -254,16 +263,16 @@ void expect_same_elements_in_soups(const SampledField& data, const Samples& n) {
             corners.push_back({s.vertices[a], s.vertices[b], s.vertices[c]});
         }
         const auto expect_same_with = [&](const Executor& executor) {
-            Soup<3> soup;
+            SoupOfElements soup;
             extract_isosurfaces(grid, field, isovalue, std::vector{SoupWithElements(soup)},
                                 criterion, indicator, options, executor);
-            EXPECT_EQ(soup.simplices, corners);
-            EXPECT_EQ(soup.element_of, s.element_of);
-            expect_same_bits(soup.reference, s.reference, "reference");
-            EXPECT_EQ(corner_keys(grid, soup.elements, s.shape_of[0]),
+            EXPECT_EQ(soup.triangles, corners);
+            EXPECT_EQ(soup.rest.element_of, s.element_of);
+            expect_same_bits(soup.rest.reference, s.reference, "reference");
+            EXPECT_EQ(corner_keys(grid, soup.rest.elements, s.shape_of[0]),
                       corner_keys(grid, s.elements, s.shape_of[0]));
-            EXPECT_EQ(soup.shape_of, s.shape_of);
-            EXPECT_EQ(soup.level_of, s.level_of);
+            EXPECT_EQ(soup.rest.shape_of, s.shape_of);
+            EXPECT_EQ(soup.rest.level_of, s.level_of);
         };
         expect_same_with(SequentialExecutor{});
         expect_same_with(ThreadExecutor(2));

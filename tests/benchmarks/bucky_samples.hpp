@@ -28,11 +28,12 @@ public:
     /// \param to where the next one goes; moved on
     explicit TriangleWriter(Triangle*& to) : to_{&to} {}
 
-    void take(const nestgrid::Soup<3>& part) override {
+    void take(const nestgrid::Surface<3>& part) override {
         Triangle* to = *to_;
         for (const auto& corners : part.simplices) {
-            for (std::size_t i = 0; i < to->size(); ++i) {
-                (*to)[i] = static_cast<float>(corners[i / 3][i % 3]);
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                const nestgrid::Point& x = part.vertices[corners[i]];
+                for (std::size_t d = 0; d < 3; ++d) (*to)[3 * i + d] = static_cast<float>(x[d]);
             }
             ++to;
         }

@@ -65,30 +65,16 @@ protected:
     MeshSink& operator=(MeshSink&&) = default;
 };
 
-/// Triangles (segments) by the positions of their corners.
-template <int dimension>
-struct Soup {
-    using Simplex = std::array<Point, static_cast<std::size_t>(dimension)>;
-
-    std::vector<Simplex> simplices;
-    std::vector<std::uint32_t> element_of;  ///< as in Surface
-    std::vector<Point> reference;           ///< as in Surface
-    Elements elements;
-    std::vector<Shape> shape_of;
-    std::vector<std::uint16_t> level_of;
-
-    /// Empties the soup and keeps its memory.
-    void clear();
-};
-
-/// Takes triangles (segments) in parts while they are extracted; nothing else is kept.
+/// Takes triangles (segments) in parts while they are extracted, without connections between
+/// elements; nothing else is kept.
 template <int dimension>
 class SimplexSink {
 public:
     virtual ~SimplexSink() = default;
 
-    /// Takes the next part. `element_of` counts the elements of the part.
-    virtual void take(const Soup<dimension>& part) = 0;
+    /// Takes the next part. Simplices name the vertices, and `element_of` counts the elements, of
+    /// the part. Elements share no vertices, so that one may come several times.
+    virtual void take(const Surface<dimension>& part) = 0;
     /// Whether parts are to tell the elements that simplices come from.
     virtual bool keeps_elements() const { return false; }
 
@@ -110,13 +96,14 @@ public:
     /// \param target to which they are added; borrowed
     explicit SimplexSoup(std::vector<Simplex>& target) : target_{&target} {}
 
-    void take(const Soup<dimension>& part) override {
+    void take(const Surface<dimension>& part) override {
         const std::size_t first = target_->size();
         target_->resize(first + part.simplices.size());
         Simplex* to = target_->data() + first;
         for (const auto& corners : part.simplices) {
-            for (std::size_t i = 0; i < to->size(); ++i) {
-                (*to)[i] = static_cast<Real>(corners[i / 3][i % 3]);
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                const Point& x = part.vertices[corners[i]];
+                for (std::size_t d = 0; d < 3; ++d) (*to)[3 * i + d] = static_cast<Real>(x[d]);
             }
             ++to;
         }
@@ -130,13 +117,19 @@ private:
 template <int dimension>
 class SimplexStream final : public SimplexSink<dimension> {
 public:
-    using Simplex = typename Soup<dimension>::Simplex;
+    using Simplex = std::array<Point, static_cast<std::size_t>(dimension)>;
 
     explicit SimplexStream(std::function<void(const Simplex&)> function)
         : function_{std::move(function)} {}
 
-    void take(const Soup<dimension>& part) override {
-        for (const Simplex& corners : part.simplices) function_(corners);
+    void take(const Surface<dimension>& part) override {
+        Simplex corners;
+        for (const auto& simplex : part.simplices) {
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                corners[i] = part.vertices[simplex[i]];
+            }
+            function_(corners);
+        }
     }
 
 private:

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/block_level_set.hpp>
+
+#include <nestgrid/erased_bisections.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+/// Answers the questions of a walk in blocks.
+template <int dimension, class Real>
+class BlockLevelSet final : public detail::ErasedBisectionVisitor<dimension, Real> {
+    using Base = detail::ErasedBisectionVisitor<dimension, Real>;
+
+public:
+    BlockLevelSet(const LevelSearch<Real>& search, const BlockTarget<dimension, Real>& target,
+                  BlockCounts& counts)
+        : search_{&search}, target_{&target}, counts_{&counts} {}
+
+    typename Base::Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level,
+                                 bool outside) override {
+        const auto [visit, bound] = search_->glance(lo, hi, rule, node, level, outside);
+        return {visit, bound};
+    }
+    bool glance_at_leaf(Real lo, Real hi) override { return search_->glance_at_leaf(lo, hi); }
+    PackedSight<Real> see_within(const PackedBlocks<Real>& blocks) override {
+        return see<maubach_block<dimension>, BlockParts::inner>(blocks, *search_);
+    }
+    PackedSight<Real> see_ends(const PackedBlocks<Real>& blocks) override {
+        return see<maubach_block<dimension>, BlockParts::ends>(blocks, *search_);
+    }
+    void expect(const NodeKey* nodes, std::size_t rows) const override {
+        search_->expect(nodes, rows);
+    }
+    bool names_edges() const override { return target_->surfaces.front().names_vertices(); }
+    void begin_subtrees(std::uint32_t numbers) override {
+        for (auto& surface : target_->surfaces) surface.within().begin_again(numbers);
+    }
+    unsigned extract(const detail::ErasedBlocks<dimension, Real>& blocks,
+                     const BatchSelection& selection) override {
+        using Blocks = detail::ErasedBlocks<dimension, Real>;
+        return BlockDrawing<dimension, Real, Blocks>(*target_, blocks, selection).draw();
+    }
+    void tick(std::uint64_t calls, std::uint64_t visited) override {
+        counts_->tick(calls, visited);
+    }
+    void end(std::uint64_t calls, std::uint64_t visited) override { counts_->add(calls, visited); }
+
+private:
+    const LevelSearch<Real>* search_;
+    const BlockTarget<dimension, Real>* target_;
+    BlockCounts* counts_;
+};
+
+}  // namespace
+
+template <int dimension, class Real>
+void draw_in_blocks(const Walk<Real>& walk, const ElementView<Real>& view,
+                    const LevelSearch<Real>& search, const BlockTarget<dimension, Real>& target,
+                    BlockCounts& counts) {
+    BlockLevelSet<dimension, Real> visitor(search, target, counts);
+    walk.hierarchy().bisect(view.stack->task.get(), view.element(), view.value, view.level,
+                            view.orientation, visitor);
+}
+
+template void draw_in_blocks(const Walk<float>&, const ElementView<float>&,
+                             const LevelSearch<float>&, const BlockTarget<2, float>&, BlockCounts&);
+template void draw_in_blocks(const Walk<float>&, const ElementView<float>&,
+                             const LevelSearch<float>&, const BlockTarget<3, float>&, BlockCounts&);
+template void draw_in_blocks(const Walk<double>&, const ElementView<double>&,
+                             const LevelSearch<double>&, const BlockTarget<2, double>&,
+                             BlockCounts&);
+template void draw_in_blocks(const Walk<double>&, const ElementView<double>&,
+                             const LevelSearch<double>&, const BlockTarget<3, double>&,
+                             BlockCounts&);
+
+}  // namespace nestgrid::engine

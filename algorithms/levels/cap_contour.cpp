@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/cap_contour.hpp>
+
+#include <algorithm>
+#include <bit>
+
+namespace nestgrid::engine {
+
+/// Calls function(face, polygon) for each polygon inside the level on each boundary face.
+template <int dimension, class Real>
+template <class Function>
+void CapContour<dimension, Real>::for_each_polygon(unsigned inside, Function&& function) const {
+    const ElementView<Real>& view = cuts_->view();
+    const Topology& t = view.topology();
+    const unsigned boundary = cuts_->walk().boundary(view);
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        if ((boundary >> f & 1U) == 0) continue;
+        const FaceTopology& face = t.face[f];
+        unsigned signs = 0;
+        for (std::size_t i = 0; i < face.corners; ++i) {
+            signs |= (inside >> face.corner[i] & 1U) << i;
+        }
+        const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
+        const FaceContour contour =
+            face_contour(face.corners, signs, alternating && cuts_->joined(face));
+        for (unsigned left = signs; left != 0;) {
+            function(face, polygon_from(view.shape, face, signs, contour, left));
+        }
+    }
+}
+
+/// The polygon around the first of the corners `left`, from which it takes its own.
+template <int dimension, class Real>
+auto CapContour<dimension, Real>::polygon_from(Shape shape, const FaceTopology& face,
+                                               unsigned signs, const FaceContour& contour,
+                                               unsigned& left) -> Polygon {
+    Polygon polygon;
+    const auto add = [&](std::size_t from, bool cut, std::uint8_t edge) {
+        polygon.corner[polygon.count] = {static_cast<std::uint8_t>(from), cut};
+        polygon.edge[polygon.count++] = edge;
+    };
+    auto i = static_cast<std::size_t>(std::countr_zero(left));
+    while ((left >> i & 1U) != 0) {
+        left &= ~(1U << i);
+        const std::size_t next = (i + 1) % face.corners;
+        add(i, false, edge_between(shape, face.corner[i], face.corner[next]));
+        if ((signs >> next & 1U) != 0) {
+            i = next;
+            continue;
+        }
+        add(i, true, no_edge);
+        std::size_t rises = 0;
+        for (std::size_t k = 0; k < contour.count; ++k) {
+            if (contour.segment[k].falls == i) rises = contour.segment[k].rises;
+        }
+        i = (rises + 1) % face.corners;
+        add(rises, true, edge_between(shape, face.corner[rises], face.corner[i]));
+    }
+    return polygon;
+}
+
+/// Key of the sides along the maximal edge of an edge that run from corner `from` of the face to
+/// the next one, or the other way.
+template <int dimension, class Real>
+NodeKey CapContour<dimension, Real>::side_key(std::uint8_t edge, const FaceTopology& face,
+                                              std::uint8_t from, bool forward) const {
+    const ElementView<Real>& view = cuts_->view();
+    const std::uint8_t a = face.corner[from];
+    const std::uint8_t b = face.corner[(from + 1U) % face.corners];
+    const auto& x = cuts_->positions();
+    std::array<NodeKey, 2> ends{cuts_->keys()[a], cuts_->keys()[b]};
+    bool upwards = ends[0] < ends[1];
+    if (const auto* maximal = view.closed.edge(edge)) {
+        ends = {maximal->key(0), maximal->key(1)};
+        const auto [begin, end] = cuts_->walk().positions(*maximal);
+        const bool along = dot(x[b] - x[a], end - begin) > 0;
+        upwards = along == (ends[0] < ends[1]);
+    }
+    const bool up = upwards == (forward == (view.orientation > 0));
+    FaceKey key;
+    for (const NodeKey end : ends) key.add_corner(end);
+    return key.key() + (up ? 1 : 0);
+}
+
+template <int dimension, class Real>
+void CapContour<dimension, Real>::record(unsigned inside, TransitionContours& record) const {
+    if (dimension == 2) return;
+    for_each_polygon(inside, [&](const FaceTopology& face, const Polygon& polygon) {
+        for (std::size_t i = 0; i < polygon.count; ++i) record_side(face, polygon, i, record);
+    });
+}
+
+/// Records a side of a polygon, where it lies on a closed edge.
+template <int dimension, class Real>
+void CapContour<dimension, Real>::record_side(const FaceTopology& face, const Polygon& polygon,
+                                              std::size_t side, TransitionContours& record) const {
+    const std::uint8_t edge = polygon.edge[side];
+    if (edge == no_edge || cuts_->view().closed.edge(edge) == nullptr) return;
+    const auto vertex = [&](const Corner& c) {
+        const std::uint8_t corner = face.corner[c.from];
+        const NodeKey key = cuts_->keys()[corner];
+        return c.cut ? record.vertex(cuts_->name(edge), [&] { return cuts_->cut(edge); })
+                     : record.vertex({key, key}, [&] { return cuts_->node(corner); });
+    };
+    Number from = vertex(polygon.corner[side]);
+    Number to = vertex(polygon.corner[(side + 1) % polygon.count]);
+    if (cuts_->view().orientation < 0) std::swap(from, to);
+    record.record(side_key(edge, face, polygon.corner[side].from, true), from, to);
+}
+
+/// The vertices on a side of a polygon that a finer polygon beyond it has there.
+template <int dimension, class Real>
+auto CapContour<dimension, Real>::chain(const FaceTopology& face, const Polygon& polygon,
+                                        std::size_t side, const TransitionContours* drawn_below)
+    -> std::vector<Number> {
+    const std::uint8_t edge = polygon.edge[side];
+    if (edge == no_edge || drawn_below == nullptr || drawn_below->empty()) return {};
+    const Number* sides =
+        drawn_below->find_face(side_key(edge, face, polygon.corner[side].from, false));
+    if (sides == nullptr) return {};
+    const auto vertex = [&](const Corner& c) {
+        const NodeKey key = cuts_->keys()[face.corner[c.from]];
+        return drawn_below->find(c.cut ? cuts_->name(edge) : KeyPair(key, key));
+    };
+    const Number* from = vertex(polygon.corner[side]);
+    const Number* to = vertex(polygon.corner[(side + 1) % polygon.count]);
+    if (from == nullptr || to == nullptr) return {};
+    const bool mirrored = cuts_->view().orientation < 0;
+    if (mirrored) std::swap(from, to);
+    std::vector<Number> between;
+    const bool found = drawn_below->follow(
+        *sides, *to, [&](Number v) { return v == *from; }, [&](Number v) { between.push_back(v); });
+    if (!found) return {};
+    if (!mirrored) std::reverse(between.begin(), between.end());
+    for (Number& v : between) v = contour_->adopted(drawn_below->cut(v), face);
+    return between;
+}
+
+template <int dimension, class Real>
+void CapContour<dimension, Real>::draw(unsigned inside, const TransitionContours* drawn_below) {
+    if (dimension == 2) return draw_segments(inside);
+    for_each_polygon(inside, [&](const FaceTopology& face, const Polygon& polygon) {
+        draw_polygon(face, polygon, drawn_below);
+    });
+}
+
+/// Counterclockwise around the element the region is on the left, as on the contour.
+template <int dimension, class Real>
+void CapContour<dimension, Real>::draw_segments(unsigned inside) {
+    const ElementView<Real>& view = cuts_->view();
+    const Topology& t = view.topology();
+    const unsigned boundary = cuts_->walk().boundary(view);
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        const std::uint8_t a = t.face[f].corner[0];
+        const std::uint8_t b = t.face[f].corner[1];
+        const bool first = (inside >> a & 1U) != 0;
+        const bool second = (inside >> b & 1U) != 0;
+        if ((boundary >> f & 1U) == 0 || (!first && !second)) continue;
+        const std::uint8_t edge = edge_between(view.shape, a, b);
+        typename ElementContour<dimension, Real>::Locals ends{};
+        ends[0] = first ? contour_->node_vertex(a) : contour_->vertex(edge);
+        ends[1] = second ? contour_->node_vertex(b) : contour_->vertex(edge);
+        contour_->simplex(ends);
+    }
+}
+
+template <int dimension, class Real>
+void CapContour<dimension, Real>::draw_polygon(const FaceTopology& face, const Polygon& polygon,
+                                               const TransitionContours* drawn_below) {
+    const std::size_t n = polygon.count;
+    std::array<Number, 8> v{};
+    std::array<std::vector<Number>, 8> chains;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Corner& c = polygon.corner[i];
+        const std::uint8_t a = face.corner[c.from];
+        const std::uint8_t b = face.corner[(c.from + 1U) % face.corners];
+        v[i] = c.cut ? contour_->vertex(edge_between(cuts_->view().shape, a, b))
+                     : contour_->node_vertex(a);
+        chains[i] = chain(face, polygon, i, drawn_below);
+    }
+    ContourFilling<ElementContour<dimension, Real>> filling(*contour_);
+    for (std::size_t i = 2; i < n; ++i) {
+        const std::span<const Number> none_there;
+        filling.add(v[0], v[i - 1], v[i], i == 2 ? chains[0] : none_there, chains[i - 1],
+                    i + 1 == n ? chains[i] : none_there);
+    }
+}
+
+template class CapContour<2, float>;
+template class CapContour<2, double>;
+template class CapContour<3, float>;
+template class CapContour<3, double>;
+
+}  // namespace nestgrid::engine

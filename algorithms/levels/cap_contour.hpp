@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Caps: the part of each boundary face of the domain that is inside a level.
+//
+// Two boundary faces meet in an edge, and one may be finer than the other. So the finer one records
+// its sides along closed edges, under the key of the maximal edge and the direction it runs in, and
+// the other one adopts the vertices between: what is done for faces, one dimension lower.
+#pragma once
+
+#include <contours/transition_contours.hpp>
+#include <levels/element_contour.hpp>
+
+namespace nestgrid::engine {
+
+/// Draws the caps of one element at a time.
+template <int dimension, class Real>
+class CapContour {
+public:
+    /// Borrows the element at hand and its contour.
+    CapContour(const ElementCuts<Real>& cuts, ElementContour<dimension, Real>& contour)
+        : cuts_{&cuts}, contour_{&contour} {}
+
+    /// Records the sides of the element's caps along closed edges.
+    /// \param inside the corners inside the level, one bit each
+    void record(unsigned inside, TransitionContours& record) const;
+    /// Draws the element's caps; contour.begin() must have been called.
+    /// \param drawn_below what finer caps recorded, or null
+    void draw(unsigned inside, const TransitionContours* drawn_below);
+
+private:
+    using Number = std::uint32_t;
+    struct Corner {  // of a polygon: corner `from` of the face, or the cut of its side `from`
+        std::uint8_t from;
+        bool cut;
+    };
+    struct Polygon {  // sides from each corner to the next
+        std::size_t count = 0;
+        std::array<Corner, 8> corner;
+        std::array<std::uint8_t, 8> edge;  // of the element, under a side; or no_edge
+    };
+
+    template <class Function>
+    void for_each_polygon(unsigned inside, Function&& function) const;
+    static Polygon polygon_from(Shape shape, const FaceTopology& face, unsigned signs,
+                                const FaceContour& contour, unsigned& left);
+    void record_side(const FaceTopology& face, const Polygon& polygon, std::size_t side,
+                     TransitionContours& record) const;
+    NodeKey side_key(std::uint8_t edge, const FaceTopology& face, std::uint8_t from,
+                     bool forward) const;
+    std::vector<Number> chain(const FaceTopology& face, const Polygon& polygon, std::size_t side,
+                              const TransitionContours* drawn_below);
+    void draw_segments(unsigned inside);
+    void draw_polygon(const FaceTopology& face, const Polygon& polygon,
+                      const TransitionContours* drawn_below);
+
+    const ElementCuts<Real>* cuts_;
+    ElementContour<dimension, Real>* contour_;
+};
+
+}  // namespace nestgrid::engine

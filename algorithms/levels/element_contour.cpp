@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/element_contour.hpp>
+
+#include <algorithm>
+
+#include <nestgrid/shape_functions.hpp>
+
+namespace nestgrid::engine {
+
+template <int dimension, class Real>
+std::size_t ElementContour<dimension, Real>::simplices_of(const Contour& plain) {
+    std::size_t count = 0;
+    for (std::size_t l = 0; l < plain.loop_count; ++l) {
+        const std::size_t cuts = plain.loop[l].count;
+        count += cuts <= 3 ? 1 : cuts - 2;
+    }
+    return count;
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::draw_plainly(LevelSurface<dimension>& surface,
+                                                   const Contour& contour, unsigned inside) {
+    const ElementView<Real>& view = cuts_->view();
+    surface_ = &surface;
+    surface.builder().add_element(view.element(), view.shape, view.level);
+    tally_->add(simplices_of(contour));
+    const bool names = surface.names_vertices();
+    const unsigned boundary = names ? cuts_->walk().boundary(view) : 0;
+    for (std::size_t l = 0; l < contour.loop_count; ++l) {
+        const ContourLoop& loop = contour.loop[l];
+        const Vertices v = names ? find_vertices(loop, inside) : make_vertices(loop, inside);
+        put_loop(loop, v, view.orientation < 0);
+        if (boundary != 0) put_boundary(loop, v, boundary);
+    }
+}
+
+/// All names of a loop are looked up at once, so that none waits for another one's slot.
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::find_vertices(const ContourLoop& loop, unsigned inside)
+    -> Vertices {
+    std::array<VertexNumbers::Name, max_edges> names;
+    for (std::size_t i = 0; i < loop.count; ++i) {
+        names[i] = surface_->name(cuts_->name(loop.edge[i]));
+        surface_->prefetch(names[i]);
+    }
+    Vertices v;
+    for (std::size_t i = 0; i < loop.count; ++i) {
+        v[i] = surface_->vertex(names[i], [&] {
+            const bool closed = cuts_->view().closed.edge(loop.edge[i]) != nullptr;
+            return closed ? cuts_->cut(loop.edge[i]) : cuts_->plain_cut(loop.edge[i], inside);
+        });
+    }
+    return v;
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::make_vertices(const ContourLoop& loop, unsigned inside)
+    -> Vertices {
+    std::array<Point, max_edges> x;
+    cuts_->positions_of(std::span(loop.edge).first(loop.count), inside, x.data());
+    Number next = surface_->add_unnamed(std::span(x).first(loop.count), {});
+    Vertices v;
+    for (std::size_t i = 0; i < loop.count; ++i) v[i] = next++;
+    return v;
+}
+
+/// The simplices of a loop: a segment, the triangles of the table, or two with the shorter
+/// diagonal. Both diagonals lie inside the element, so neighbours do not care.
+template <int dimension, class Real>
+NESTGRID_INLINE void ElementContour<dimension, Real>::put_loop(const ContourLoop& loop,
+                                                               const Vertices& v, bool mirrored) {
+    if (loop.count <= 3) return put_triangle(v, {0, 1, 2}, mirrored);
+    if (loop.any_diagonal) {
+        const auto x = [&](std::size_t i) { return surface_->position(v[i]); };
+        const std::size_t first = shorter(x(0), x(2), x(1), x(3)) ? 0 : 1;
+        put_triangle(v, {first, first + 1, first + 2}, mirrored);
+        put_triangle(v, {first + 2, (first + 3) % 4, first}, mirrored);
+        return;
+    }
+    for (std::size_t i = 0; i < loop.triangle_count; ++i) {
+        const auto& corner = loop.triangle[i];
+        put_triangle(v, {corner[0], corner[1], corner[2]}, mirrored);
+    }
+}
+
+/// Three vertices of a loop; a segment of its first two in two dimensions.
+template <int dimension, class Real>
+NESTGRID_INLINE void ElementContour<dimension, Real>::put_triangle(
+    const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored) {
+    // Whether elements are mirrored nobody can predict: no branch.
+    const std::size_t swap = (corner[0] ^ corner[1]) & (std::size_t{0} - (mirrored ? 1U : 0U));
+    Locals simplex;
+    simplex[0] = v[corner[0] ^ swap];
+    simplex[1] = v[corner[1] ^ swap];
+    if constexpr (dimension == 3) simplex[2] = v[corner[2]];
+    surface_->add_simplex(simplex, {});
+}
+
+/// The sides of a loop that lie on the boundary of the domain.
+/// \param boundary the element's faces there, one bit each
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::put_boundary(const ContourLoop& loop, const Vertices& v,
+                                                   unsigned boundary) {
+    for (std::size_t i = 0; i < loop.count; ++i) {
+        if ((boundary >> loop.face[i] & 1U) == 0) continue;
+        typename Surface<dimension>::Ridge ridge;
+        for (std::size_t k = 0; k < ridge.size(); ++k) ridge[k] = v[(i + k) % loop.count];
+        surface_->builder().add_boundary(ridge);
+    }
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::begin(LevelSurface<dimension>& surface, bool mirrored) {
+    surface_ = &surface;
+    begun_ = false;
+    mirrored_ = mirrored;
+    chained_ = 0;
+    local_.clear();
+    reference_.clear();
+    on_edge_.fill(none);
+    on_corner_.fill(none);
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::set_chain(std::uint8_t edge, std::vector<Number>& chain) {
+    chained_ |= static_cast<std::uint16_t>(1U << edge);
+    chain_[edge].swap(chain);
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::draw(unsigned inside, unsigned joins) {
+    const ElementView<Real>& view = cuts_->view();
+    const Contour& contour = table(view.shape).at(inside, joins);
+    if constexpr (dimension == 2) {
+        for (std::size_t l = 0; l < contour.loop_count; ++l) {
+            const ContourLoop& segment = contour.loop[l];
+            simplex({vertex(segment.edge[0]), vertex(segment.edge[1])});
+        }
+    } else {
+        ContourFilling<ElementContour> filling(*this);
+        std::optional<Tunnel> tunnel;
+        if (view.shape == Shape::hexahedron && contour.loop_count > 1) {
+            tunnel = find_tunnel(contour, cuts_->u());
+        }
+        tunnel ? filling.fill(contour, *tunnel) : filling.fill(contour);
+    }
+    const unsigned boundary = surface_->names_vertices() ? cuts_->walk().boundary(view) : 0;
+    for (std::size_t l = 0; boundary != 0 && l < contour.loop_count; ++l) {
+        Vertices v;
+        for (std::size_t i = 0; i < contour.loop[l].count; ++i) {
+            v[i] = local_[vertex(contour.loop[l].edge[i])];
+        }
+        put_boundary(contour.loop[l], v, boundary);
+    }
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::simplex(const Locals& corners) {
+    if (!begun_) {
+        const ElementView<Real>& view = cuts_->view();
+        surface_->builder().add_element(view.element(), view.shape, view.level);
+    }
+    begun_ = true;
+    Locals v;
+    std::array<Point, static_cast<std::size_t>(dimension)> reference;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const std::size_t from = i < 2 && mirrored_ ? 1 - i : i;
+        v[i] = local_[corners[from]];
+        if (options_->reference) reference[i] = reference_[corners[from]];
+    }
+    tally_->add(1);
+    surface_->add_simplex(
+        v, options_->reference ? std::span<const Point>(reference) : std::span<const Point>());
+}
+
+/// The vertex in the middle of the gap keeps every edge of the filling from being one of an
+/// element.
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::fill_gap(LevelSurface<dimension>& surface,
+                                               std::span<const SurfaceCut> loop,
+                                               const Handle& owner, Shape shape, int level) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    constexpr Point nowhere{unknown, unknown, unknown};
+    begin(surface, false);
+    begun_ = true;
+    surface_->builder().add_element(owner, shape, level);
+    Point x{0, 0, 0};
+    std::vector<double> attributes(attribute_count_, 0.0);
+    const double weight = 1.0 / static_cast<double>(loop.size());
+    for (const SurfaceCut& cut : loop) {
+        number_of(surface_->vertex_between({cut.node[0], cut.node[1]}, [&] { return cut; }),
+                  nowhere);
+        x = x + weight * cut.x;
+        for (std::size_t i = 0; i < attributes.size(); ++i) {
+            attributes[i] += weight * cut.attributes[i];
+        }
+    }
+    const auto n = static_cast<Number>(loop.size());
+    if (n == 3) return triangle(0, 1, 2);
+    number_of(surface_->add_unnamed(std::span(&x, 1), attributes), nowhere);
+    for (Number i = 0; i < n; ++i) triangle(i, (i + 1) % n, n);
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::number_of(Number vertex, const Point& reference) -> Number {
+    local_.push_back(vertex);
+    if (wants_reference()) reference_.push_back(reference);
+    return static_cast<Number>(local_.size() - 1);
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::vertex(std::uint8_t edge) -> Number {
+    if (on_edge_[edge] != none) return on_edge_[edge];
+    Point reference{};
+    if (wants_reference()) {
+        const Topology& t = cuts_->view().topology();
+        const auto& [a, b] = t.edge[edge];
+        const auto& u = cuts_->u();
+        const double fraction = std::clamp(u[a] / (u[a] - u[b]), 0.0, 1.0);
+        reference = t.reference[a] + fraction * (t.reference[b] - t.reference[a]);
+    }
+    const Number v = surface_->vertex_between(cuts_->name(edge), [&] { return cuts_->cut(edge); });
+    return on_edge_[edge] = number_of(v, reference);
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::node_vertex(std::size_t corner) -> Number {
+    if (on_corner_[corner] != none) return on_corner_[corner];
+    const NodeKey key = cuts_->keys()[corner];
+    const Number v = surface_->vertex_between({key, key}, [&] { return cuts_->node(corner); });
+    return on_corner_[corner] = number_of(v, cuts_->view().topology().reference[corner]);
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::adopted(const SurfaceCut& cut, const FaceTopology& face)
+    -> Number {
+    const Point reference = options_->reference ? reference_on_face(cut.x, face) : Point{};
+    return number_of(surface_->vertex_between({cut.node[0], cut.node[1]}, [&] { return cut; }),
+                     reference);
+}
+
+/// Newton's method on the map from the unit square (triangle) to the face.
+template <int dimension, class Real>
+Point ElementContour<dimension, Real>::reference_on_face(const Point& x,
+                                                         const FaceTopology& face) const {
+    const auto blend = [&](const auto& of, double p, double q) {
+        const auto at = [&](int i) { return of[face.tensor_corner(i)]; };
+        if (face.corners == 3) return at(0) + p * (at(1) - at(0)) + q * (at(2) - at(0));
+        return (1 - q) * ((1 - p) * at(0) + p * at(1)) + q * ((1 - p) * at(2) + p * at(3));
+    };
+    const auto& corner = cuts_->positions();
+    double p = 1.0 / 3;
+    double q = 1.0 / 3;
+    for (int step = 0; step < 20; ++step) {
+        const Point rest = x - blend(corner, p, q);
+        const Point dp = blend(corner, p + 0.5, q) - blend(corner, p - 0.5, q);
+        const Point dq = blend(corner, p, q + 0.5) - blend(corner, p, q - 0.5);
+        const double pp = dot(dp, dp), pq = dot(dp, dq), qq = dot(dq, dq);
+        const double determinant = pp * qq - pq * pq;
+        if (determinant <= 0) break;
+        p += (qq * dot(dp, rest) - pq * dot(dq, rest)) / determinant;
+        q += (pp * dot(dq, rest) - pq * dot(dp, rest)) / determinant;
+    }
+    return blend(cuts_->view().topology().reference, p, q);
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::middle(std::span<const Number> of) -> Number {
+    Point x{0, 0, 0};
+    Point reference{0, 0, 0};
+    const double weight = 1.0 / static_cast<double>(of.size());
+    for (const Number v : of) {
+        x = x + weight * position(v);
+        if (wants_reference()) reference = reference + weight * reference_[v];
+    }
+    return number_of(surface_->add_unnamed(std::span(&x, 1), cuts_->attributes_at(reference)),
+                     reference);
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::inside(const Point& reference) -> Number {
+    const auto weight = shape_functions(cuts_->view().shape, reference);
+    Point x{0, 0, 0};
+    for (std::size_t i = 0; i < cuts_->view().corner_count(); ++i) {
+        x = x + weight[i] * cuts_->positions()[i];
+    }
+    return number_of(surface_->add_unnamed(std::span(&x, 1), cuts_->attributes_at(reference)),
+                     reference);
+}
+
+template class ElementContour<2, float>;
+template class ElementContour<2, double>;
+template class ElementContour<3, float>;
+template class ElementContour<3, double>;
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Turns the signs at the corners of an element into loops of cuts and these into simplices.
+//
+// Invariant: what is drawn on a face depends on the face alone, or is the chain that the finer side
+// drew there (transitions.hpp).
+#pragma once
+
+#include <levels/element_cuts.hpp>
+#include <nestgrid/algorithms/contour_filling.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
+#include <surfaces/level_surface.hpp>
+#include <surfaces/simplex_tally.hpp>
+
+namespace nestgrid::engine {
+
+/// Draws one element at a time. Vertices of the element have local numbers, in the order in which
+/// they are asked for.
+template <int dimension, class Real>
+class ElementContour {
+public:
+    using Number = std::uint32_t;
+    using Locals = std::array<Number, static_cast<std::size_t>(dimension)>;
+
+    /// All arguments are borrowed.
+    ElementContour(ElementCuts<Real>& cuts, SimplexTally& tally, const IsosurfaceOptions& options)
+        : cuts_{&cuts},
+          tally_{&tally},
+          options_{&options},
+          attribute_count_{cuts.attribute_count()} {}
+
+    /// The contour of an element that no finer side drew on, where it may be drawn by
+    /// draw_plainly(): no signs on a face alternate and no loop is filled around its middle.
+    /// \param inside the corners inside the level, one bit each
+    const Contour* plain(Shape shape, unsigned inside) { return table(shape).plain(inside); }
+    /// The table of a shape, made when the shape is first met.
+    NESTGRID_INLINE const ContourTable& table(Shape shape) {
+        const ContourTable*& table = table_[static_cast<std::size_t>(shape)];
+        if (table == nullptr) table = &ContourTable::of(shape);
+        return *table;
+    }
+    static std::size_t simplices_of(const Contour& plain);
+    /// Draws a plain contour as draw() would, in the same order and to the last bit, but for
+    /// attributes and references, which it leaves out.
+    void draw_plainly(LevelSurface<dimension>& surface, const Contour& contour, unsigned inside);
+
+    /// Begins the element at hand.
+    void begin(LevelSurface<dimension>& surface) { begin(surface, cuts_->view().orientation < 0); }
+    /// Whether anything of the element was drawn since begin().
+    bool begun() const { return begun_; }
+    /// Replaces the side of a loop that follows an edge by a chain of local vertices.
+    void set_chain(std::uint8_t edge, std::vector<Number>& chain);
+    /// Draws the contour of an element.
+    /// \param joins faces whose inside corners are joined where signs alternate, one bit each
+    void draw(unsigned inside, unsigned joins);
+    /// A simplex between local vertices, oriented as in an element that is not mirrored.
+    void simplex(const Locals& corners);
+    /// Fills a gap between elements by a fan around its middle.
+    /// \param owner the element that the simplices are said to come from
+    void fill_gap(LevelSurface<dimension>& surface, std::span<const SurfaceCut> loop,
+                  const Handle& owner, Shape shape, int level);
+
+    // Local vertices; ContourFilling asks for some.
+    Number vertex(std::uint8_t edge);
+    Number node_vertex(std::size_t corner);
+    /// A vertex that a finer side recorded on a face.
+    Number adopted(const SurfaceCut& cut, const FaceTopology& face);
+    Number middle(std::span<const Number> of);
+    Number inside(const Point& reference);
+    Point position(Number local) const { return surface_->position(local_[local]); }
+    bool chained() const { return chained_ != 0; }
+    std::span<const Number> chain(std::uint8_t edge) const {
+        if ((chained_ >> edge & 1U) == 0) return {};
+        return chain_[edge];
+    }
+    void triangle(Number a, Number b, Number c) {
+        if constexpr (dimension == 3) simplex({a, b, c});
+    }
+
+private:
+    using Vertices = std::array<Number, max_edges>;
+    static constexpr Number none = LevelSurface<dimension>::none;
+
+    void begin(LevelSurface<dimension>& surface, bool mirrored);
+    Vertices find_vertices(const ContourLoop& loop, unsigned inside);
+    Vertices make_vertices(const ContourLoop& loop, unsigned inside);
+    void put_loop(const ContourLoop& loop, const Vertices& v, bool mirrored);
+    void put_triangle(const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored);
+    void put_boundary(const ContourLoop& loop, const Vertices& v, unsigned boundary);
+    Point reference_on_face(const Point& x, const FaceTopology& face) const;
+    /// Whether it must be known where vertices lie in the element.
+    bool wants_reference() const { return options_->reference || attribute_count_ > 0; }
+    Number number_of(Number vertex, const Point& reference);
+
+    ElementCuts<Real>* cuts_;
+    SimplexTally* tally_;
+    const IsosurfaceOptions* options_;
+    std::size_t attribute_count_;
+    std::array<const ContourTable*, shape_count> table_{};
+    LevelSurface<dimension>* surface_ = nullptr;
+    bool begun_ = false;
+    bool mirrored_ = false;
+    std::vector<Number> local_;     // vertices of the surface, by local number
+    std::vector<Point> reference_;  // where they lie in the element, where wanted
+    std::array<Number, max_edges> on_edge_{};
+    std::array<Number, max_corners> on_corner_{};
+    std::uint16_t chained_ = 0;  // edges with a chain behind them, one bit each
+    std::array<std::vector<Number>, max_edges> chain_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/element_cuts.hpp>
+
+#include <algorithm>
+
+#include <nestgrid/shape_functions.hpp>
+
+namespace nestgrid::engine {
+
+template <class Real>
+SurfaceCut ElementCuts<Real>::cut(std::uint8_t edge) const {
+    const auto* const maximal = view_->closed.edge(edge);
+    const auto& corner = view_->topology().edge[edge];
+    const auto value = [&](std::size_t end, std::size_t component) {
+        return static_cast<double>(maximal != nullptr
+                                       ? maximal->value(end, component)
+                                       : view_->value[corner[end] * components_ + component]);
+    };
+    const auto key = [&](std::size_t end) {
+        return maximal != nullptr ? maximal->key(end) : key_[corner[end]];
+    };
+    const std::array<Point, 2> x =
+        maximal != nullptr ? walk_->positions(*maximal) : std::array{x_[corner[0]], x_[corner[1]]};
+    const std::size_t component = level_->component;
+    const std::size_t low = value(0, component) >= level_->value ? 1 : 0;
+    const std::size_t high = 1 - low;
+    SurfaceCut cut;
+    cut.node = {key(low), key(high)};
+    cut.fraction = cut_fraction(level_->value, value(low, component), value(high, component));
+    cut.x = x[low] + cut.fraction * (x[high] - x[low]);
+    for (std::size_t i = 0; i < attributes_.size(); ++i) {
+        const double from = value(low, first_attribute_ + i);
+        attributes_[i] = from + cut.fraction * (value(high, first_attribute_ + i) - from);
+    }
+    cut.attributes = attributes_;
+    return cut;
+}
+
+template <class Real>
+void ElementCuts<Real>::positions_of(std::span<const std::uint8_t> edges, unsigned inside,
+                                     Point* out) const {
+    const bool closed = view_->closed.any;
+    for (const std::uint8_t edge : edges) {
+        if (closed && view_->closed.edge(edge) != nullptr) {
+            *out++ = cut(edge).x;
+        } else {
+            const auto [low, high] = ends(edge, inside);
+            *out++ = between(low, high, fraction_between(low, high));
+        }
+    }
+}
+
+template <class Real>
+SurfaceCut ElementCuts<Real>::node(std::size_t corner) const {
+    const Real* const value = view_->value + corner * components_ + first_attribute_;
+    for (std::size_t i = 0; i < attributes_.size(); ++i) {
+        attributes_[i] = static_cast<double>(value[i]);
+    }
+    return {x_[corner], {key_[corner], key_[corner]}, 0, attributes_};
+}
+
+template <class Real>
+std::span<const double> ElementCuts<Real>::attributes_at(const Point& reference) const {
+    if (attributes_.empty()) return {};
+    std::ranges::fill(attributes_, 0.0);
+    const auto weight = shape_functions(view_->shape, reference);
+    for (std::size_t c = 0; c < view_->corner_count(); ++c) {
+        const Real* const value = view_->value + c * components_ + first_attribute_;
+        for (std::size_t i = 0; i < attributes_.size(); ++i) {
+            attributes_[i] += weight[c] * static_cast<double>(value[i]);
+        }
+    }
+    return attributes_;
+}
+
+template class ElementCuts<float>;
+template class ElementCuts<double>;
+
+}  // namespace nestgrid::engine

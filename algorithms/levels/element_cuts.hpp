@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The element at hand: its corners, and where a level cuts its edges.
+#pragma once
+
+#include <contours/level.hpp>
+#include <nestgrid/algorithms/cell_contour.hpp>
+#include <nestgrid/geometry.hpp>
+#include <nestgrid/key_table.hpp>
+#include <surfaces/surface_builder.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+/// Names and makes the vertices of one element. A vertex on an edge is named by the two nodes of
+/// the maximal edge around that edge, and cuts the maximal edge from its lower to its higher value:
+/// all elements at the edge find the same name and the same bits.
+template <class Real>
+class ElementCuts {
+public:
+    using View = ElementView<Real>;
+
+    /// \param first_attribute the first of the components that vertices carry
+    ElementCuts(const Walk<Real>& walk, std::size_t first_attribute)
+        : walk_{&walk},
+          components_{walk.components()},
+          first_attribute_{first_attribute},
+          attributes_(components_ - first_attribute) {}
+
+    /// Loads positions, and keys where asked for, of the corners of an element.
+    void load(const View& view, bool keys) {
+        view_ = &view;
+        walk_->corners(view, keys ? key_.data() : nullptr, x_.data());
+    }
+    /// Sets the level that cuts the loaded element.
+    void set_level(const Level<Real>& level) {
+        level_ = &level;
+        const Real* const value = view_->value + level.component;
+        for (std::size_t i = 0; i < view_->corner_count(); ++i) {
+            u_[i] = static_cast<double>(value[i * components_]) - level.value;
+        }
+    }
+
+    const View& view() const { return *view_; }
+    const Walk<Real>& walk() const { return *walk_; }
+    std::size_t attribute_count() const { return attributes_.size(); }
+    const std::array<NodeKey, max_corners>& keys() const { return key_; }
+    const std::array<Point, max_corners>& positions() const { return x_; }
+    /// What the level is the zero of, at the corners.
+    const std::array<double, max_corners>& u() const { return u_; }
+
+    /// The name of the vertex on a cut edge.
+    NESTGRID_INLINE KeyPair name(std::uint8_t edge) const {
+        if (const auto* maximal = view_->closed.edge(edge)) {
+            return {maximal->key(0), maximal->key(1)};
+        }
+        const auto& [a, b] = view_->topology().edge[edge];
+        return {key_[a], key_[b]};
+    }
+    /// The cut of an edge.
+    SurfaceCut cut(std::uint8_t edge) const;
+    /// The same without attributes, of an edge around which nothing is closed.
+    /// \param inside the corners inside the level, one bit each
+    NESTGRID_INLINE SurfaceCut plain_cut(std::uint8_t edge, unsigned inside) const {
+        const auto [low, high] = ends(edge, inside);
+        const double fraction = fraction_between(low, high);
+        return {between(low, high, fraction), {key_[low], key_[high]}, fraction, {}};
+    }
+    /// Positions of the cuts of some edges.
+    void positions_of(std::span<const std::uint8_t> edges, unsigned inside, Point* out) const;
+    /// A corner as a vertex.
+    SurfaceCut node(std::size_t corner) const;
+    /// Attributes at a point of the reference element. Valid until the next call, cut() or node().
+    std::span<const double> attributes_at(const Point& reference) const;
+    /// Whether the corners inside the level are joined across a face whose signs alternate.
+    bool joined(const FaceTopology& face) const {
+        return joins_across(u_[face.corner[0]], u_[face.corner[1]], u_[face.corner[2]],
+                            u_[face.corner[3]]);
+    }
+
+private:
+    struct Ends {
+        std::size_t low;
+        std::size_t high;
+    };
+    NESTGRID_INLINE Ends ends(std::uint8_t edge, unsigned inside) const {
+        const auto& [a, b] = view_->topology().edge[edge];
+        const bool falls = (inside >> a & 1U) != 0;
+        return {falls ? std::size_t{b} : std::size_t{a}, falls ? std::size_t{a} : std::size_t{b}};
+    }
+    NESTGRID_INLINE double fraction_between(std::size_t low, std::size_t high) const {
+        const Real* const value = view_->value + level_->component;
+        return cut_fraction(level_->value, static_cast<double>(value[low * components_]),
+                            static_cast<double>(value[high * components_]));
+    }
+    NESTGRID_INLINE Point between(std::size_t low, std::size_t high, double fraction) const {
+        return x_[low] + fraction * (x_[high] - x_[low]);
+    }
+
+    const Walk<Real>* walk_;
+    std::size_t components_;
+    std::size_t first_attribute_;
+    const View* view_ = nullptr;
+    const Level<Real>* level_ = nullptr;
+    std::array<NodeKey, max_corners> key_{};
+    std::array<Point, max_corners> x_{};
+    std::array<double, max_corners> u_{};
+    mutable std::vector<double> attributes_;  // of the vertex made last
+};
+
+}  // namespace nestgrid::engine

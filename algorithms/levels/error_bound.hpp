@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <bit>
+
+#include <levels/element_cuts.hpp>
+#include <levels/level_search.hpp>
+
+namespace nestgrid::engine {
+
+/// How far U may be from the level on what is drawn in an element: the bound of what S projected
+/// away below it, the offsets of its interpolated corners, and what the flatness of triangles adds
+/// in shapes other than simplices.
+/// \param below how far U may leave the range of the corners
+template <class Real>
+double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& search, Real below) {
+    const ElementView<Real>& view = element.view();
+    double corner = 0;
+    for (unsigned left = view.interpolated; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        corner = std::max(corner, search.offset_bound(element.keys()[i]));
+    }
+    // An interpolated parent that was made in the same split adds its own error.
+    if (view.made_by != nullptr) corner *= view.made_by->steps;
+    const Topology& t = view.topology();
+    const double chord = t.corners == t.dimension + 1U
+                             ? 0.0
+                             : 2 * affine_residual(std::span(element.positions()).first(t.corners),
+                                                   std::span(element.u()).first(t.corners));
+    return static_cast<double>(below) + corner + chord;
+}
+
+}  // namespace nestgrid::engine

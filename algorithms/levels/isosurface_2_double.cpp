@@ -1,6 +1,0 @@
-// SPDX-FileCopyrightText: the nestgrid authors
-// SPDX-License-Identifier: BSD-3-Clause
-#include <levels/isosurface_engine.hpp>
-
-template class nestgrid::engine::IsosurfaceVisitor<2, double, true>;
-template class nestgrid::engine::IsosurfaceVisitor<2, double, false>;

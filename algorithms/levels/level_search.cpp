@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/level_search.hpp>
+
+#include <algorithm>
+#include <bit>
+
+namespace nestgrid::engine {
+
+namespace {
+
+/// The least number of type Real that is not below a bound.
+template <class Real>
+Real as_real(double bound) {
+    if constexpr (sizeof(Real) == sizeof(double)) return bound;
+    return float_above(bound);
+}
+
+}  // namespace
+
+template <class Real>
+LevelSearch<Real>::LevelSearch(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
+                               const Criterion& criterion, const Bounds& bounds)
+    : levels_{std::move(levels)},
+      hierarchy_{&hierarchy},
+      components_{static_cast<std::size_t>(hierarchy.facts().components)},
+      criterion_{&criterion},
+      bounds_{&bounds},
+      own_bounds_{dynamic_cast<const HierarchicalIndicator*>(&bounds)},
+      entries_{own_bounds_ == nullptr ? nullptr : &own_bounds_->entries()},
+      saturated_{criterion.saturated()} {
+    for (const Level<Real>& level : levels_) {
+        last_component_ = std::max(last_component_, level.component);
+    }
+    const auto* threshold = dynamic_cast<const Threshold*>(&criterion);
+    if (threshold != nullptr && own_bounds_ != nullptr && threshold->indicator() == own_bounds_) {
+        own_threshold_ = threshold;
+        packed_threshold_ = Pack<float>::all(float_below(threshold->epsilon()));
+    }
+}
+
+template <class Real>
+bool LevelSearch<Real>::may_stop_apart() const {
+    if (hierarchy_->offers(Feature::constrained) || bounds_->hanging() != nullptr) return true;
+    if (dynamic_cast<const Exact*>(criterion_) != nullptr) return false;
+    return hierarchy_->offers(Feature::hidden) || !bounds_->stops_conform();
+}
+
+/// Whether a level of a component may pass through an element on which the component is within
+/// `bound` of corner values, themselves in lo ... hi. Rounding is monotone: a difference within the
+/// bound is never rounded beyond it.
+/// \param also_below whether elements wholly inside are of interest, too
+template <class Real>
+NESTGRID_INLINE bool LevelSearch<Real>::of_interest(Real lo, Real hi, Real bound,
+                                                    std::size_t component, bool also_below) const {
+    for (const Level<Real>& level : levels_) {
+        if (level.component == component && level.least_inside - hi <= bound &&
+            (also_below || lo - level.greatest_outside <= bound)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The least and the greatest value of a component at the corners.
+template <class Real>
+NESTGRID_INLINE auto LevelSearch<Real>::range_of(const View& view, std::size_t component) const
+    -> Range {
+    const Real* const value = view.value + component;
+    Range range{value[0], value[0]};
+    for (std::size_t i = 1; i < view.corner_count(); ++i) {
+        const Real v = value[i * components_];
+        range.lo = std::min(range.lo, v);
+        range.hi = std::max(range.hi, v);
+    }
+    return range;
+}
+
+/// In a saturated criterion S at a corner implies S at all new nodes: nobody is asked.
+template <class Real>
+auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps) const -> Sight {
+    const Rule* const rule = split.rule;
+    if (rule != nullptr && entries_ != nullptr) prefetch(*entries_, *rule, split.keys);
+    const Range first = range_of(view, 0);
+    const Real bound = rule == nullptr ? Real(0) : bound_of(*rule, split.keys);
+    bool interest = of_interest(first.lo, first.hi, bound, 0, caps);
+    for (std::size_t component = 1; !interest && component <= last_component_; ++component) {
+        const Range range = range_of(view, component);
+        interest = of_interest(range.lo, range.hi, bound, component, caps);
+    }
+    if (!interest) return {{Visit::skip, 0}, bound};
+    if (rule == nullptr) return {{Visit::stop, 0}, bound};
+    if (saturated_ && view.interpolated != 0) return {{Visit::stop, rule->all()}, bound};
+    const NodeMask interpolated = holds({*rule, split.keys, view.level + 1, split.outside});
+    return {{interpolated == rule->all() ? Visit::stop : Visit::descend, interpolated}, bound};
+}
+
+template <class Real>
+NodeMask LevelSearch<Real>::cut_leaves(const Rule& rule, const Real* values, NodeMask which) const {
+    const std::size_t nodes = topology(rule.parent).corners + rule.new_nodes.size();
+    NodeMask of_interest = 0;
+    for (const Level<Real>& level : levels_) {
+        if (nodes > 64) {
+            of_interest |= cut_children(rule, values, level);
+            continue;
+        }
+        const Real* const value = values + level.component;
+        std::uint64_t inside = 0;
+        for (std::size_t n = 0; n < nodes; ++n) {
+            inside |= std::uint64_t{value[n * components_] >= level.least_inside} << n;
+        }
+        for (NodeMask left = which; left != 0; left &= left - 1) {
+            const std::uint64_t all = rule.children[std::countr_zero(left)].nodes;
+            const bool cut = (all & inside) != 0 && (all & ~inside) != 0;
+            of_interest |= cut ? left & ~(left - 1) : NodeMask{0};
+        }
+    }
+    return of_interest & which;
+}
+
+/// The same, corner by corner, of rules with more than 64 nodes.
+template <class Real>
+NodeMask LevelSearch<Real>::cut_children(const Rule& rule, const Real* values,
+                                         const Level<Real>& level) const {
+    NodeMask cut = 0;
+    for (std::size_t c = 0; c < rule.children.size(); ++c) {
+        const Child& child = rule.children[c];
+        const std::size_t corners = topology(child.shape).corners;
+        std::size_t inside = 0;
+        for (std::size_t i = 0; i < corners; ++i) {
+            const std::size_t at = child.corner[i] * components_ + level.component;
+            inside += values[at] >= level.least_inside;
+        }
+        cut |= NodeMask{inside != 0 && inside != corners} << c;
+    }
+    return cut;
+}
+
+template <class Real>
+auto LevelSearch<Real>::glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level,
+                               bool outside) const -> Glance {
+    const std::span<const NodeKey> keys(&node, 1);
+    const Real bound = bound_of(rule, keys);
+    if (!of_interest(lo, hi, bound, 0, false)) return {Visit::skip, bound};
+    const NodeMask mask = holds({rule, keys, level + 1, outside ? NodeMask{1} : NodeMask{0}});
+    return {mask != 0 ? Visit::stop : Visit::descend, bound};
+}
+
+/// On an element with these new nodes a component is within corner values +- this.
+template <class Real>
+Real LevelSearch<Real>::bound_of(const Rule& rule, std::span<const NodeKey> nodes) const {
+    return as_real<Real>(own_bounds_ != nullptr ? own_bounds_->bound(rule, nodes)
+                                                : bounds_->bound(rule, nodes));
+}
+
+template <class Real>
+NodeMask LevelSearch<Real>::holds(const NewNodes& nodes) const {
+    if (own_threshold_ == nullptr) return criterion_->holds(nodes);
+    return own_bounds_->stops_at_most(nodes.rule, nodes.keys, own_threshold_->epsilon()) &
+           ~nodes.outside;
+}
+
+template class LevelSearch<float>;
+template class LevelSearch<double>;
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which elements a walk enters to find level sets, and at which it stops.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <contours/level.hpp>
+#include <indicators/packed_entries.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/block_glance.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+/// Decides about elements by levels, criterion and bounds, all of which it borrows but the levels.
+/// Immutable: the tasks of a traversal share one.
+template <class Real>
+class LevelSearch {
+public:
+    using View = ElementView<Real>;
+
+    /// What is decided about an element, and how far U may leave the range of its corners there.
+    struct Sight {
+        Decision decision;
+        Real bound;
+    };
+
+    LevelSearch(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
+                const Criterion& criterion, const Bounds& bounds);
+
+    std::span<const Level<Real>> levels() const { return levels_; }
+    const Bounds& bounds() const { return *bounds_; }
+    /// Whether elements may stop without conforming to their neighbours.
+    bool may_stop_apart() const;
+
+    /// \param caps whether the element is of interest also where it is wholly inside
+    Sight look(const View& view, const Split& split, bool caps) const;
+    /// Those of the children `which`, which are leaves, that have corners on both sides of a level.
+    /// \param values of the father's split, corners first
+    NodeMask cut_leaves(const Rule& rule, const Real* values, NodeMask which) const;
+    /// The corners of an element that are inside a level, one bit each.
+    NESTGRID_INLINE unsigned inside(const Real* value, std::size_t corners,
+                                    const Level<Real>& level) const;
+    /// |U - P_S U| at a node at which S holds is at most this.
+    double offset_bound(NodeKey node) const {
+        return own_bounds_ != nullptr ? own_bounds_->offset_bound(node)
+                                      : bounds_->offset_bound(node);
+    }
+
+    // The same questions by the walk in blocks.
+    struct Glance {
+        Visit visit;
+        Real bound;
+    };
+    /// Decides about a simplex whose one new node is `node`.
+    Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) const;
+    bool glance_at_leaf(Real lo, Real hi) const { return of_interest(lo, hi, Real(0), 0, false); }
+    /// The same about eight, without a branch.
+    template <std::size_t around>
+    PackedGlance<Real, around> glance(const PackedElements<Real, around>& e) const;
+    /// The entries of these nodes will be asked for soon.
+    NESTGRID_INLINE void expect(const NodeKey* nodes, std::size_t rows) const {
+        if (entries_ == nullptr) return;
+        for (std::size_t row = 0; row < rows; ++row) {
+            prefetch(*entries_, std::span<const NodeKey>(nodes + row * most_blocks, pack));
+        }
+    }
+
+private:
+    struct Range {
+        Real lo;
+        Real hi;
+    };
+
+    Range range_of(const View& view, std::size_t component) const;
+    bool of_interest(Real lo, Real hi, Real bound, std::size_t component, bool also_below) const;
+    Real bound_of(const Rule& rule, std::span<const NodeKey> nodes) const;
+    NodeMask holds(const NewNodes& nodes) const;
+    NodeMask cut_children(const Rule& rule, const Real* values, const Level<Real>& level) const;
+
+    std::vector<Level<Real>> levels_;
+    const Hierarchy<Real>* hierarchy_;
+    std::size_t components_;
+    const Criterion* criterion_;
+    const Bounds* bounds_;
+    const HierarchicalIndicator* own_bounds_;   // where the bounds are the library's own
+    const detail::IndicatorEntries* entries_;   // theirs
+    const Threshold* own_threshold_ = nullptr;  // where the criterion is one of own_bounds_
+    Pack<float> packed_threshold_{};
+    std::size_t last_component_ = 0;
+    bool saturated_;
+};
+
+template <class Real>
+NESTGRID_INLINE unsigned LevelSearch<Real>::inside(const Real* value, std::size_t corners,
+                                                   const Level<Real>& level) const {
+    unsigned bits = 0;
+    if (components_ == 1 && corners == max_corners) {
+        for (std::size_t i = 0; i < max_corners; ++i) {
+            bits |= unsigned{value[i] >= level.least_inside} << i;
+        }
+        return bits;
+    }
+    value += level.component;
+    for (std::size_t i = 0; i < corners; ++i) {
+        bits |= unsigned{value[i * components_] >= level.least_inside} << i;
+    }
+    return bits;
+}
+
+template <class Real>
+template <std::size_t around>
+NESTGRID_INLINE PackedGlance<Real, around> LevelSearch<Real>::glance(
+    const PackedElements<Real, around>& e) const {
+    using Reals = Pack<Real>;
+    using Mask = typename Reals::Mask;
+    PackedGlance<Real, around> result;
+    Mask holds;
+    bool is_known = false;
+    if constexpr (std::is_same_v<Real, float>) {
+        is_known = own_threshold_ != nullptr;
+        if (is_known) {
+            const PackedEntries known = engine::look_up(*entries_, e.node);
+            result.bound = known.bound();
+            holds = at_most(known.stop(), packed_threshold_);
+        }
+    }
+    if (!is_known) {
+        const auto key = [&](auto i) NESTGRID_INLINE_LAMBDA {
+            return std::span<const NodeKey>(e.node + i, 1);
+        };
+        result.bound =
+            Reals::make([&](auto i) NESTGRID_INLINE_LAMBDA { return bound_of(e.rule, key(i)); });
+        holds = Mask::make([&](auto i) NESTGRID_INLINE_LAMBDA {
+            const NodeMask mask = this->holds({e.rule, key(i), e.level + 1, 0});
+            return mask != 0 ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
+        });
+    }
+    unrolled<around>([&](auto i) NESTGRID_INLINE_LAMBDA {
+        const Reals& lo = e.range[i].first;
+        const Reals& hi = e.range[i].second;
+        const auto passes = [&](const Level<Real>& level) NESTGRID_INLINE_LAMBDA {
+            return at_most(
+                max(Reals::all(level.least_inside) - hi, lo - Reals::all(level.greatest_outside)),
+                result.bound);
+        };
+        const std::span<const Level<Real>> levels(levels_);
+        Mask interest = passes(levels[0]);
+        for (const Level<Real>& level : levels.subspan(1)) interest = interest | passes(level);
+        result.descend[i] = without(interest, holds);
+        result.stop[i] = interest & holds;
+    });
+    return result;
+}
+
+}  // namespace nestgrid::engine

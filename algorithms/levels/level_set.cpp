@@ -1,0 +1,304 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/level_set.hpp>
+
+#include <algorithm>
+#include <bit>
+
+#include <levels/error_bound.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+unsigned all_corners(std::size_t corners) { return (1U << corners) - 1; }
+
+template <class Real>
+bool has_small_keys(const Hierarchy<Real>& hierarchy) {
+    const std::size_t keys = hierarchy.facts().node_count;
+    return keys > 0 && keys <= (std::uint64_t{1} << 32U);
+}
+
+}  // namespace
+
+template <int dimension, class Real>
+LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Real>& search,
+                                    std::vector<Builder> builders, const IsosurfaceOptions& options,
+                                    std::size_t first_attribute)
+    : walk_{&walk},
+      search_{&search},
+      options_{&options},
+      first_attribute_{first_attribute},
+      transitions_(builders.size()),
+      normals_{walk},
+      at_hand_{walk, first_attribute, tally_, options} {
+    const bool small_keys = has_small_keys(walk.hierarchy());
+    for (const Builder& builder : builders) surfaces_.emplace_back(builder, small_keys);
+    for (Transitions& t : transitions_) {
+        t.record.begin(at_hand_.cuts.attribute_count(), walk.hierarchy().make_elements());
+    }
+    begin(search, std::move(builders));
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
+                                      std::vector<Builder> builders) {
+    search_ = &search;
+    restart();
+    counts_of_first_walk_ = {};
+    tally_ = SimplexTally();
+    deepest_ = 0;
+    normals_.begin(false);
+    NodeGradients* const gradients = options_->normals ? &normals_.sums() : nullptr;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        surfaces_[i].begin(std::move(builders[i]), gradients, options_->verify);
+        transitions_[i].record.clear();
+        transitions_[i].drawn_below = &transitions_[i].record;
+    }
+    const bool records = dimension == 3 && search.may_stop_apart();
+    walks_.begin(records ? Pass::record : Pass::only,
+                 records ? search.bounds().finest_level() : -1);
+    at_hand_.plainly = draws_plainly();
+    bisects_ = at_hand_.plainly && !records && !surfaces_.empty() &&
+               walk_->hierarchy().facts().knows_blocks;
+    at_hand_.loads_keys = records || options_->normals || options_->cap ||
+                          (!surfaces_.empty() && surfaces_[0].names_vertices());
+}
+
+/// Does as `leader` does: its pass, its limit, and what its tasks have recorded.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::join(const LevelSet& leader) {
+    walks_.join(leader.walks_);
+    normals_.begin(options_->normals);
+    tally_ = SimplexTally(leader.tally_.limit());
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        surfaces_[i].leave_normals();
+        if (leader.surfaces_[i].counts_only()) surfaces_[i].count_only();
+        transitions_[i].drawn_below = leader.transitions_[i].drawn_below;
+    }
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
+    tally_ = SimplexTally(most);
+    for (LevelSurface<dimension>& surface : surfaces_) surface.count_only();
+}
+
+/// Whether nothing but vertices and triangles is asked for.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::draws_plainly() const {
+    return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->normals &&
+           !options_->reference;
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::run(const Executor& executor) {
+    walk(executor);
+    if (walks_.is_recording()) {
+        walks_.finish();
+        counts_of_first_walk_ = counts_;
+        restart();
+        tally_.begin_later();
+        for (Transitions& t : transitions_) t.record.finish();
+        walk(executor);
+    }
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        fill_gaps(i);
+        surfaces_[i].builder().flush();
+        surfaces_[i].set_normals();
+    }
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::walk(const Executor& executor) {
+    if (executor.concurrency() < 2) return walk_->run(*this);
+    tasks_.run(*this, executor);
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::flush() {
+    for (LevelSurface<dimension>& surface : surfaces_) surface.builder().flush();
+}
+
+/// A second walk that draws only the rest does not meet everything: the first one counts.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& result) const {
+    result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
+    result.counts.extracted = surfaces_[i].extracted();
+    result.error_bound = surfaces_[i].error_bound();
+    result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
+    result.table_bytes = normals_.memory_bytes() + walks_.memory_bytes();
+    for (const auto& surface : surfaces_) result.table_bytes += surface.memory_bytes();
+    for (const auto& t : transitions_) result.table_bytes += t.record.memory_bytes();
+}
+
+template <int dimension, class Real>
+Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
+    ++counts_.calls;
+    if ((counts_.calls & 0xFFFFU) == 0) report_progress(0, 0);
+    if (view.father == nullptr && !walks_.enters(view)) return {Visit::skip, 0};
+    const Decision decision = look(view, split);
+    counts_.visited += decision.visit != Visit::skip;
+    return decision;
+}
+
+template <int dimension, class Real>
+Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
+    const bool caps = options_->cap && walk_->boundary(view) != 0;
+    const auto [decision, bound] = search_->look(view, split, caps);
+    at_hand_.bound = bound;
+    return decision;
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::undo() {
+    --counts_.calls;
+    --counts_.visited;
+}
+
+/// Leaves around which nothing is closed record nothing. Caps also lie in leaves that no level
+/// passes through.
+template <int dimension, class Real>
+Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values, NodeMask which,
+                                         bool closed) {
+    const bool records_only = walks_.is_recording() && !walks_.draws_finest();
+    if (records_only && !tally_.limited() && !closed) return {};
+    if (options_->cap) return {0, which};
+    const NodeMask cut = search_->cut_leaves(rule, values, which);
+    const std::uint64_t before = counts_.calls;
+    add(static_cast<std::uint64_t>(std::popcount(which)),
+        static_cast<std::uint64_t>(std::popcount(cut)));
+    if ((before >> 16U) != (counts_.calls >> 16U)) report_progress(0, 0);
+    return {cut, 0};
+}
+
+/// Reports the counts so far, and these.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::report_progress(std::uint64_t calls, std::uint64_t visited) const {
+    if (!options_->progress) return;
+    TraversalCounts counts = counts_;
+    counts.calls += calls;
+    counts.visited += visited;
+    if (!options_->progress(counts)) throw Cancelled{};
+}
+
+/// Simplices that conform are walked in blocks, where nothing but triangles is asked for.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::takes(const View& view) {
+    if (!bisects_) return false;
+    const BlockTarget<dimension, Real> target{search_->levels(), surfaces_, &tally_, &deepest_};
+    draw_in_blocks(*walk_, view, *search_, target, *this);
+    return true;
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::extract(const View& view) {
+    if (view.is_leaf()) at_hand_.bound = 0;
+    const bool records = walks_.is_recording();
+    if (records && !walks_.draws_finest() && !view.closed.any && !tally_.limited()) return;
+    if (walks_.is_drawn(view)) return;
+    const bool shown = !records || view.member->hidden != Hidden::wholly;
+    const bool draws = walks_.draws(view, shown);
+    const std::size_t corners = view.corner_count();
+    const unsigned boundary = options_->cap ? walk_->boundary(view) : 0U;
+    at_hand_.loaded = false;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        const unsigned inside = search_->inside(view.value, corners, search_->levels()[i]);
+        const bool whole = inside == all_corners(corners);
+        if (inside == 0 || (whole && boundary == 0)) continue;
+        if (shown && !draws) {
+            if (!whole) tally_.add_later(1);
+            walks_.leave_for_later(view);
+        }
+        if (draws || view.closed.any) extract(i, view, inside, boundary, draws);
+    }
+}
+
+/// Records and draws one level in an element.
+/// \param inside the corners inside the level, one bit each
+/// \param boundary the faces to be capped
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::extract(std::size_t level, const View& view, unsigned inside,
+                                        unsigned boundary, bool draws) {
+    load(view, draws);
+    at_hand_.cuts.set_level(search_->levels()[level]);
+    if (walks_.is_recording() && view.closed.any) record(level, inside, boundary);
+    if (draws) draw(level, inside, boundary);
+}
+
+/// Loads the corners of the element, and adds its gradients where it is drawn.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::load(const View& view, bool draws) {
+    if (at_hand_.loaded) return;
+    at_hand_.loaded = true;
+    at_hand_.cuts.load(view, at_hand_.loads_keys || view.closed.any || view.interpolated != 0);
+    deepest_ = std::max(deepest_, view.level);
+    if (options_->normals && draws) normals_.add(at_hand_.cuts);
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::record(std::size_t level, unsigned inside, unsigned boundary) {
+    const View& view = at_hand_.cuts.view();
+    TransitionContours& record = transitions_[level].record;
+    if (inside != all_corners(view.corner_count())) {
+        const unsigned cut_faces = at_hand_.contour.table(view.shape).cut_faces(inside);
+        record_transitions(at_hand_.cuts, cut_faces, inside, record);
+    }
+    if (boundary != 0) at_hand_.cap.record(inside, record);
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigned boundary) {
+    const View& view = at_hand_.cuts.view();
+    LevelSurface<dimension>& surface = surfaces_[level];
+    auto& contour = at_hand_.contour;
+    const TransitionContours* const below =
+        walks_.is_recording() ? nullptr : transitions_[level].drawn_below;
+    const ContourTable& table = contour.table(view.shape);
+    const bool adopts = at_hand_.adoption.find(below, table.cut_faces(inside));
+    const Contour* const plain = at_hand_.plainly ? table.plain(inside) : nullptr;
+    unsigned joins = 0;
+    if (plain == nullptr || adopts) {
+        contour.begin(surface);
+        joins = at_hand_.adoption.choose(inside, table.alternating(inside));
+    }
+    if (plain != nullptr && !(adopts && contour.chained())) {
+        if (surface.counts_only()) return tally_.add(contour.simplices_of(*plain));
+        contour.draw_plainly(surface, *plain, inside);
+        return end_element(surface);
+    }
+    if (inside != all_corners(view.corner_count())) contour.draw(inside, joins);
+    if (boundary != 0) at_hand_.cap.draw(inside, below);
+    if (contour.begun()) end_element(surface);
+    if (surface.counts_only()) surface.forget_element();
+}
+
+/// Counts an element that was drawn and the error it has, and hands on what is full.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
+    surface.add_extracted(1);
+    surface.raise_error_bound(error_bound(at_hand_.cuts, *search_, at_hand_.bound));
+    if (!surface.counts_only()) surface.builder().flush_if_full();
+}
+
+/// Draws the polygons in faces that their two sides divide in different directions.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::fill_gaps(std::size_t level) {
+    LevelSurface<dimension>& surface = surfaces_[level];
+    const TransitionContours& record = transitions_[level].record;
+    std::vector<SurfaceCut> loop;
+    for (const TransitionContours::Gap& gap : record.gaps()) {
+        if (surface.counts_only()) surface.forget_element();
+        loop.clear();
+        for (const TransitionContours::Index v : gap.loop) loop.push_back(record.cut(v));
+        at_hand_.contour.fill_gap(surface, loop, record.element(gap.owner), gap.owner.shape,
+                                  gap.owner.level);
+    }
+}
+
+template class LevelSet<2, float>;
+template class LevelSet<2, double>;
+template class LevelSet<3, float>;
+template class LevelSet<3, double>;
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Draws level sets while a hierarchy is traversed; isosurface.hpp says what holds of the result.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <levels/block_level_set.hpp>
+#include <levels/cap_contour.hpp>
+#include <levels/level_tasks.hpp>
+#include <levels/normals.hpp>
+#include <levels/transitions.hpp>
+#include <levels/two_walks.hpp>
+#include <walk/frontier.hpp>
+
+namespace nestgrid::engine {
+
+/// Thrown where options.progress ends a walk.
+struct Cancelled {};
+
+/// Draws several levels in one traversal; each has a builder of its own.
+template <int dimension, class Real>
+class LevelSet final : public TaskVisitor<Real>, private BlockCounts {
+public:
+    using View = ElementView<Real>;
+    using Builder = SurfaceBuilder<dimension>;
+    /// What the walk must carry.
+    static constexpr Needs needs{.values = true, .keys = true, .positions = true, .closed = true};
+
+    /// All arguments are borrowed but the builders, of which there is one for each level.
+    /// \param first_attribute the first of the components that vertices carry
+    LevelSet(const Walk<Real>& walk, const LevelSearch<Real>& search, std::vector<Builder> builders,
+             const IsosurfaceOptions& options, std::size_t first_attribute);
+
+    /// Begins anew with other levels, as many as before, and keeps its memory.
+    void begin(const LevelSearch<Real>& search, std::vector<Builder> builders);
+    /// Counts simplices and draws nothing.
+    /// \param most run() throws OverLimit where there are more
+    void count_only(std::uint64_t most);
+
+    /// Draws everything.
+    /// \throw Cancelled, OverLimit, and what the grid, the field and the sinks throw
+    void run(const Executor& executor);
+    /// Hands all that is drawn to the sinks, also where a walk was cancelled.
+    void flush();
+    /// Number of simplices drawn so far.
+    std::uint64_t simplices() const { return tally_.drawn(); }
+    /// Sets what is known beside surface i.
+    void report(std::size_t i, Isosurface<dimension>& result) const;
+
+    // The walk asks (visitor.hpp, frontier.hpp).
+    Decision inspect(const View& view, const Split& split) override;
+    void extract(const View& view) override;
+    NodeMask children(const View& view) override { return walks_.children(view); }
+    Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
+    /// Hidden elements record what they would draw on faces around them.
+    bool sees_hidden() const override { return walks_.is_recording(); }
+    bool takes(const View& view) override;
+    Decision look(const View& view, const Split& split) override;
+    void undo() override;
+    void restart() override { counts_ = {}; }
+
+private:
+    friend class LevelTasks<dimension, Real>;
+
+    void join(const LevelSet& leader);
+    void walk(const Executor& executor);
+    void extract(std::size_t level, const View& view, unsigned inside, unsigned boundary,
+                 bool draws);
+    void record(std::size_t level, unsigned inside, unsigned boundary);
+    void draw(std::size_t level, unsigned inside, unsigned boundary);
+    void end_element(LevelSurface<dimension>& surface);
+    void fill_gaps(std::size_t level);
+    void load(const View& view, bool draws);
+    bool draws_plainly() const;
+    void report_progress(std::uint64_t calls, std::uint64_t visited) const;
+    void tick(std::uint64_t calls, std::uint64_t visited) override {
+        report_progress(calls, visited);
+    }
+    void add(std::uint64_t calls, std::uint64_t visited) override {
+        counts_.calls += calls;
+        counts_.visited += visited;
+    }
+
+    /// What elements record on closed faces for one level.
+    struct Transitions {
+        TransitionContours record;
+        const TransitionContours* drawn_below = nullptr;  // those of all tasks
+    };
+    /// The element at hand.
+    struct AtHand {
+        ElementCuts<Real> cuts;
+        ElementContour<dimension, Real> contour;
+        TransitionAdoption<dimension, Real> adoption;
+        CapContour<dimension, Real> cap;
+        Real bound = 0;  // how far U may leave the range of its corners
+        bool loaded = false;
+        bool loads_keys = false;
+        bool plainly = false;  // nothing but vertices and triangles is asked for
+
+        AtHand(const Walk<Real>& walk, std::size_t first_attribute, SimplexTally& tally,
+               const IsosurfaceOptions& options)
+            : cuts(walk, first_attribute),
+              contour(cuts, tally, options),
+              adoption(cuts, contour),
+              cap(cuts, contour) {}
+    };
+
+    const Walk<Real>* walk_;
+    const LevelSearch<Real>* search_;
+    const IsosurfaceOptions* options_;
+    std::size_t first_attribute_;
+    std::vector<LevelSurface<dimension>> surfaces_;  // one a level
+    std::vector<Transitions> transitions_;           // likewise
+    TwoWalks<Real> walks_;
+    SimplexTally tally_;
+    Normals<Real> normals_;
+    AtHand at_hand_;
+    TraversalCounts counts_;
+    TraversalCounts counts_of_first_walk_;
+    int deepest_ = 0;
+    bool bisects_ = false;  // bisections are walked in blocks
+    LevelTasks<dimension, Real> tasks_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/level_tasks.hpp>
+
+#include <algorithm>
+
+#include <levels/level_set.hpp>
+
+namespace nestgrid::engine {
+
+template <int dimension, class Real>
+void LevelTasks<dimension, Real>::run(LevelSet<dimension, Real>& leader, const Executor& executor) {
+    // Enough parts that threads end together, and few entries, for each begins anew.
+    const std::size_t wanted = 16 * executor.concurrency();
+    const Frontier<Real> frontier(*leader.walk_, leader, 2 * wanted);
+    const std::size_t entries = frontier.entry_count();
+    const std::size_t parts = std::min(entries, wanted);
+    silent_ = *leader.options_;
+    silent_.progress = {};
+    std::vector<std::unique_ptr<Task>> tasks(parts);
+    executor.run(
+        parts,
+        [&](std::size_t i) {
+            tasks[i] = begin(leader);
+            frontier.run(*leader.walk_, i * entries / parts, (i + 1) * entries / parts,
+                         *tasks[i]->draws);
+        },
+        [&](std::size_t i) {
+            add(*tasks[i], leader);
+            const std::scoped_lock lock(mutex_);
+            idle_.push_back(std::move(tasks[i]));
+        });
+}
+
+template <int dimension, class Real>
+auto LevelTasks<dimension, Real>::begin(const LevelSet<dimension, Real>& leader)
+    -> std::unique_ptr<Task> {
+    std::unique_ptr<Task> task;
+    {
+        const std::scoped_lock lock(mutex_);
+        if (!idle_.empty()) {
+            task = std::move(idle_.back());
+            idle_.pop_back();
+        }
+    }
+    if (!task) {
+        task = std::make_unique<Task>();
+        task->parts.resize(leader.surfaces_.size());
+        for (auto& part : task->parts) {
+            part.surface.elements = leader.walk_->hierarchy().make_elements();
+        }
+    }
+    std::vector<SurfaceBuilder<dimension>> builders;
+    for (std::size_t i = 0; i < leader.surfaces_.size(); ++i) {
+        const auto& builder = leader.surfaces_[i].builder();
+        builders.emplace_back(task->parts[i], builder.shares_vertices(), builder.keeps_elements());
+        builders.back().clear();
+    }
+    if (task->draws) {
+        task->draws->begin(*leader.search_, std::move(builders));
+    } else {
+        task->draws = std::make_unique<LevelSet<dimension, Real>>(
+            *leader.walk_, *leader.search_, std::move(builders), silent_, leader.first_attribute_);
+    }
+    task->draws->join(leader);
+    return task;
+}
+
+template <int dimension, class Real>
+void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real>& leader) {
+    const LevelSet<dimension, Real>& drawn = *task.draws;
+    leader.add(drawn.counts_.calls, drawn.counts_.visited);
+    leader.deepest_ = std::max(leader.deepest_, drawn.deepest_);
+    leader.tally_.add(drawn.tally_);
+    leader.walks_.append(drawn.walks_);
+    leader.normals_.append(drawn.normals_);
+    for (std::size_t i = 0; i < leader.surfaces_.size(); ++i) {
+        LevelSurface<dimension>& surface = leader.surfaces_[i];
+        surface.add_extracted(drawn.surfaces_[i].extracted());
+        surface.raise_error_bound(drawn.surfaces_[i].error_bound());
+        if (leader.walks_.is_recording()) {
+            leader.transitions_[i].record.append(drawn.transitions_[i].record);
+        }
+        if (surface.counts_only()) continue;
+        surface.add_part(task.parts[i]);
+        surface.builder().flush_if_full();
+    }
+    leader.report_progress(0, 0);
+}
+
+template class LevelTasks<2, float>;
+template class LevelTasks<2, double>;
+template class LevelTasks<3, float>;
+template class LevelTasks<3, double>;
+
+}  // namespace nestgrid::engine

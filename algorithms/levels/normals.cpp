@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <levels/normals.hpp>
+
+#include <nestgrid/interpolate.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+using Gradients = std::array<Point, max_corners>;
+
+template <class Real>
+Gradients own_gradients(const Walk<Real>& walk, const ElementView<Real>& view) {
+    Gradients g{};
+    walk.gradients(view, std::span(g).first(view.corner_count()));
+    return g;
+}
+
+template <class Real>
+Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, const Rule& rule,
+                    std::size_t node);
+
+/// Section 8: the gradient as a vector-valued function, projected with the same S.
+template <class Real>
+Point projected_gradient(const Walk<Real>& walk, const ElementView<Real>& view,
+                         std::size_t corner) {
+    if ((view.interpolated >> corner & 1U) != 0 && view.father != nullptr) {
+        const Child& child = view.made_by->children[view.child];
+        return node_gradient(walk, *view.father, *view.made_by, child.corner[corner]);
+    }
+    return own_gradients(walk, view)[corner];
+}
+
+/// The projected gradient at a corner or new node of a split that interpolates it.
+template <class Real>
+Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, const Rule& rule,
+                    std::size_t node) {
+    const std::size_t corners = father.corner_count();
+    if (node < corners) return projected_gradient(walk, father, node);
+    const Stencil& stencil = rule.new_nodes[node - corners];
+    Gradients parent;
+    Stencil local = stencil;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        parent[i] = node_gradient(walk, father, rule, stencil.parent[i]);
+        local.parent[i] = static_cast<std::uint8_t>(i);
+    }
+    return detail::interpolate(local, parent.data());
+}
+
+}  // namespace
+
+template <class Real>
+void Normals<Real>::begin(bool logs) {
+    logs_ = logs;
+    sums_.clear();
+    log_.clear();
+}
+
+template <class Real>
+void Normals<Real>::add(const ElementCuts<Real>& element) {
+    const View& view = element.view();
+    const std::size_t corners = view.corner_count();
+    const std::size_t components = element.walk().components();
+    Gradients exact;  // asked for once, where a node is met for the first time
+    bool asked = false;
+    std::array<double, max_corners> value{};
+    for (std::size_t i = 0; i < corners; ++i) value[i] = view.value[i * components];
+    for (std::size_t i = 0; i < corners; ++i) {
+        const Slot slot = sums_.slot(element.keys()[i]);
+        if (!own_) {
+            add(slot, corner_gradient(view.topology(), element.positions(), value, i));
+        } else if (!sums_.known(slot)) {
+            const bool interpolated = (view.interpolated >> i & 1U) != 0;
+            if (!interpolated && !asked) {
+                exact = own_gradients(element.walk(), view);
+                asked = true;
+            }
+            add(slot, {interpolated ? projected_gradient(element.walk(), view, i) : exact[i], 1});
+        }
+    }
+}
+
+/// The field's own gradients are the same from every element, and added once.
+template <class Real>
+void Normals<Real>::add(Slot slot, const CornerGradient& gradient) {
+    if (own_ && sums_.known(slot)) return;
+    sums_.add(slot, gradient);
+    if (logs_) log_.emplace_back(slot, gradient);
+}
+
+template <class Real>
+void Normals<Real>::append(const Normals& other) {
+    std::vector<Slot> slot;
+    for (const NodeKey node : other.sums_.nodes()) slot.push_back(sums_.slot(node));
+    for (const auto& [at, gradient] : other.log_) add(slot[at], gradient);
+}
+
+template class Normals<float>;
+template class Normals<double>;
+
+}  // namespace nestgrid::engine

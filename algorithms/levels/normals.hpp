@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Gradients of the extracted elements, summed up at nodes, for normals (paper, section 8).
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <levels/element_cuts.hpp>
+#include <surfaces/node_gradients.hpp>
+
+namespace nestgrid::engine {
+
+/// Takes the gradients of the field where it has own ones, else those of the drawn elements.
+template <class Real>
+class Normals {
+public:
+    explicit Normals(const Walk<Real>& walk) : own_{walk.hierarchy().offers(Feature::gradients)} {}
+
+    /// Begins anew with the memory of the sums before.
+    /// \param logs whether another one will repeat what is added here (append())
+    void begin(bool logs);
+    /// Adds the gradients at the corners of an element that is drawn.
+    void add(const ElementCuts<Real>& element);
+    /// Adds what another one has logged, in its order.
+    void append(const Normals& other);
+
+    NodeGradients& sums() { return sums_; }
+    std::size_t memory_bytes() const { return sums_.memory_bytes(); }
+
+private:
+    using Slot = NodeGradients::Index;
+    using View = ElementView<Real>;
+
+    void add(Slot slot, const CornerGradient& gradient);
+
+    bool own_;  // the field has gradients
+    bool logs_ = false;
+    NodeGradients sums_;
+    std::vector<std::pair<Slot, CornerGradient>> log_;
+};
+
+}  // namespace nestgrid::engine

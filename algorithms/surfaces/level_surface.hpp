@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The surface of one level while it is drawn.
+#pragma once
+
+#include <surfaces/node_gradients.hpp>
+#include <surfaces/subtree_vertices.hpp>
+#include <surfaces/surface_builder.hpp>
+#include <surfaces/vertex_numbers.hpp>
+
+namespace nestgrid::engine {
+
+/// Names vertices, numbers those that are new, and hands all to a builder. A vertex with a known
+/// name gets the number it has, where the builder shares vertices; else every vertex is new.
+template <int dimension>
+class LevelSurface {
+public:
+    using Builder = SurfaceBuilder<dimension>;
+    using Simplex = typename Surface<dimension>::Simplex;
+    using Number = std::uint32_t;
+    using Name = VertexNumbers::Name;
+    static constexpr Number none = std::numeric_limits<Number>::max();
+
+    /// \param small_keys all node keys are below 2^32
+    LevelSurface(Builder builder, bool small_keys)
+        : builder_{std::move(builder)}, numbers_{small_keys} {}
+
+    /// Begins an empty surface with the memory of the one before.
+    /// \param gradients at nodes, where normals are wanted here; else null
+    void begin(Builder builder, NodeGradients* gradients, bool verify);
+    /// Makes no normals: another surface makes those of this part.
+    void leave_normals() { gradients_ = nullptr; }
+    /// Counts from now on: simplices are forgotten by forget_element().
+    void count_only() { counts_only_ = true; }
+    bool counts_only() const { return counts_only_; }
+    void forget_element() { builder_.clear(); }
+
+    Builder& builder() { return builder_; }
+    const Builder& builder() const { return builder_; }
+    SubtreeVertices& within() { return within_; }
+    VertexNumbers& numbers() { return numbers_; }
+    bool verifies() const { return verifies_; }
+
+    /// Whether vertices have names.
+    bool names_vertices() const { return builder_.shares_vertices() && !counts_only_; }
+    Name name(const KeyPair& nodes) const { return numbers_.name(nodes); }
+    /// The vertex with a name may be asked for soon.
+    void prefetch(const Name& name) const { numbers_.prefetch(name); }
+
+    /// The vertex with a name; make() returns its SurfaceCut where it is new.
+    /// \throw GridError where vertices are verified and make() puts a known one elsewhere
+    template <class Make>
+    NESTGRID_INLINE Number vertex(const Name& name, Make&& make) {
+        bool is_new = false;
+        const Number number = numbers_.find(name, [&] {
+            is_new = true;
+            return add(make());
+        });
+        if (verifies_ && !is_new) verify(number, make().x);
+        return number;
+    }
+    /// The vertex between two nodes, which is new where vertices have no names.
+    template <class Make>
+    Number vertex_between(const KeyPair& nodes, Make&& make) {
+        return names_vertices() ? vertex(name(nodes), make) : add(make());
+    }
+    /// Adds a vertex on an edge.
+    Number add(const SurfaceCut& cut);
+    /// Adds vertices inside one element, or known to one task alone. \return the first one
+    Number add_unnamed(std::span<const Point> x, std::span<const double> attributes);
+    /// \throw GridError where a vertex lies elsewhere
+    void verify(Number number, const Point& x) const;
+    Point position(Number number) const { return builder_.position(number); }
+
+    NESTGRID_INLINE void add_simplex(const Simplex& corners, std::span<const Point> reference) {
+        builder_.add_simplex(corners, reference);
+        if (gradients_ != nullptr) add_area(corners);
+    }
+    /// Puts a part behind what is drawn. Its vertices get their numbers in the order in which it
+    /// has them; those that other parts know keep theirs.
+    void add_part(const SurfacePart<dimension>& part);
+
+    /// Counts elements that contribute to the surface.
+    void add_extracted(std::uint64_t more) { extracted_ += more; }
+    std::uint64_t extracted() const { return extracted_; }
+    /// Says that U differs from the level by up to this on the surface.
+    void raise_error_bound(double bound) { error_bound_ = std::max(error_bound_, bound); }
+    double error_bound() const { return error_bound_; }
+
+    /// Makes the normals, once all is drawn.
+    void set_normals();
+    std::size_t memory_bytes() const {
+        return numbers_.memory_bytes() + within_.memory_bytes() + where_.capacity() * sizeof(Where);
+    }
+
+private:
+    struct Where {  // the nodes a vertex lies between, for its normal
+        Number low;
+        Number high;
+        double fraction;
+        Point around{0, 0, 0};  // area vectors of the triangles at it
+    };
+
+    void add_area(const Simplex& corners);
+    Point normal(const Where& where) const;
+
+    Builder builder_;
+    VertexNumbers numbers_;
+    SubtreeVertices within_;  // subtrees of bisections
+    NodeGradients* gradients_ = nullptr;
+    std::vector<Where> where_;
+    std::uint64_t extracted_ = 0;
+    double error_bound_ = 0;
+    bool verifies_ = false;
+    bool counts_only_ = false;
+};
+
+}  // namespace nestgrid::engine
