@@ -32,8 +32,10 @@ public:
         }
         return 0;
     }
-    NodeMask new_values(const ElementOf<Grid>& e, NodeMask which, std::span<double> out) const {
-        const auto from = values(out.size(), [&](auto to) { field_->new_values(e, which, to); });
+    NodeMask new_values(const ElementOf<Grid>& e, NodeMask which, std::span<double> out,
+                        Context<Grid>& context) const {
+        const auto from = values(
+            out.size(), [&](auto to) { detail::call_new_values(*field_, context, e, which, to); });
         for (std::size_t n = 0; n * components < out.size(); ++n) {
             std::copy_n(from.data() + n * data, data, out.data() + n * components + 1);
         }
