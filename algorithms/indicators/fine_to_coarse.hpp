@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The sweep that saturates a function of nodes (paper, section 2):
-//     eta*(x) = max( eta(x), eta*(y) for all nodes y made in elements with the corner x ).
-// A parent of y that is a new node of the same split is to y as a corner is.
+//     eta*(x) = max( eta(x), factor * (eta*(y) + slope * |x - y|) )
+// over all nodes y made in elements with the corner x. Factor 1 and slope 0 make S = (eta* <=
+// epsilon) saturated; a slope does so for thresholds that vary in space with at most that slope, a
+// factor for weights between epsilon and factor * epsilon. |x - y| is rounded up to the greatest
+// distance between a corner and a new node of the split. A parent of y that is a new node of the
+// same split is to y as a corner is.
 //
 // A child that is split again has a new node of its father for a corner (find_violation() of rules
 // sees to it), so that the sweep reaches a node from all finer ones through one split at a time.
@@ -22,41 +26,42 @@ namespace nestgrid::engine {
 /// Raises the corners of one split, and the new nodes that are parents of others, to what its new
 /// nodes have.
 /// \param of numbers of the corners and, behind them, of the new nodes
-/// \param below below(node) is the number that a new node hands to its parents
+/// \param of_node of_node(node) is the number of a new node
+/// \param hand hand(number) is what a new node with that number hands to its parents; monotone
 /// \param raise raise(node, number) raises a node to a number and returns whether that changed it
 /// \param greatest of all new nodes; set
 /// \return whether anything has changed
-template <class Number, class Below, class Raise>
-bool raise_parents(const Rule& rule, std::span<const std::size_t> of, const Below& below,
-                   const Raise& raise, Number& greatest) {
+template <class Number, class OfNode, class Hand, class Raise>
+bool raise_parents(const Rule& rule, std::span<const std::size_t> of, const OfNode& of_node,
+                   const Hand& hand, const Raise& raise, Number& greatest) {
     using std::max;
     bool changed = false;
     const auto corners = static_cast<std::size_t>(rule.corner_count());
     const std::span<const std::size_t> made = of.subspan(corners);
     for (std::size_t n = made.size(); n-- > 0;) {
-        const Number number = below(made[n]);
+        const Number number = of_node(made[n]);
         greatest = max(greatest, number);
         if (rule.steps == 1) continue;
         const Stencil& stencil = rule.new_nodes[n];
         for (std::size_t i = 0; i < stencil.count; ++i) {
             if (stencil.parent[i] < corners) continue;
-            changed |= raise(of[stencil.parent[i]], number);
+            changed |= raise(of[stencil.parent[i]], hand(number));
         }
     }
-    for (const std::size_t corner : of.first(corners)) changed |= raise(corner, greatest);
+    const Number handed = hand(greatest);
+    for (const std::size_t corner : of.first(corners)) changed |= raise(corner, handed);
     return changed;
 }
 
-/// Calls sweep_split(rule, numbers) for all splits, fine to coarse, until it changes nothing.
-/// \param once whether one round is known to be enough
+/// Calls sweep_split(rule, numbers, reach) for all splits, fine to coarse, until it changes
+/// nothing. \param once whether one round is known to be enough
 template <class SweepSplit>
 void sweep(const SplitsByLevel& splits, bool once, const SweepSplit& sweep_split) {
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t level = splits.levels(); level-- > 0;) {
-            splits.for_each(level, [&](const Rule& rule, std::span<const std::size_t> of) {
-                changed |= sweep_split(rule, of);
-            });
+            splits.for_each(level, [&](const Rule& rule, std::span<const std::size_t> of,
+                                       float reach) { changed |= sweep_split(rule, of, reach); });
         }
         changed = changed && !once;
     }
@@ -87,15 +92,16 @@ public:
     }
 
     void saturate() {
-        const auto below = [&](std::size_t node) { return values_[node]; };
+        const auto of_node = [&](std::size_t node) { return values_[node]; };
+        const auto hand = [](const Number& number) { return number; };
         const auto raise = [&](std::size_t node, const Number& to) {
             const bool raises = values_[node] < to;
             if (raises) values_[node] = to;
             return raises;
         };
-        sweep(splits_, false, [&](const Rule& rule, std::span<const std::size_t> of) {
+        sweep(splits_, false, [&](const Rule& rule, std::span<const std::size_t> of, float) {
             Number greatest = least_;
-            return raise_parents(rule, of, below, raise, greatest);
+            return raise_parents(rule, of, of_node, hand, raise, greatest);
         });
     }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/indicator.hpp>
 
+#include <cmath>
 #include <string>
 
 #include <indicators/preroll.hpp>
@@ -33,32 +34,44 @@ void PrerollFacts::refuse(double value) {
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy,
                                              const LeafErrors& leaf_errors,
-                                             const Executor& executor) {
+                                             const Executor& executor, const Spread& spread)
+    : spread_{spread} {
     prepare(hierarchy, leaf_errors, executor);
 }
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy,
                                              const LeafErrors& leaf_errors,
-                                             const Executor& executor) {
+                                             const Executor& executor, const Spread& spread)
+    : spread_{spread} {
     prepare(hierarchy, leaf_errors, executor);
 }
 
 template <class Real>
 void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
                                     const Executor& executor) {
+    if (!(spread_.factor >= 1) || !(spread_.slope >= 0) || !std::isfinite(spread_.factor) ||
+        !std::isfinite(spread_.slope)) {
+        throw InvalidInput(
+            "an indicator is spread by a factor of at least 1 and a slope of at "
+            "least 0, not by " +
+            std::to_string(spread_.factor) + " and " + std::to_string(spread_.slope));
+    }
     epoch_ = hierarchy.epoch();
     own_errors_ = static_cast<bool>(leaf_errors);
     if (engine::hanging_nodes_unknown(hierarchy)) {
         hanging_ = engine::derive_hanging_nodes(hierarchy);
     }
-    if (hierarchy.facts().knows_stars && !own_errors_) {
+    const bool measures = spread_.slope > 0;
+    const bool plain = spread_.factor == 1 && !measures && !own_errors_;
+    if (hierarchy.facts().knows_stars && plain) {
         facts_ = engine::sweep_stars(hierarchy, entries_);
         node_count_ = hierarchy.facts().node_count;
         return;
     }
-    const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true}, hanging());
-    engine::Sweeps sweeps(hierarchy.facts().node_count, own_errors_);
-    facts_ = engine::walk_preroll(walk, leaf_errors, sweeps, executor);
+    const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true, .positions = measures},
+                                  hanging());
+    engine::Sweeps sweeps(hierarchy.facts().node_count, own_errors_, spread_);
+    facts_ = engine::walk_preroll(walk, leaf_errors, measures, sweeps, executor);
     sweeps.saturate();
     facts_.one_level_a_node = sweeps.one_level_a_node();
     node_count_ = sweeps.node_count();

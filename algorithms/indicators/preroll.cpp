@@ -23,8 +23,9 @@ class PrerollVisitor final : public TaskVisitor<Real> {
 public:
     using View = ElementView<Real>;
 
-    PrerollVisitor(const Walk<Real>& walk, const LeafErrors& leaf_errors, Receiver& receiver)
-        : walk_{&walk}, leaf_errors_{&leaf_errors}, receiver_{&receiver} {}
+    PrerollVisitor(const Walk<Real>& walk, const LeafErrors& leaf_errors, bool measures,
+                   Receiver& receiver)
+        : walk_{&walk}, leaf_errors_{&leaf_errors}, measures_{measures}, receiver_{&receiver} {}
 
     const detail::PrerollFacts& facts() const { return facts_; }
 
@@ -57,7 +58,7 @@ public:
             facts_.add_value(static_cast<double>(value[(corners + n) * stride]), limit_);
         }
         std::ranges::copy(split.keys, keys_.data() + corners);
-        receiver_->split({split.rule, view.level, split.outside,
+        receiver_->split({split.rule, view.level, split.outside, reach_of(view, rule),
                           std::span<const NodeKey>(keys_).first(corners + split.keys.size())},
                          [&](std::size_t n) {
                              if ((split.constrained >> n & 1U) != 0) return 0.0F;
@@ -89,6 +90,22 @@ private:
         }
     }
 
+    /// The greatest distance between a corner and a new node, rounded up; 0 where nobody asks.
+    float reach_of(const View& view, const Rule& rule) const {
+        if (!measures_) return 0;
+        std::array<Point, max_corners> corner;
+        std::array<Point, max_new_nodes> made;
+        walk_->corners(view, nullptr, corner.data());
+        walk_->new_positions(view, rule, std::span(made).first(rule.new_nodes.size()));
+        double greatest = 0;
+        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+            for (std::size_t k = 0; k < view.corner_count(); ++k) {
+                greatest = std::max(greatest, norm(made[n] - corner[k]));
+            }
+        }
+        return float_above(greatest);
+    }
+
     float error_of(const View& leaf) const {
         const double error = (*leaf_errors_)(leaf.element());
         if (!(error >= 0)) {
@@ -117,6 +134,7 @@ private:
 
     const Walk<Real>* walk_;
     const LeafErrors* leaf_errors_;
+    bool measures_;  // distances count
     Receiver* receiver_;
     detail::PrerollFacts facts_;
     std::array<NodeKey, max_corners + max_new_nodes> keys_;
@@ -125,14 +143,14 @@ private:
 
 template <class Real>
 detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const LeafErrors& leaf_errors,
-                                       Sweeps& sweeps, const Executor& executor) {
+                                       bool measures, Sweeps& sweeps, const Executor& executor) {
     struct Part {
         PrerollLog log;
         detail::PrerollFacts facts;
     };
     using LoggingVisitor = PrerollVisitor<Real, PrerollLog>;
     PrerollLog above;
-    LoggingVisitor visitor(walk, leaf_errors, above);
+    LoggingVisitor visitor(walk, leaf_errors, measures, above);
     const std::size_t wanted = 64 * executor.concurrency();  // short logs
     const Frontier<Real> frontier(walk, visitor, wanted);
     above.repeat(sweeps);
@@ -143,7 +161,7 @@ detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const LeafErrors&
         parts.size(),
         [&](std::size_t i) {
             parts[i] = std::make_unique<Part>();
-            LoggingVisitor below(walk, leaf_errors, parts[i]->log);
+            LoggingVisitor below(walk, leaf_errors, measures, parts[i]->log);
             frontier.run(walk, i * entries / parts.size(), (i + 1) * entries / parts.size(), below);
             parts[i]->facts = below.facts();
         },
@@ -159,18 +177,18 @@ detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const LeafErrors&
 
 template <class Real>
 detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const LeafErrors& leaf_errors,
-                                  Sweeps& sweeps, const Executor& executor) {
+                                  bool measures, Sweeps& sweeps, const Executor& executor) {
     if (executor.concurrency() > 1) {
-        return walk_with_threads(walk, leaf_errors, sweeps, executor);
+        return walk_with_threads(walk, leaf_errors, measures, sweeps, executor);
     }
-    PrerollVisitor<Real, Sweeps> visitor(walk, leaf_errors, sweeps);
+    PrerollVisitor<Real, Sweeps> visitor(walk, leaf_errors, measures, sweeps);
     walk.run(visitor);
     return visitor.facts();
 }
 
-template detail::PrerollFacts walk_preroll(const Walk<float>&, const LeafErrors&, Sweeps&,
+template detail::PrerollFacts walk_preroll(const Walk<float>&, const LeafErrors&, bool, Sweeps&,
                                            const Executor&);
-template detail::PrerollFacts walk_preroll(const Walk<double>&, const LeafErrors&, Sweeps&,
+template detail::PrerollFacts walk_preroll(const Walk<double>&, const LeafErrors&, bool, Sweeps&,
                                            const Executor&);
 
 }  // namespace nestgrid::engine

@@ -15,9 +15,10 @@ namespace nestgrid::engine {
 /// its coarse leaves.
 /// \param walk with values and keys
 /// \param leaf_errors empty where leaves have none
+/// \param measures whether distances count; then the walk must have positions
 /// \throw InvalidInput where a value or an error is not usable
 template <class Real>
 detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const LeafErrors& leaf_errors,
-                                  Sweeps& sweeps, const Executor& executor);
+                                  bool measures, Sweeps& sweeps, const Executor& executor);
 
 }  // namespace nestgrid::engine

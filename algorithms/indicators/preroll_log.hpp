@@ -14,12 +14,12 @@ class PrerollLog {
 public:
     template <class Offset>
     void split(const MetSplit& s, Offset&& offset) {
-        items_.push_back({s.rule, s.level, s.outside, s.keys.size()});
+        items_.push_back({s.rule, s.level, s.outside, s.reach, s.keys.size()});
         keys_.insert(keys_.end(), s.keys.begin(), s.keys.end());
         for (std::size_t n = 0; n < s.rule->new_nodes.size(); ++n) numbers_.push_back(offset(n));
     }
     void leaf(std::span<const NodeKey> corners, float error) {
-        items_.push_back({nullptr, 0, 0, corners.size()});
+        items_.push_back({nullptr, 0, 0, 0, corners.size()});
         keys_.insert(keys_.end(), corners.begin(), corners.end());
         numbers_.push_back(error);
     }
@@ -34,7 +34,7 @@ public:
                 sweeps.leaf(of, numbers.front());
                 numbers = numbers.subspan(1);
             } else {
-                sweeps.split({i.rule, i.level, i.outside, of},
+                sweeps.split({i.rule, i.level, i.outside, i.reach, of},
                              [&](std::size_t n) { return numbers[n]; });
                 numbers = numbers.subspan(i.rule->new_nodes.size());
             }
@@ -48,6 +48,7 @@ private:
         const Rule* rule;
         int level;
         NodeMask outside;
+        float reach;
         std::size_t keys;
     };
     std::vector<Item> items_;

@@ -25,11 +25,18 @@ public:
     /// \param nodes how many there are; 0 where that is not known yet and no more than 2^32
     explicit SplitsByLevel(std::size_t nodes) : wide_{nodes > narrow} {}
 
+    /// \param reach the greatest distance between a corner and a new node; 0 for all splits where
+    ///        distances do not count
     /// \throw GridError for more nodes than were said
-    void add(std::size_t level, const Rule& rule, std::span<const std::size_t> nodes) {
+    void add(std::size_t level, const Rule& rule, std::span<const std::size_t> nodes,
+             float reach = 0) {
         if (level >= levels_.size()) levels_.resize(level + 1);
         Level& to = levels_[level];
         to.rules.push_back(&rule);
+        if (reach > 0) {
+            to.reach.resize(to.rules.size() - 1);
+            to.reach.push_back(reach);
+        }
         std::array<std::uint32_t, max_corners + max_new_nodes> low;
         std::uint64_t all = 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -45,14 +52,15 @@ public:
 
     std::size_t levels() const { return levels_.size(); }
 
-    /// Calls function(rule, numbers) for the splits of elements on a level.
+    /// Calls function(rule, numbers, reach) for the splits of elements on a level.
     template <class Function>
     void for_each(std::size_t level, Function&& function) const {
         const Level& from = levels_[level];
         auto low = from.low.begin();
         auto high = from.high.begin();
         std::array<std::size_t, max_corners + max_new_nodes> nodes;
-        for (const Rule* rule : from.rules) {
+        for (std::size_t s = 0; s < from.rules.size(); ++s) {
+            const Rule* const rule = from.rules[s];
             const std::size_t count =
                 static_cast<std::size_t>(rule->corner_count()) + rule->new_nodes.size();
             for (std::size_t i = 0; i < count; ++i) {
@@ -60,7 +68,8 @@ public:
                 if (wide_) node |= std::uint64_t{*high++} << 32U;
                 nodes[i] = static_cast<std::size_t>(node);
             }
-            function(*rule, std::span<const std::size_t>(nodes).first(count));
+            function(*rule, std::span<const std::size_t>(nodes).first(count),
+                     s < from.reach.size() ? from.reach[s] : 0.0F);
         }
     }
 
@@ -69,6 +78,7 @@ private:
         std::deque<const Rule*> rules;
         std::deque<std::uint32_t> low;
         std::deque<std::uint8_t> high;
+        std::deque<float> reach;  // of the first splits; 0 for the others
     };
     bool wide_;
     std::vector<Level> levels_;

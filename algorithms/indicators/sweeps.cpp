@@ -13,14 +13,24 @@ void Sweeps::leaf(std::span<const NodeKey> corners, float error) {
 
 void Sweeps::saturate() {
     sweep(splits_, one_level_ && one_step_,
-          [&](const Rule& rule, std::span<const std::size_t> of) { return sweep_split(rule, of); });
+          [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
+              return sweep_split(rule, of, reach);
+          });
     for (Node& node : nodes_) node.entry.bound = std::max(node.entry.bound, node.bound());
+}
+
+/// factor * (stop + slope * reach), rounded up.
+inline std::uint16_t Sweeps::hand_stop(std::uint16_t stop, float reach) const {
+    if (spread_.factor == 1 && spread_.slope == 0) return stop;
+    const double to = static_cast<double>(bfloat16_value(stop)) + spread_.slope * reach;
+    return bfloat16_above(float_above(spread_.factor * to));
 }
 
 /// \param of numbers of the corners and, behind them, of the new nodes
 /// \return whether anything has changed
-inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> of) {
-    const auto below = [&](std::size_t node) {
+inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> of, float reach) {
+    const auto hand = [&](const Below& b) { return Below{hand_stop(b.stop, reach), b.bound}; };
+    const auto of_node = [&](std::size_t node) {
         return Below{nodes_[node].entry.stop, nodes_[node].bound()};
     };
     const auto raise = [&](std::size_t node, const Below& to) {
@@ -31,7 +41,7 @@ inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> o
         return changed;
     };
     Below greatest;
-    const bool changed = raise_parents(rule, of, below, raise, greatest);
+    const bool changed = raise_parents(rule, of, of_node, hand, raise, greatest);
     if (rule.inside != no_new_node) {
         Entry& within =
             nodes_[of[static_cast<std::size_t>(rule.corner_count()) + rule.inside]].entry;

@@ -21,6 +21,7 @@ struct MetSplit {
     const Rule* rule;
     int level;
     NodeMask outside;               ///< see the operation `outside`
+    float reach;                    ///< between corners and new nodes at most, where it counts
     std::span<const NodeKey> keys;  ///< of the corners and the new nodes behind them
 };
 
@@ -29,10 +30,12 @@ class Sweeps {
 public:
     /// \param dense how many dense keys there are, or 0
     /// \param of_leaves whether `stop` comes from errors of leaves and not from offsets
-    Sweeps(std::size_t dense, bool of_leaves)
+    /// \param spread how `stop` is handed from finer nodes to coarser ones
+    Sweeps(std::size_t dense, bool of_leaves, const Spread& spread)
         : number_of_{dense},
           nodes_(number_of_.count()),
           splits_{nodes_.size()},
+          spread_{spread},
           of_leaves_{of_leaves} {}
 
     /// \param offset offset(n) is |U_delta| of new node n, rounded up, 0 where the node hangs
@@ -69,7 +72,7 @@ private:
         nodes_.resize(number_of_.count());
         return std::span(numbers_).first(keys.size());
     }
-    /// What a new node hands to its parents.
+    /// What a new node hands to its parents: `stop` is spread before.
     struct Below {
         std::uint16_t stop = 0;
         std::uint16_t bound = 0;
@@ -78,11 +81,13 @@ private:
             return {std::max(a.stop, b.stop), std::max(a.bound, b.bound)};
         }
     };
-    bool sweep_split(const Rule& rule, std::span<const std::size_t> of);
+    bool sweep_split(const Rule& rule, std::span<const std::size_t> of, float reach);
+    std::uint16_t hand_stop(std::uint16_t stop, float reach) const;
 
     NodeNumbers number_of_;
     std::vector<Node> nodes_;
     SplitsByLevel splits_;
+    Spread spread_;
     bool of_leaves_;
     bool one_level_ = true;  // each node was created on one level
     bool one_step_ = true;   // no new node is a parent of another one of its split
@@ -107,7 +112,7 @@ void Sweeps::split(const MetSplit& s, Offset&& offset) {
                                                              : bfloat16_above(node.offset);
         node.entry.stop = std::max(node.entry.stop, own);
     }
-    splits_.add(static_cast<std::size_t>(s.level), rule, number);
+    splits_.add(static_cast<std::size_t>(s.level), rule, number, s.reach);
 }
 
 }  // namespace nestgrid::engine

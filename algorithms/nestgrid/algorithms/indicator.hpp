@@ -66,6 +66,14 @@ protected:
     Bounds& operator=(Bounds&&) = default;
 };
 
+/// How `stop` is handed from a node y to the nodes x that y depends on:
+///     stop(x) >= factor * (stop(y) + slope * |x - y|).
+struct Spread {
+    double factor =
+        1;             ///< at least 1: for criteria that blend between epsilon and factor * epsilon
+    double slope = 0;  ///< at least 0: for thresholds that vary in space with that slope at most
+};
+
 /// The error of a leaf: not negative. Called by several threads where the executor has several.
 using LeafErrors = std::function<double(const Handle& leaf)>;
 
@@ -147,10 +155,11 @@ public:
               },
               executor) {}
     /// The same for a hierarchy; leaf_errors may be empty.
+    /// \param spread how `stop` is handed from finer nodes to coarser ones
     HierarchicalIndicator(const Hierarchy<float>& hierarchy, const LeafErrors& leaf_errors,
-                          const Executor& executor);
+                          const Executor& executor, const Spread& spread = {});
     HierarchicalIndicator(const Hierarchy<double>& hierarchy, const LeafErrors& leaf_errors,
-                          const Executor& executor);
+                          const Executor& executor, const Spread& spread = {});
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
     double stop(NodeKey node) const override { return bfloat16_value(entries_.at(node).stop); }
@@ -167,6 +176,8 @@ public:
         }
         return mask;
     }
+
+    const Spread& spread() const { return spread_; }
 
     double offset_bound(NodeKey node) const override {
         return own_errors_ ? bound(node) : stop(node);
@@ -214,6 +225,7 @@ private:
     detail::IndicatorEntries entries_;
     HangingNodes hanging_;
     detail::PrerollFacts facts_;
+    Spread spread_;
     std::size_t node_count_ = 0;
     std::uint64_t epoch_ = 0;
     bool own_errors_ = false;  // of leaves, instead of offsets
