@@ -56,7 +56,7 @@ std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, d
     plain.cap = options.cap;
     plain.progress = options.progress;
     const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
-    const LevelSearch<Real> search(hierarchy, {Level<Real>(isovalue)}, criterion, bounds);
+    const LevelSearch<Real> search(walk, {Level<Real>(isovalue)}, criterion, bounds);
     Surface<dimension> nothing;
     Drawing drawing(walk, search, {typename Drawing::Builder(nothing, false)}, plain,
                     isosurface_attributes);
@@ -76,7 +76,7 @@ void draw_levels(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> leve
                  const Executor& executor, std::vector<Isosurface<dimension>>& results) {
     using Drawing = LevelSet<dimension, Real>;
     const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
-    const LevelSearch<Real> search(hierarchy, std::move(levels), criterion, bounds);
+    const LevelSearch<Real> search(walk, std::move(levels), criterion, bounds);
     Drawing drawing(walk, search, std::move(builders), options, first_attribute);
     const bool cancelled = run_until_cancelled(drawing, executor);
     drawing.flush();

@@ -19,16 +19,17 @@ Real as_real(double bound) {
 }  // namespace
 
 template <class Real>
-LevelSearch<Real>::LevelSearch(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
+LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::vector<Level<Real>> levels,
                                const Criterion& criterion, const Bounds& bounds)
     : levels_{std::move(levels)},
-      hierarchy_{&hierarchy},
-      components_{static_cast<std::size_t>(hierarchy.facts().components)},
+      walk_{&walk},
+      components_{walk.components()},
       criterion_{&criterion},
       bounds_{&bounds},
       own_bounds_{dynamic_cast<const HierarchicalIndicator*>(&bounds)},
       entries_{own_bounds_ == nullptr ? nullptr : &own_bounds_->entries()},
-      saturated_{criterion.saturated()} {
+      saturated_{criterion.saturated()},
+      asks_for_masks_{!criterion.wants_positions() && !criterion.blends()} {
     for (const Level<Real>& level : levels_) {
         last_component_ = std::max(last_component_, level.component);
     }
@@ -41,9 +42,10 @@ LevelSearch<Real>::LevelSearch(const Hierarchy<Real>& hierarchy, std::vector<Lev
 
 template <class Real>
 bool LevelSearch<Real>::may_stop_apart() const {
-    if (hierarchy_->offers(Feature::constrained) || bounds_->hanging() != nullptr) return true;
+    const Hierarchy<Real>& hierarchy = walk_->hierarchy();
+    if (hierarchy.offers(Feature::constrained) || bounds_->hanging() != nullptr) return true;
     if (dynamic_cast<const Exact*>(criterion_) != nullptr) return false;
-    return hierarchy_->offers(Feature::hidden) || !bounds_->stops_conform();
+    return hierarchy.offers(Feature::hidden) || !bounds_->stops_conform();
 }
 
 /// Whether a level of a component may pass through an element on which the component is within
@@ -76,9 +78,10 @@ NESTGRID_INLINE auto LevelSearch<Real>::range_of(const View& view, std::size_t c
     return range;
 }
 
-/// In a saturated criterion S at a corner implies S at all new nodes: nobody is asked.
+/// Where S > 0 at a corner, a saturated criterion has S = 1 at all new nodes, and is not asked.
 template <class Real>
-auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps) const -> Sight {
+auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
+                             CriterionQuestion& question) const -> Sight {
     const Rule* const rule = split.rule;
     if (rule != nullptr && entries_ != nullptr) prefetch(*entries_, *rule, split.keys);
     const Range first = range_of(view, 0);
@@ -91,6 +94,7 @@ auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps) co
     if (!interest) return {{Visit::skip, 0}, bound};
     if (rule == nullptr) return {{Visit::stop, 0}, bound};
     if (saturated_ && view.interpolated != 0) return {{Visit::stop, rule->all()}, bound};
+    if (!asks_for_masks_) return {question.ask(*walk_, *criterion_, view, split), bound};
     const NodeMask interpolated = holds({*rule, split.keys, view.level + 1, split.outside});
     return {{interpolated == rule->all() ? Visit::stop : Visit::descend, interpolated}, bound};
 }

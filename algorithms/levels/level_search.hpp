@@ -11,7 +11,7 @@
 #include <indicators/packed_entries.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/block_glance.hpp>
-#include <walk/walk.hpp>
+#include <walk/criterion_question.hpp>
 
 namespace nestgrid::engine {
 
@@ -28,16 +28,20 @@ public:
         Real bound;
     };
 
-    LevelSearch(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
-                const Criterion& criterion, const Bounds& bounds);
+    LevelSearch(const Walk<Real>& walk, std::vector<Level<Real>> levels, const Criterion& criterion,
+                const Bounds& bounds);
 
     std::span<const Level<Real>> levels() const { return levels_; }
     const Bounds& bounds() const { return *bounds_; }
     /// Whether elements may stop without conforming to their neighbours.
     bool may_stop_apart() const;
 
+    /// Whether the walk in blocks may ask: the criterion looks at keys and levels alone, and
+    /// answers yes or no.
+    bool fits_blocks() const { return asks_for_masks_; }
+
     /// \param caps whether the element is of interest also where it is wholly inside
-    Sight look(const View& view, const Split& split, bool caps) const;
+    Sight look(const View& view, const Split& split, bool caps, CriterionQuestion& question) const;
     /// Those of the children `which`, which are leaves, that have corners on both sides of a level.
     /// \param values of the father's split, corners first
     NodeMask cut_leaves(const Rule& rule, const Real* values, NodeMask which) const;
@@ -82,7 +86,7 @@ private:
     NodeMask cut_children(const Rule& rule, const Real* values, const Level<Real>& level) const;
 
     std::vector<Level<Real>> levels_;
-    const Hierarchy<Real>* hierarchy_;
+    const Walk<Real>* walk_;
     std::size_t components_;
     const Criterion* criterion_;
     const Bounds* bounds_;
@@ -92,6 +96,7 @@ private:
     Pack<float> packed_threshold_{};
     std::size_t last_component_ = 0;
     bool saturated_;
+    bool asks_for_masks_;
 };
 
 template <class Real>

@@ -59,7 +59,7 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     walks_.begin(records ? Pass::record : Pass::only,
                  records ? search.bounds().finest_level() : -1);
     at_hand_.plainly = draws_plainly();
-    bisects_ = at_hand_.plainly && !records && !surfaces_.empty() &&
+    bisects_ = at_hand_.plainly && search.fits_blocks() && !records && !surfaces_.empty() &&
                walk_->hierarchy().facts().knows_blocks;
     at_hand_.loads_keys = records || options_->normals || options_->cap ||
                           (!surfaces_.empty() && surfaces_[0].names_vertices());
@@ -145,7 +145,7 @@ Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split
 template <int dimension, class Real>
 Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
     const bool caps = options_->cap && walk_->boundary(view) != 0;
-    const auto [decision, bound] = search_->look(view, split, caps);
+    const auto [decision, bound] = search_->look(view, split, caps, at_hand_.question);
     at_hand_.bound = bound;
     return decision;
 }

@@ -95,6 +95,7 @@ private:
         ElementContour<dimension, Real> contour;
         TransitionAdoption<dimension, Real> adoption;
         CapContour<dimension, Real> cap;
+        CriterionQuestion question;
         Real bound = 0;  // how far U may leave the range of its corners
         bool loaded = false;
         bool loads_keys = false;

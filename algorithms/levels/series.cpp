@@ -27,7 +27,7 @@ public:
         const std::span<const double> isovalues(&isovalue, 1);
         engine::require_drawable(*hierarchy_, isovalues, indicator);
         criterion_ = criterion_for<dimension>(*hierarchy_, isovalue, indicator, options, executor);
-        search_.emplace(*hierarchy_, engine::levels_at<Real>(isovalues), criterion_, indicator);
+        search_.emplace(walk_, engine::levels_at<Real>(isovalues), criterion_, indicator);
         options_ = options;
         result_.surface.clear();
         std::vector<typename Drawing::Builder> builders;

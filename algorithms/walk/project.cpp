@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <walk/project.hpp>
 
+#include <walk/criterion_question.hpp>
+
 namespace nestgrid::engine {
 
 namespace {
@@ -9,21 +11,22 @@ namespace {
 template <class Real>
 class ProjectVisitor final : public Visitor<Real> {
 public:
-    ProjectVisitor(const Criterion& criterion, const ExtractFunction<Real>& function)
-        : criterion_{&criterion}, function_{&function} {}
+    ProjectVisitor(const Walk<Real>& walk, const Criterion& criterion,
+                   const ExtractFunction<Real>& function)
+        : walk_{&walk}, criterion_{&criterion}, function_{&function} {}
 
     Leaves leaves(const Rule&, const Real*, NodeMask which, bool) override { return {which, 0}; }
     Decision inspect(const ElementView<Real>& view, const Split& split) override {
         if (split.rule == nullptr) return {Visit::stop, 0};
-        const NodeMask mask =
-            criterion_->holds({*split.rule, split.keys, view.level + 1, split.outside});
-        return {mask == split.rule->all() ? Visit::stop : Visit::descend, mask};
+        return question_.ask(*walk_, *criterion_, view, split);
     }
     void extract(const ElementView<Real>& view) override { (*function_)(view); }
 
 private:
+    const Walk<Real>* walk_;
     const Criterion* criterion_;
     const ExtractFunction<Real>* function_;
+    CriterionQuestion question_;
 };
 
 }  // namespace
@@ -31,7 +34,7 @@ private:
 template <class Real>
 void project(const Walk<Real>& walk, const Criterion& criterion,
              const ExtractFunction<Real>& function) {
-    ProjectVisitor<Real> visitor(criterion, function);
+    ProjectVisitor<Real> visitor(walk, criterion, function);
     walk.run(visitor);
 }
 

@@ -16,6 +16,9 @@ namespace nestgrid::engine {
 struct Decision {
     Visit visit = Visit::descend;
     NodeMask interpolated = 0;  ///< new nodes at which the criterion S holds
+    /// S at each new node, in [0, 1] and 1 where `interpolated` says so; empty where S has no other
+    /// values than 0 and 1. Read before the visitor is asked again.
+    std::span<const float> weights{};
 };
 
 /// The refinement of an element; `rule` is null on a leaf.

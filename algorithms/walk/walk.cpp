@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <string>
 
 #include <nestgrid/error.hpp>
@@ -166,18 +167,25 @@ void Walk<Real>::visit(const View& view, Visitor<Real>& visitor) const {
     if (decision.visit == Visit::stop && member.hidden != Hidden::partly) {
         visitor.extract(view);
     } else {
-        descend(view, split, decision.interpolated, visitor);
+        descend(view, split, decision, visitor);
     }
 }
 
 template <class Real>
-void Walk<Real>::descend(const View& view, const Split& split, NodeMask interpolated,
+void Walk<Real>::descend(const View& view, const Split& split, const Decision& decision,
                          Visitor<Real>& visitor) const {
     const Rule& rule = *split.rule;
     Frame<Real>& frame = view.stack->frame(view.level);
+    NodeMask interpolated = decision.interpolated;
     const NodeMask mean = (interpolated | split.constrained) & rule.all();
     const NodeMask wanted = visitor.children(view);
     project(view, split, mean, wanted, frame);
+    if (!decision.weights.empty()) {
+        blend(rule, mean, decision.weights, frame.value.data());
+        for (std::size_t n = 0; n < decision.weights.size(); ++n) {
+            interpolated |= NodeMask{decision.weights[n] > 0} << n;
+        }
+    }
     if (!rule.new_nodes.empty()) visitor.entered(view, split, frame.value.data());
     if (carries_positions_) project_positions(view, rule, mean, frame);
     const ClosingSplit<Real>* closing = nullptr;
@@ -185,6 +193,26 @@ void Walk<Real>::descend(const View& view, const Split& split, NodeMask interpol
         closing = close(view, split, mean, frame);
     }
     visit_children(view, rule, interpolated, closing, frame, visitor);
+}
+
+/// Moves the values at new nodes where S has a weight towards their interpolants (section 6), in
+/// the order of the rule: an earlier node may be a parent of a later one.
+/// \param value of the corners and, behind them, of the new nodes
+template <class Real>
+void Walk<Real>::blend(const Rule& rule, NodeMask mean, std::span<const float> weights,
+                       Real* value) const {
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    for (std::size_t n = 0; n < weights.size(); ++n) {
+        const bool is_mean = (mean >> n & 1U) != 0;
+        if (!is_mean && !(weights[n] > 0)) continue;
+        Real* const at = value + (corners + n) * components_;
+        for (std::size_t c = 0; c < components_; ++c) {
+            const Real between = detail::interpolate(rule.new_nodes[n], value + c, components_);
+            const auto [least, greatest] = std::minmax(between, at[c]);
+            const Real blended = std::fma(static_cast<Real>(weights[n]), between - at[c], at[c]);
+            at[c] = is_mean ? between : std::clamp(blended, least, greatest);
+        }
+    }
 }
 
 /// Enters the element, and puts P_S U at its corners and new nodes into the frame, eq. (2). Affine
@@ -430,6 +458,21 @@ std::array<Point, 2> Walk<Real>::positions(const MaximalEdge<Real>& edge) const 
         x[n] = detail::interpolate(split.rule->new_nodes[n - corners], x.data());
     }
     return {x[a], x[b]};
+}
+
+template <class Real>
+void Walk<Real>::new_positions(const View& view, const Rule& rule, std::span<Point> out) const {
+    if (new_positions_) {
+        hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(), out);
+        return;
+    }
+    const std::size_t corners = view.corner_count();
+    std::array<Point, max_corners + max_new_nodes> x;
+    this->corners(view, nullptr, x.data());
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        x[corners + n] = detail::interpolate(rule.new_nodes[n], x.data());
+        out[n] = x[corners + n];
+    }
 }
 
 template <class Real>

@@ -4,7 +4,8 @@
 // The depth-first traversal (paper, section 3) with the adaptive projection of eq. (2).
 //
 // Invariants:
-//   - a new node's value is the interpolant where S holds or the node hangs, else U itself;
+//   - a new node's value is the interpolant where S holds or the node hangs, else U itself, or,
+//     where S is a weight between 0 and 1, S times the interpolant and 1 - S times U;
 //   - U is asked for only where it is used, the children only when they are entered;
 //   - what the walk knows of an element lies in the frame of its father's split, one frame a level.
 // Consequences: memory is O(depth), allocated when a level is first reached and never in the loop;
@@ -86,6 +87,8 @@ public:
     void corners(const View& view, NodeKey* keys, Point* positions) const;
     /// Positions of the ends of a maximal edge.
     std::array<Point, 2> positions(const MaximalEdge<Real>& edge) const;
+    /// True positions of the new nodes of an element. The walk must carry positions.
+    void new_positions(const View& view, const Rule& rule, std::span<Point> out) const;
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(const View& view) const;
     /// Gradients of component 0 at the corners, where the field offers them.
@@ -96,8 +99,9 @@ private:
 
     bool make_coarse(std::size_t i, Stack& stack, View& view) const;
     void visit(const View& view, Visitor<Real>& visitor) const;
-    void descend(const View& view, const Split& split, NodeMask interpolated,
+    void descend(const View& view, const Split& split, const Decision& decision,
                  Visitor<Real>& visitor) const;
+    void blend(const Rule& rule, NodeMask mean, std::span<const float> weights, Real* value) const;
     void project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
                  Frame<Real>& frame) const;
     void project_positions(const View& view, const Rule& rule, NodeMask mean,
@@ -122,7 +126,7 @@ private:
     const HangingNodes* hanging_;
     Needs needs_;
     std::size_t components_;
-    std::size_t affine_;  // how many of them are affine functions of position
+    std::size_t affine_;                  // how many of them are affine functions of position
     std::vector<std::uint8_t> boundary_;  // of each coarse element, where the grid does not say
     bool boundary_faces_;
     bool own_keys_;

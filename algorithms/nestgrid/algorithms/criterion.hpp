@@ -7,6 +7,8 @@
 // both hold at the new nodes, and likewise where one of them does.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <concepts>
 #include <span>
 
@@ -19,18 +21,29 @@ namespace nestgrid {
 struct NewNodes {
     const Rule& rule;
     std::span<const NodeKey> keys;
-    int level;         ///< of the nodes: one more than that of the element
-    NodeMask outside;  ///< nodes at which no element may stop
+    int level;                           ///< of the nodes: one more than that of the element
+    NodeMask outside;                    ///< nodes at which no element may stop
+    std::span<const Point> positions{};  ///< the true ones, where the criterion wants them
 };
 
-/// S, a function of nodes.
+/// S, a function of nodes: 0 or 1, or a weight between (section 6).
 class Criterion {
 public:
     virtual ~Criterion() = default;
-    /// The new nodes at which S holds, one bit each.
+    /// The new nodes at which S holds, that is where it is 1, one bit each.
     virtual NodeMask holds(const NewNodes& nodes) const = 0;
-    /// Whether S at any corner of a split element implies S at all its new nodes. Algorithms refuse
-    /// a criterion that is not, unless it insists.
+    /// Whether S has values between 0 and 1.
+    virtual bool blends() const { return false; }
+    /// S at each new node, in [0, 1], and 1 where holds() says so and nowhere else.
+    virtual void weights(const NewNodes& nodes, std::span<float> s) const {
+        const NodeMask mask = holds(nodes);
+        for (std::size_t n = 0; n < s.size(); ++n) s[n] = static_cast<float>(mask >> n & 1U);
+    }
+    /// Whether the criterion looks at NewNodes::positions.
+    virtual bool wants_positions() const { return false; }
+    /// Whether S > 0 at any corner of a split element implies S = 1 at all its new nodes.
+    /// Algorithms refuse a criterion that is not saturated, unless it insists; elements with such a
+    /// corner stop without asking one that is.
     virtual bool saturated() const = 0;
     /// Whether S is a function of nodes only where the grid creates each node on one level.
     virtual bool needs_one_level_a_node() const { return false; }
@@ -114,41 +127,63 @@ public:
     bool saturated() const override { return true; }
 };
 
+namespace detail {
+
+/// What a conjunction and a disjunction have in common.
 template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
-class Both final : public Criterion {
+class TwoCriteria : public Criterion {
 public:
-    Both(const A& a, const B& b) : a_{a}, b_{b} {}
-    NodeMask holds(const NewNodes& nodes) const override {
-        const NodeMask first = a_.holds(nodes);
-        return first == 0 ? first : first & b_.holds(nodes);
-    }
+    bool blends() const override { return a_.blends() || b_.blends(); }
+    bool wants_positions() const override { return a_.wants_positions() || b_.wants_positions(); }
     bool saturated() const override { return a_.saturated() && b_.saturated(); }
     bool needs_one_level_a_node() const override {
         return a_.needs_one_level_a_node() || b_.needs_one_level_a_node();
     }
     bool insists() const override { return a_.insists() || b_.insists(); }
 
-private:
+protected:
+    TwoCriteria(const A& a, const B& b) : a_{a}, b_{b} {}
+
+    /// Puts choose(S of a, S of b) into s.
+    template <class Choose>
+    void combine(const NewNodes& nodes, std::span<float> s, Choose&& choose) const {
+        std::array<float, max_new_nodes> of_b;
+        a_.weights(nodes, s);
+        b_.weights(nodes, std::span(of_b).first(s.size()));
+        for (std::size_t n = 0; n < s.size(); ++n) s[n] = choose(s[n], of_b[n]);
+    }
+
     A a_;
     B b_;
 };
 
-template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
-class Either final : public Criterion {
-public:
-    Either(const A& a, const B& b) : a_{a}, b_{b} {}
-    NodeMask holds(const NewNodes& nodes) const override {
-        return a_.holds(nodes) | b_.holds(nodes);
-    }
-    bool saturated() const override { return a_.saturated() && b_.saturated(); }
-    bool needs_one_level_a_node() const override {
-        return a_.needs_one_level_a_node() || b_.needs_one_level_a_node();
-    }
-    bool insists() const override { return a_.insists() || b_.insists(); }
+}  // namespace detail
 
-private:
-    A a_;
-    B b_;
+/// S_a and S_b: the least of their weights.
+template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
+class Both final : public detail::TwoCriteria<A, B> {
+public:
+    Both(const A& a, const B& b) : detail::TwoCriteria<A, B>(a, b) {}
+    NodeMask holds(const NewNodes& nodes) const override {
+        const NodeMask first = this->a_.holds(nodes);
+        return first == 0 ? first : first & this->b_.holds(nodes);
+    }
+    void weights(const NewNodes& nodes, std::span<float> s) const override {
+        this->combine(nodes, s, [](float a, float b) { return std::min(a, b); });
+    }
+};
+
+/// S_a or S_b: the greatest of their weights.
+template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
+class Either final : public detail::TwoCriteria<A, B> {
+public:
+    Either(const A& a, const B& b) : detail::TwoCriteria<A, B>(a, b) {}
+    NodeMask holds(const NewNodes& nodes) const override {
+        return this->a_.holds(nodes) | this->b_.holds(nodes);
+    }
+    void weights(const NewNodes& nodes, std::span<float> s) const override {
+        this->combine(nodes, s, [](float a, float b) { return std::max(a, b); });
+    }
 };
 
 /// Insists on a criterion that is not saturated.
@@ -157,6 +192,11 @@ class Unsaturated final : public Criterion {
 public:
     explicit Unsaturated(const S& criterion) : criterion_{criterion} {}
     NodeMask holds(const NewNodes& nodes) const override { return criterion_.holds(nodes); }
+    bool blends() const override { return criterion_.blends(); }
+    void weights(const NewNodes& nodes, std::span<float> s) const override {
+        criterion_.weights(nodes, s);
+    }
+    bool wants_positions() const override { return criterion_.wants_positions(); }
     bool saturated() const override { return false; }
     bool insists() const override { return true; }
 

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <nestgrid/algorithms/criterion.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+/// Asks a criterion about the new nodes of a split, and keeps the memory of questions and answers.
+class CriterionQuestion {
+public:
+    /// \param walk with positions where the criterion wants them
+    /// \return weights in it are valid until the next question
+    template <class Real>
+    Decision ask(const Walk<Real>& walk, const Criterion& criterion, const ElementView<Real>& view,
+                 const Split& split) {
+        NewNodes nodes{*split.rule, split.keys, view.level + 1, split.outside};
+        if (criterion.wants_positions()) {
+            positions_.resize(split.rule->new_nodes.size());
+            walk.new_positions(view, *split.rule, positions_);
+            nodes.positions = positions_;
+        }
+        const NodeMask mask = criterion.holds(nodes);
+        Decision decision{mask == split.rule->all() ? Visit::stop : Visit::descend, mask};
+        if (criterion.blends() && decision.visit == Visit::descend) {
+            weights_.resize(split.rule->new_nodes.size());
+            criterion.weights(nodes, weights_);
+            decision.weights = weights_;
+        }
+        return decision;
+    }
+
+private:
+    std::vector<Point> positions_;
+    std::vector<float> weights_;
+};
+
+}  // namespace nestgrid::engine
