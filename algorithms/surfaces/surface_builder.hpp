@@ -111,6 +111,7 @@ public:
     }
     void add_vertices(std::span<const Point> x, std::span<const double> attributes) {
         surface_->vertices.insert(surface_->vertices.end(), x.begin(), x.end());
+        if (attributes.empty()) return;
         surface_->attributes.insert(surface_->attributes.end(), attributes.begin(),
                                     attributes.end());
     }
