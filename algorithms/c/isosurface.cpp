@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/isosurface.h>
 
+#include <algorithm>
+#include <cstring>
+#include <string>
+
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/any_grid.hpp>
-#include <nestgrid/check_grid.hpp>
+#include <nestgrid/table.hpp>
+
+#include "check_table.hpp"
 
 namespace {
 
@@ -17,22 +22,27 @@ void say(const std::string& sentence, char* message, std::size_t size) {
     message[length] = '\0';
 }
 
-/// Calls function(grid, field) with the models that the tables describe; exceptions become codes.
+template <class Real>
+auto one_component(std::unique_ptr<const Hierarchy<Real>> hierarchy) {
+    const int components = hierarchy->facts().components;
+    if (components == 1) return hierarchy;
+    throw InvalidInput("the field has " + std::to_string(components) + " components, not 1");
+}
+
+/// Calls function(hierarchy) with what the tables describe; exceptions become codes.
 template <class Function>
-int with_models(const nestgrid_grid* grid, const nestgrid_field* field, char* message,
+int with_tables(const nestgrid_grid* grid, const nestgrid_field* field, char* message,
                 std::size_t size, Function&& function) noexcept {
-    const auto with_values = [&](const auto& g) {
-        if (field->value_type == NESTGRID_FLOAT) return function(g, AnyField<float>(*field));
-        if (field->value_type == NESTGRID_DOUBLE) return function(g, AnyField<double>(*field));
-        throw InvalidInput("the value_type " + std::to_string(field->value_type) +
-                           " of the field is neither float nor double");
-    };
     try {
         if (grid == nullptr || field == nullptr) throw InvalidInput("a table is NULL");
-        if (grid->dimension == 2) return with_values(AnyGrid<2>(*grid));
-        if (grid->dimension == 3) return with_values(AnyGrid<3>(*grid));
-        throw InvalidInput("the table is of a grid of dimension " +
-                           std::to_string(grid->dimension) + ", not 2 or 3");
+        if (field->value_type == NESTGRID_FLOAT) {
+            return function(one_component(open_table<float>(*grid, *field)));
+        }
+        if (field->value_type == NESTGRID_DOUBLE) {
+            return function(one_component(open_table<double>(*grid, *field)));
+        }
+        throw InvalidInput("the value_type " + std::to_string(field->value_type) +
+                           " of the field is neither float nor double");
     } catch (const InvalidInput& e) {
         say(e.what(), message, size);
         return 1;
@@ -45,26 +55,34 @@ int with_models(const nestgrid_grid* grid, const nestgrid_field* field, char* me
     }
 }
 
+template <int dimension, class Real>
+void draw(const Hierarchy<Real>& hierarchy, double isovalue, double threshold,
+          nestgrid_surface& out) {
+    auto result = std::make_unique<Isosurface<dimension>>(
+        isosurface<dimension>(hierarchy, isovalue, {.threshold = threshold, .elements = false}));
+    out.vertex_count = result->surface.vertices.size();
+    out.simplex_count = result->surface.simplices.size();
+    if (out.vertex_count > 0) out.vertices = result->surface.vertices.front().data();
+    if (out.simplex_count > 0) out.simplices = result->surface.simplices.front().data();
+    out.dimension = dimension;
+    out.error_bound = result->error_bound;
+    out.visited = result->counts.visited;
+    out.extracted = result->counts.extracted;
+    out.owner = result.release();
+}
+
 }  // namespace
 
 extern "C" int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_field* field,
                                    double isovalue, double threshold, nestgrid_surface* out,
                                    char* message, size_t message_size) {
     *out = {};
-    return with_models(grid, field, message, message_size, [&](const auto& g, const auto& f) {
-        constexpr int dimension = std::remove_reference_t<decltype(g)>::dimension;
-        using Result = Isosurface<dimension>;
-        auto result = std::make_unique<Result>(
-            isosurface(g, f, isovalue, {.threshold = threshold, .elements = false}));
-        out->vertex_count = result->surface.vertices.size();
-        out->simplex_count = result->surface.simplices.size();
-        if (out->vertex_count > 0) out->vertices = result->surface.vertices.front().data();
-        if (out->simplex_count > 0) out->simplices = result->surface.simplices.front().data();
-        out->dimension = dimension;
-        out->error_bound = result->error_bound;
-        out->visited = result->counts.visited;
-        out->extracted = result->counts.extracted;
-        out->owner = result.release();
+    return with_tables(grid, field, message, message_size, [&](const auto& hierarchy) {
+        if (hierarchy->facts().dimension == 2) {
+            draw<2>(*hierarchy, isovalue, threshold, *out);
+        } else {
+            draw<3>(*hierarchy, isovalue, threshold, *out);
+        }
         return 0;
     });
 }
@@ -80,9 +98,9 @@ extern "C" void nestgrid_surface_free(nestgrid_surface* surface) {
 
 extern "C" int nestgrid_check_grid(const nestgrid_grid* grid, const nestgrid_field* field,
                                    char* message, size_t message_size) {
-    return with_models(grid, field, message, message_size, [&](const auto& g, const auto& f) {
-        const auto violation = check_grid(g, f);
-        if (violation) say(violation->sentence, message, message_size);
+    return with_tables(grid, field, message, message_size, [&](const auto& hierarchy) {
+        const auto violation = check_table(*hierarchy, *grid, *field);
+        if (violation) say(*violation, message, message_size);
         return violation ? 4 : 0;
     });
 }

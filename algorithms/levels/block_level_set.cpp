@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <levels/block_level_set.hpp>
 
-#include <nestgrid/erased_bisections.hpp>
+#include <patches/told_bisections.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {
@@ -61,8 +61,9 @@ void draw_in_blocks(const Walk<Real>& walk, const ElementView<Real>& view,
                     const LevelSearch<Real>& search, const BlockTarget<dimension, Real>& target,
                     BlockCounts& counts) {
     BlockLevelSet<dimension, Real> visitor(search, target, counts);
-    walk.hierarchy().bisect(view.stack->task.get(), view.element(), view.value, view.level,
-                            view.orientation, visitor);
+    detail::ErasedBisectionVisitor<dimension, Real>& seam = visitor;
+    bisect(walk.hierarchy(), view.stack->task.get(), view.element(), view.value, view.level,
+           view.orientation, seam);
 }
 
 template void draw_in_blocks(const Walk<float>&, const ElementView<float>&,

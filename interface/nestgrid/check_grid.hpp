@@ -19,9 +19,7 @@
 #include <vector>
 
 #include <nestgrid/hanging_probe.hpp>
-#include <nestgrid/known_bisection.hpp>
 #include <nestgrid/operations.hpp>
-#include <nestgrid/pack.hpp>
 
 namespace nestgrid {
 
@@ -42,11 +40,10 @@ enum class Law : std::uint8_t {
     hanging_value,   ///< a hanging node's value is its interpolant
     value_present,   ///< the field gives all values
     value_finite,
-    value_unique,     ///< one node, one value
-    position,         ///< own positions: those of eq. (1), and one node, one position
-    depth,            ///< the hierarchy ends
-    hidden,           ///< an element is hidden as its children are; no leaf is in part
-    known_bisection,  ///< what is known of bisections is what split() and children() say
+    value_unique,  ///< one node, one value
+    position,      ///< own positions: those of eq. (1), and one node, one position
+    depth,         ///< the hierarchy ends
+    hidden,        ///< an element is hidden as its children are; no leaf is in part
 };
 
 struct GridViolation {

@@ -112,16 +112,6 @@ private:
     bool deviates_from_mean(const Stencil& stencil, const std::vector<Corner>& nodes,
                             Real value) const;
     void check_positions(const State& s);
-    void check_known_bisection(const State& s, const Rule* rule);
-    template <class Known, class Nodal>
-    void check_known_bisection(const Known& known, const Nodal& values, const State& s,
-                               const Rule* rule);
-    template <class Known, class Handle, class Demand>
-    void check_packs(const Known& known, Handle a, Handle b, Handle z, const Demand& demand);
-    template <class Known, class Nodal, class Handles, class Handle, class Demand>
-    void check_rows(const Known& known, const Nodal& values, const Handles& n, Handle a, Handle b,
-                    const Demand& demand);
-    std::size_t count_block_ends(const Element& e, std::size_t height, std::size_t& split);
     void check_own_keys(const State& s, std::span<const NodeKey> own);
     void check_values(std::size_t step, const char* which, std::size_t n, const Values& value);
     void check_hanging();
@@ -309,5 +299,4 @@ void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const C
 
 }  // namespace nestgrid::detail
 
-#include <nestgrid/check_grid_bisections.hpp>
 #include <nestgrid/check_grid_walk.hpp>

@@ -155,7 +155,6 @@ void GridChecker<Grid, Field>::walk(const State& s) {
     }
     check_positions(s);
     const Rule* rule = call_split(grid_, context_, s.element);
-    check_known_bisection(s, rule);
     const Hidden hidden = hidden_part(grid_, context_, s.element);
     if (rule == nullptr) {
         if (hidden == Hidden::partly) {

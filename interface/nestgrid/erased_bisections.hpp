@@ -8,7 +8,6 @@
 
 #include <cstring>
 
-#include <nestgrid/nestgrid.h>
 #include <nestgrid/bisection_walk.hpp>
 #include <nestgrid/hierarchy.hpp>
 #include <nestgrid/operations.hpp>
@@ -93,13 +92,6 @@ protected:
     ErasedBisectionVisitor() = default;
     ~ErasedBisectionVisitor() = default;
 };
-
-template <class Element>
-nestgrid_element erased(const Element& element) {
-    nestgrid_element result{};
-    std::memcpy(&result, &element, sizeof(element));
-    return result;
-}
 
 /// The grid's side.
 template <HasMaubachBlocks Grid, class Real>

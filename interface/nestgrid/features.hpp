@@ -38,6 +38,7 @@ enum class Feature : unsigned {
     gradients = 256,
     hidden = 512,
 };
+inline constexpr Feature last_feature = Feature::hidden;
 
 enum class Hidden : std::uint8_t { not_at_all, partly, wholly };
 

@@ -80,17 +80,43 @@ struct HierarchyFacts {
     bool conforming = false;            ///< no node hangs
     bool knows_stars = false;           ///< star_rows() and row_values() work
     bool knows_star_positions = false;  ///< star_rows() and node_position() work
-    bool knows_blocks = false;          ///< bisect() works
+    bool knows_blocks = false;          ///< bisection_rows() or bisect() work
     bool fills_rows = false;            ///< every node is in a star row
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
 
     bool offers(Feature feature) const { return (features & static_cast<unsigned>(feature)) != 0; }
+    /// \throw InvalidInput where the dimension is another one
+    void require_dimension(int wanted) const {
+        if (dimension == wanted) return;
+        throw InvalidInput("the hierarchy has dimension " + std::to_string(dimension) + ", not " +
+                           std::to_string(wanted));
+    }
 };
 
 namespace detail {
+
 template <int dim, class Real>
 class ErasedBisectionVisitor;
-}
+
+/// Bisections told in rows of nodes, as nestgrid.h describes them at `middles`. Elements of the
+/// hierarchy are nestgrid_element.
+template <class Real>
+class BisectionRows {
+public:
+    using Node = std::uint64_t;
+    static constexpr Node no_node = ~Node{0};
+
+    virtual ~BisectionRows() = default;
+    /// \param out the nodes halfway between a[i] and b[i], or no_node; may be a
+    virtual void middles(std::span<const Node> a, std::span<const Node> b,
+                         std::span<Node> out) const = 0;
+    virtual void keys(std::span<const Node> nodes, std::span<NodeKey> out) const = 0;
+    virtual void positions(std::span<const Node> nodes, std::span<Point> out) const = 0;
+    virtual void values(std::span<const Node> nodes, std::span<const NodeKey> keys,
+                        std::span<Real> out) const = 0;
+};
+
+}  // namespace detail
 
 /// A nested grid with a field on it. What it was made of must outlive it.
 /// \tparam Real float or double: the type of the values
@@ -150,7 +176,10 @@ public:
     /// The position of a node, where facts().knows_star_positions.
     virtual Point node_position(NodeKey node) const;
 
-    /// Walks the bisections below an element in blocks, where facts().knows_blocks.
+    /// The bisections of a grid that tells them in rows; else null.
+    virtual const detail::BisectionRows<Real>* bisection_rows() const { return nullptr; }
+    /// Walks the bisections below an element in blocks, where facts().knows_blocks and there are no
+    /// rows.
     virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
                         int orientation, detail::ErasedBisectionVisitor<2, Real>& visitor) const;
     virtual void bisect(Task* task, const Handle& element, const Real* values, int level,

@@ -6,10 +6,10 @@
  * complete grid.
  *
  * All functions are reentrant and return 0, or another number where they fail; nothing is thrown
- * through them. `context` is what make_context returned for the task that calls, NULL without it.
- * Optional functions may be NULL. `out` has `count` places: as many as the element has corners, or
- * its rule new nodes or children. `size` is sizeof the table as its author compiled it, so that
- * tables can grow: what lies beyond it counts as NULL or 0.
+ * through them. last_error says why in a sentence. `context` is what make_context returned for the
+ * task that calls, NULL without it. Optional functions may be NULL. `out` has `count` places: as
+ * many as the element has corners, or its rule new nodes or children. `size` is sizeof the table as
+ * its author compiled it, so that tables can grow: what lies beyond it counts as NULL or 0.
  */
 #ifndef NESTGRID_H
 #define NESTGRID_H
@@ -107,14 +107,8 @@ typedef struct nestgrid_grid {
     int (*boundary_faces)(const void* self, void* context, const nestgrid_element* e,
                           unsigned* faces);
     int (*epoch)(const void* self, uint64_t* epoch);
-    void* (*make_context)(const void* self);
+    void* (*make_context)(const void* self); /* NULL: it failed */
     void (*free_context)(const void* self, void* context);
-
-    /* Of the library's own tables, NULL in all others: C++ on both sides. library_split takes the
-     * place of `rules` and `split`. */
-    int (*library_split)(const void* self, void* context, const nestgrid_element* e,
-                         const void** rule);
-    int (*library_star_rows)(const void* self, const void* function);
 
     /* Optional, all of the following: what makes bisections fast, for it is asked of many nodes at
      * once (tests/data/tetrahedra_in_c.c is an example). A grid may tell them whose elements are
@@ -133,6 +127,11 @@ typedef struct nestgrid_grid {
                    uint64_t* out);
     int (*node_keys)(const void* self, size_t count, const uint64_t* nodes, uint64_t* out);
     int (*node_positions)(const void* self, size_t count, const uint64_t* nodes, double (*out)[3]);
+
+    /* Optional. A sentence that says why the function failed that this thread called last, with the
+     * same context (NULL where that function takes none); or NULL. It stays valid until the thread
+     * calls another function of the table. Callers of the library receive it as text. */
+    const char* (*last_error)(const void* self, void* context);
 } nestgrid_grid;
 
 /* Values are float or double as value_type says; component c of node n goes to
@@ -152,15 +151,12 @@ typedef struct nestgrid_field {
     int (*corner_gradients)(const void* self, void* context, const nestgrid_element* e,
                             size_t count, double (*out)[3]);
 
-    /* Of the library's own tables, NULL in all others: C++ on both sides. */
-    int (*library_bisect)(const void* self, const nestgrid_grid* grid, const nestgrid_element* e,
-                          const void* values, int level, int orientation, void* visitor);
-    int (*library_row_values)(const void* self, uint64_t first, size_t stride, size_t count,
-                              void* out);
-
     /* Optional, with the `middles` of the grid. */
     int (*node_values)(const void* self, size_t count, const uint64_t* nodes, const uint64_t* keys,
                        void* out);
+
+    /* Optional, as that of the grid. */
+    const char* (*last_error)(const void* self, void* context);
 } nestgrid_field;
 
 #ifdef __cplusplus

@@ -9,7 +9,6 @@
 
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/adapters/linear_octree.hpp>
-#include <nestgrid/any_grid.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <nestgrid/detail/erase.hpp>
 #include <walk/walk.hpp>
@@ -17,6 +16,7 @@
 #include "counting_allocator.hpp"
 #include "refusal.hpp"
 #include "sample_grids.hpp"
+#include "table_in_c.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -196,13 +196,11 @@ void check_linear(unsigned seed) {
     }
     EXPECT_NEAR(sum.volume / whole, 1, 1e-12);
 
-    const AnyGrid<dim> any(grid);
-    const AnyField<double> any_field(grid, field);
-    const auto any_hierarchy = erase(any, any_field);
-    const engine::Walk<double> any_walk(any_hierarchy, {.keys = false, .positions = true});
-    LeafSum any_sum(any_walk);
-    any_walk.run(any_sum);
-    EXPECT_EQ(any_sum.leaves, sum.leaves);
+    const BehindTables tables(grid, field);
+    const engine::Walk<double> table_walk(*tables.hierarchy, {.keys = false, .positions = true});
+    LeafSum table_sum(table_walk);
+    table_walk.run(table_sum);
+    EXPECT_EQ(table_sum.leaves, sum.leaves);
 }
 
 TEST(LinearOctree, WalksUnbalancedTreesInPlace) {

@@ -10,6 +10,7 @@
 #include "counting_allocator.hpp"
 #include "p4est_advection.hpp"
 #include "p4est_laws.hpp"
+#include "table_in_c.hpp"
 #include "thread_executor.hpp"
 
 using namespace nestgrid;
@@ -270,14 +271,13 @@ TEST(P4estFields, LargeForestsAreReadInPlace) {
     EXPECT_EQ(a.surface.simplices, b.surface.simplices);
 }
 
-TEST(P4estFields, TypeErasedItIsTheSame) {
+TEST(P4estFields, BehindTablesTheyAreTheSame) {
     const Forest<3> forest = refined_at_sphere(4);
     const P4estGrid<3> grid(forest.get());
     const auto field = own_data(grid);
-    const AnyGrid<3> any(grid);
-    const AnyField<double> any_field(grid, field);
+    const BehindTables tables(grid, field);
     const auto a = isosurface(grid, field, 0, {.threshold = 0.01});
-    const auto b = isosurface(any, any_field, 0, {.threshold = 0.01});
+    const auto b = isosurface<3>(*tables.hierarchy, 0, {.threshold = 0.01});
     EXPECT_EQ(a.surface.vertices, b.surface.vertices);
     EXPECT_EQ(a.surface.simplices, b.surface.simplices);
 }

@@ -4,7 +4,6 @@
 // What every forest must be, whatever its connectivity, its balance and the data on it.
 #pragma once
 
-#include <nestgrid/any_grid.hpp>
 #include <nestgrid/check_grid.hpp>
 
 #include "p4est_samples.hpp"
@@ -78,19 +77,10 @@ inline std::vector<double> noise(std::size_t count, unsigned seed) {
     return values;
 }
 
-// The laws are asked through the function table, so that they are compiled once; the large forest
-// is walked without it.
-template <int dim, class Real>
-void expect_contract(const AnyGrid<dim>& grid, const AnyField<Real>& field,
-                     const CheckOptions& options = {}) {
-    const auto violation = check_grid(grid, field, options);
-    EXPECT_FALSE(violation) << violation->sentence;
-}
-
 template <class Grid, class Field>
 void expect_sound(const Grid& grid, const Field& field, const CheckOptions& options = {}) {
-    expect_contract(AnyGrid<Grid::dimension>(grid),
-                    AnyField<typename Field::value_type>(grid, field), options);
+    const auto violation = check_grid(grid, field, options);
+    EXPECT_FALSE(violation) << violation->sentence;
 }
 
 /// In two dimensions on a surface that cannot be oriented: every vertex ends two segments.
@@ -108,14 +98,17 @@ struct Expected {
     bool generic = true;  ///< no offset is exactly 0, so that nothing stops at threshold 0
 };
 
+/// Compiled once for all grids of a dimension.
+/// \param is_leaf whether element i of a list is a leaf
 template <int dim>
-void expect_closed_surfaces(const AnyGrid<dim>& grid, const AnyField<double>& field,
-                            const Expected& expected) {
-    const HierarchicalIndicator indicator(grid, field);
+void expect_closed_surfaces(
+    const Hierarchy<double>& hierarchy, const Expected& expected,
+    const std::function<bool(const Elements& elements, std::size_t i)>& is_leaf) {
+    const HierarchicalIndicator indicator(hierarchy);
     for (const double threshold : six_thresholds) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
         const auto result =
-            isosurface(grid, field, 0, indicator, {.threshold = threshold, .verify = true});
+            isosurface<dim>(hierarchy, 0, indicator, {.threshold = threshold, .verify = true});
         if constexpr (dim == 2) {
             if (expected.orientable) expect_closed(result.surface);
             if (!expected.orientable) expect_lines(result.surface);
@@ -124,9 +117,9 @@ void expect_closed_surfaces(const AnyGrid<dim>& grid, const AnyField<double>& fi
         }
         const bool crossed = indicator.least() < 0 && indicator.greatest() > 0;
         EXPECT_TRUE(threshold > 0 || !crossed || !result.surface.simplices.empty());
-        auto context = grid.make_context();
-        for (const auto& e : result.surface.elements.template as<ElementOf<AnyGrid<dim>>>()) {
-            EXPECT_TRUE(threshold > 0 || !expected.generic || grid.split(e, context) == nullptr);
+        const Elements& elements = result.surface.elements;
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+            EXPECT_TRUE(threshold > 0 || !expected.generic || is_leaf(elements, i));
         }
     }
 }
@@ -134,7 +127,12 @@ void expect_closed_surfaces(const AnyGrid<dim>& grid, const AnyField<double>& fi
 template <class Grid, class Field>
 void expect_closed_at_all_thresholds(const Grid& grid, const Field& field,
                                      const Expected& expected) {
-    expect_closed_surfaces(AnyGrid<Grid::dimension>(grid), AnyField<double>(grid, field), expected);
+    auto context = make_context(grid);
+    expect_closed_surfaces<Grid::dimension>(
+        erase(grid, field), expected, [&](const Elements& elements, std::size_t i) {
+            const auto& e = elements.as<ElementOf<Grid>>()[i];
+            return detail::call_split(grid, context, e) == nullptr;
+        });
 }
 
 }  // namespace nestgrid_test

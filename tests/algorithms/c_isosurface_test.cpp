@@ -9,10 +9,10 @@
 #include <nestgrid/algorithms/isosurface.h>
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/any_grid.hpp>
 
 #include "curved.hpp"
 #include "sample_fields.hpp"
+#include "table_in_c.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -21,8 +21,9 @@ namespace {
 
 template <class Grid, class Field>
 void expect_same(const Grid& grid, const Field& field, double isovalue, double threshold) {
-    const nestgrid_grid t = make_table(grid);
-    const nestgrid_field f = make_table(grid, field);
+    const TableInC in_c(grid);
+    const nestgrid_grid& t = in_c.table;
+    const nestgrid_field f = field_in_c(grid, field);
     nestgrid_surface surface;
     std::array<char, 100> message{};
     ASSERT_EQ(nestgrid_isosurface(&t, &f, isovalue, threshold, &surface, message.data(), 100), 0)
@@ -92,8 +93,9 @@ protected:
     }();
     MutantGrid<3> grid{forest};
     MutantField<3> field{grid, [](const Point& x) { return norm(x); }};
-    nestgrid_grid t = make_table(grid);
-    nestgrid_field f = make_table(grid, field);
+    TableInC<MutantGrid<3>> in_c{grid};
+    nestgrid_grid t = in_c.table;
+    nestgrid_field f = field_in_c(grid, field);
     std::array<char, 200> message{};
     int code = 0;
 };
@@ -147,6 +149,19 @@ TEST_F(FailuresForC, OfAModelAreSentences) {
     EXPECT_EQ(code, 4);
     field.misses = MutantGrid<3>::nowhere;
     EXPECT_EQ(check_says(), "");
+}
+
+TEST_F(FailuresForC, AreToldInTheWordsOfTheTable) {
+    t.children = [](const void*, void*, const nestgrid_element*, std::size_t, nestgrid_element*) {
+        last_sentence() = "cell 3 has left this process";
+        return 9;
+    };
+    const std::string sentence =
+        "the operation 'children' of the grid failed: cell 3 has left this process";
+    EXPECT_EQ(isosurface_says(), sentence);
+    EXPECT_EQ(code, 2);
+    EXPECT_EQ(check_says(), sentence);
+    EXPECT_EQ(code, 2);
 }
 
 }  // namespace

@@ -6,12 +6,12 @@
 
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/any_grid.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <walk/project.hpp>
 
 #include "closedness.hpp"
 #include "forest.hpp"
+#include "table_in_c.hpp"
 #include "thread_executor.hpp"
 
 using namespace nestgrid_test;
@@ -100,11 +100,10 @@ void expect_the_rest_unchanged(Forest<dim> forest, int steps) {
             simplices += surface.simplices.size();
             hidden += all.simplices.size() - surface.simplices.size();
 
-            const auto erased = isosurface(AnyGrid<dim>(grid), AnyField<double>(grid, field), 0.0,
-                                           indicator, options)
-                                    .surface;
-            EXPECT_EQ(erased.simplices, surface.simplices);
-            EXPECT_EQ(erased.vertices, surface.vertices);
+            const BehindTables tables(grid, field);
+            const auto told = isosurface<dim>(*tables.hierarchy, 0.0, indicator, options).surface;
+            EXPECT_EQ(told.simplices, surface.simplices);
+            EXPECT_EQ(told.vertices, surface.vertices);
             const auto in_threads =
                 isosurface(grid, field, 0.0, indicator, options, ThreadExecutor(3)).surface;
             EXPECT_EQ(in_threads.simplices, surface.simplices);

@@ -9,11 +9,13 @@
 
 #include <indicators/packed_entries.hpp>
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/any_grid.hpp>
-#include <nestgrid/check_grid.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/erased_bisections.hpp>
+#include <patches/check_bisections.hpp>
 
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
+#include "table_in_c.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -50,15 +52,14 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
     const LatticeField unknown_field(unknown, std::span<const Sample>(samples));
     const Unblocked<dim> unblocked(geometry);
     const LatticeField unblocked_field(unblocked, std::span<const Sample>(samples));
-    const AnyGrid<dim> any(known);
-    const AnyField<typename decltype(known_field)::value_type> any_field(known, known_field);
-    EXPECT_TRUE(any_field.bisects(any));
-    EXPECT_FALSE(any_field.bisects(AnyGrid<dim>(unknown)));
+    const BehindTables tables(known, known_field);
+    EXPECT_TRUE(erase(known, known_field).facts().knows_blocks);
+    EXPECT_FALSE(erase(unknown, unknown_field).facts().knows_blocks);
     const HierarchicalIndicator indicator(known, known_field);
-    const HierarchicalIndicator any_indicator(any, any_field);
+    const HierarchicalIndicator by_sweeps(*tables.hierarchy);
     for (NodeKey node = 0; node < known.node_count(); ++node) {
-        ASSERT_EQ(any_indicator.stop(node), indicator.stop(node));
-        ASSERT_EQ(any_indicator.bound(node), indicator.bound(node));
+        ASSERT_EQ(by_sweeps.stop(node), indicator.stop(node));
+        ASSERT_EQ(by_sweeps.bound(node), indicator.bound(node));
     }
     for (const double threshold : {0.0, 0.01, 0.1, 10.0}) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
@@ -69,7 +70,7 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
         const auto check = [&](const auto& criterion) {
             const auto a = draw(known, known_field, criterion);
             const auto b = draw(unknown, unknown_field, criterion);
-            const auto c = draw(any, any_field, criterion);
+            const auto c = isosurfaces<dim>(*tables.hierarchy, isovalues, criterion, indicator);
             const auto d = draw(unblocked, unblocked_field, criterion);
             for (std::size_t i = 0; i < a.size(); ++i) {
                 expect_same(a[i], b[i]);
@@ -173,10 +174,8 @@ std::string complaint() {
     const std::vector<float> values = sampled_fields(n)[0].values;
     const Mistaken<mistake> grid({.samples = n});
     const LatticeField field(grid, std::span<const float>(values));
-    const auto violation = check_grid(grid, field);
-    if (!violation) return "";
-    EXPECT_EQ(violation->law, Law::known_bisection);
-    return violation->sentence;
+    NoContext none;
+    return engine::BisectionCheck(grid, field, grid, field, none).run().value_or("");
 }
 
 TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Surfaces on stored hierarchies: the same on all families, and through AnyGrid.
+// Surfaces on stored hierarchies: the same on all families, and behind tables.
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection_grid.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
-#include <nestgrid/any_grid.hpp>
 
 #include "count_leaves.hpp"
 #include "sample_grids.hpp"
+#include "table_in_c.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -46,16 +46,14 @@ TEST(StoredSurfaces, AgreeBetweenFamilies) {
 }
 
 template <class Grid>
-void expect_same_through_any(const Grid& grid) {
+void expect_same_behind_tables(const Grid& grid) {
     const auto values = sample_nodes(grid, [](const Point& x) { return to_sphere(x, 3); });
     const NodeField<Grid, double> field(grid, values);
-    const AnyGrid<Grid::dimension> any(grid);
-    const AnyField<double> any_field(grid, field);
-    const auto hierarchy = erase(any, any_field);
-    EXPECT_EQ(count_leaves(engine::Walk<double>(hierarchy, {})), grid.leaf_count());
+    const BehindTables tables(grid, field);
+    EXPECT_EQ(count_leaves(engine::Walk<double>(*tables.hierarchy, {})), grid.leaf_count());
 }
 
-TEST(StoredSurfaces, WalkTheSameThroughAnyGrid) {
+TEST(StoredSurfaces, WalkTheSameBehindTables) {
     BisectionGrid<3> bisection(tetrahedra(1));
     OctreeGrid<3> octree(hexahedra(2), {.balanced = false});
     PrismGrid prism(extrude(triangles(2), std::vector<double>{1.0}));
@@ -64,10 +62,10 @@ TEST(StoredSurfaces, WalkTheSameThroughAnyGrid) {
     refine_at_sphere(octree, 3);
     refine_at_sphere(prism, 3);
     refine_at_sphere(red_green, 3);
-    expect_same_through_any(bisection);
-    expect_same_through_any(octree);
-    expect_same_through_any(prism);
-    expect_same_through_any(red_green);
+    expect_same_behind_tables(bisection);
+    expect_same_behind_tables(octree);
+    expect_same_behind_tables(prism);
+    expect_same_behind_tables(red_green);
 }
 
 }  // namespace

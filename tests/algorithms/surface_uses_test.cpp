@@ -14,12 +14,12 @@
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
-#include <nestgrid/any_grid.hpp>
 #include <nestgrid/shape_functions.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"
 #include "sample_fields.hpp"
+#include "table_in_c.hpp"
 
 using namespace nestgrid_test;
 
@@ -355,7 +355,8 @@ TEST(Regions, AreTheSameHoweverTheyAreFound) {
     const LatticeBisection<3> grid({.samples = {17, 12, 20}});
     const auto inside = [](const Point& x) { return norm(x - Point{5, 5, 6}) < 4; };
     const Region by_stars(grid, inside);
-    const Region by_sweeps(AnyGrid<3>(grid), inside);
+    const TableInC in_c(grid);  // without stars
+    const Region by_sweeps(*open_table(in_c.table), inside);
     std::size_t count = 0;
     for (std::size_t i = 0; i < grid.node_count(); ++i) {
         const auto node = static_cast<NodeKey>(i);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the interface costs: triangles of the bucky ball into a buffer, by the concept, by a
-// type-erased grid, by the general loop over rules, by tables written in C that tell their
+// What the interface costs: triangles of the bucky ball into a buffer, by the concept, by
+// the general loop over rules, by tables written in C that tell their
 // bisections and that do not, and by a recursion written by hand for this one grid. Where valgrind
 // is installed, the instructions of the latter per element are counted first; more than 105 fail
 // the run, for then it would be a bad measure. One "name value" line per figure; --quick takes 33^3
@@ -11,7 +11,7 @@
 #include <fstream>
 #include <iostream>
 
-#include <nestgrid/any_grid.hpp>
+#include <nestgrid/table.hpp>
 
 #include "bucky_samples.hpp"
 #include "tetrahedra_in_c.h"
@@ -52,14 +52,12 @@ void compare(std::size_t rounds) {
     Bucky<n> bucky;
     const General general({.samples = {n, n, n}});
     const nestgrid::LatticeField general_field(general, std::span<const float>(bucky.samples));
-    const nestgrid::AnyGrid<3> any(bucky.grid);
-    const nestgrid::AnyField<float> any_field(bucky.grid, bucky.field);
     const samples_in_c in_c{static_cast<std::uint64_t>(n - 1), bucky.samples.data()};
     nestgrid_grid table = tetrahedra_in_c(&in_c);
-    const nestgrid::AnyGrid<3> c_table(table);
+    const nestgrid_field c_field = samples_field_in_c(&in_c);
+    const auto c_table = nestgrid::open_table<float>(table, c_field);
     table.middles = nullptr;
-    const nestgrid::AnyGrid<3> untold(table);
-    const nestgrid::AnyField<float> c_field(samples_field_in_c(&in_c));
+    const auto untold = nestgrid::open_table<float>(table, c_field);
     for (const float threshold : bucky_thresholds) {
         Contest contest(rounds);
         nestgrid::TraversalCounts counts;
@@ -69,9 +67,11 @@ void compare(std::size_t rounds) {
             triangles = bucky.draw_soup(bucky.grid, bucky.field, threshold, &counts);
         });
         contest.add("general", [&] { bucky.draw_soup(general, general_field, threshold); });
-        contest.add("anygrid", [&] { bucky.draw_soup(any, any_field, threshold); });
-        contest.add("c_table", [&] { bucky.draw_soup(c_table, c_field, threshold); });
-        contest.add("untold", [&] { bucky.draw_soup(untold, c_field, threshold); });
+        const auto draw = [&](const auto& hierarchy) {
+            bucky.draw_hierarchy(hierarchy, bucky.indicator, double{bucky_isovalue}, threshold);
+        };
+        contest.add("c_table", [&] { draw(*c_table); });
+        contest.add("untold", [&] { draw(*untold); });
         contest.run();
         const auto print = [&](const char* name, double value) {
             Contest::print_figure(at_threshold(name, threshold), value);
@@ -86,7 +86,6 @@ void compare(std::size_t rounds) {
         print("handwritten_ms", contest.time("handwritten"));
         print("concept_over_handwritten", contest.time("concept") / contest.time("handwritten"));
         print("general_over_handwritten", contest.time("general") / contest.time("handwritten"));
-        print("anygrid_over_handwritten", contest.time("anygrid") / contest.time("handwritten"));
         print("c_table_over_handwritten", contest.time("c_table") / contest.time("handwritten"));
         print("c_table_untold_over_handwritten",
               contest.time("untold") / contest.time("handwritten"));

@@ -75,11 +75,19 @@ struct BuckySamples {
                              const nestgrid::HierarchicalIndicator& by, double isovalue,
                              float threshold, nestgrid::TraversalCounts* counts = nullptr,
                              const nestgrid::Executor& executor = nestgrid::SequentialExecutor{}) {
+        return draw_hierarchy(nestgrid::erase(of, values), by, isovalue, threshold, counts,
+                              executor);
+    }
+    template <class Real>
+    std::size_t draw_hierarchy(
+        const nestgrid::Hierarchy<Real>& of, const nestgrid::HierarchicalIndicator& by,
+        double isovalue, float threshold, nestgrid::TraversalCounts* counts = nullptr,
+        const nestgrid::Executor& executor = nestgrid::SequentialExecutor{}) {
         Triangle* to = soup.data();
         const nestgrid::Threshold criterion{&by, threshold};
-        const auto result = nestgrid::extract_isosurfaces(
-            of, values, std::span<const double>(&isovalue, 1), std::vector{TriangleWriter(to)},
-            criterion, by, {}, executor);
+        const auto result = nestgrid::extract_isosurfaces<3>(
+            of, std::span<const double>(&isovalue, 1), std::vector{TriangleWriter(to)}, criterion,
+            by, {}, executor);
         if (counts != nullptr) *counts = result.front().counts;
         return static_cast<std::size_t>(to - soup.data());
     }

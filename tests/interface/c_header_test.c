@@ -21,7 +21,7 @@ int main(void) {
     const nestgrid_field field = {.size = sizeof field, .value_type = NESTGRID_DOUBLE};
     size_t count = 0;
     const int code = grid.coarse_count(grid.self, &count);
-    const int absent = grid.corner_keys == NULL && grid.library_split == NULL &&
+    const int absent = grid.corner_keys == NULL && grid.last_error == NULL &&
                        grid.conforming == 0 && field.corner_gradients == NULL;
     return code == 0 && count == 1 && absent ? 0 : 1;
 }

@@ -8,7 +8,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/any_grid.hpp>
+#include <nestgrid/table.hpp>
 
 #include "archetype.hpp"
 #include "curved.hpp"
@@ -26,11 +26,11 @@ protected:
     std::string refused(Change change) {
         nestgrid_grid t = table.table;
         change(t);
-        return refusal<InvalidInput>([&] { AnyGrid<2>{t}; });
+        return refusal<InvalidInput>([&] { open_table(t); });
     }
     ArchetypeGrid grid;
     ArchetypeField field;
-    TableInC<ArchetypeGrid> table{grid, {&bisection_rule(Shape::triangle, 2)}};
+    TableInC<ArchetypeGrid> table{grid};
 };
 
 TEST_F(CTable, IsRefusedWithASentence) {
@@ -39,8 +39,8 @@ TEST_F(CTable, IsRefusedWithASentence) {
               "the table of the grid is too small: its size says 40 bytes");
     EXPECT_EQ(refused([](auto& t) { t.size = 0; }),
               "the table of the grid is too small: its size says 0 bytes");
-    EXPECT_EQ(refused([](auto& t) { t.dimension = 3; }),
-              "the table is of a grid of dimension 3, not 2");
+    EXPECT_EQ(refused([](auto& t) { t.dimension = 1; }),
+              "the table is of a grid of dimension 1, not 2 or 3");
     EXPECT_EQ(refused([](auto& t) { t.coarse_count = nullptr; }),
               "the table of the grid lacks the function 'coarse_count'");
     EXPECT_EQ(refused([](auto& t) { t.coarse = nullptr; }),
@@ -107,31 +107,29 @@ TEST_F(CTable, WithAWrongRuleIsRefusedWithASentence) {
 }
 
 TEST_F(CTable, OfAFieldIsRefusedWithASentence) {
-    const nestgrid_field good = make_table(grid, field);
+    const nestgrid_field good = field_in_c(grid, field);
     const auto refused_with = [&](auto change) {
         nestgrid_field t = good;
         change(t);
-        return refusal<InvalidInput>([&] { AnyField<float>{t}; });
+        return refusal<InvalidInput>([&] { open_table<float>(table.table, t); });
     };
     EXPECT_EQ(refused_with([](auto&) {}), "");
     EXPECT_EQ(refused_with([](auto& t) { t.size = 16; }),
               "the table of the field is too small: its size says 16 bytes");
     EXPECT_EQ(refused_with([](auto& t) { t.value_type = NESTGRID_DOUBLE; }),
               "the values of the field are of another type, float or double, than asked for");
-    EXPECT_EQ(refused_with([](auto& t) { t.components = 2; }), "the field has 2 components, not 1");
+    EXPECT_EQ(refused_with([](auto& t) { t.components = 0; }), "the field has 0 components");
     EXPECT_EQ(refused_with([](auto& t) { t.coarse_values = nullptr; }),
               "the table of the field lacks the function 'coarse_values' or 'new_values'");
     EXPECT_EQ(refused_with([](auto& t) { t.new_values = nullptr; }),
               "the table of the field lacks the function 'coarse_values' or 'new_values'");
-    EXPECT_EQ(refusal<InvalidInput>([&] { AnyField<float, 3>{good}; }),
-              "the field has 1 components, not 3");
 }
 
 TEST_F(CTable, OfAnOlderOrNewerLibraryIsUnderstood) {
     const auto lines = [&](const nestgrid_grid& t, const nestgrid_field& f) {
-        return isosurface(AnyGrid<2>(t), AnyField<float>(f), 3.0).surface;
+        return isosurface<2>(*open_table<float>(t, f), 3.0).surface;
     };
-    const nestgrid_field good = make_table(grid, field);
+    const nestgrid_field good = field_in_c(grid, field);
     const auto expected = lines(table.table, good);
     EXPECT_EQ(expected.simplices.size(), 2U);
 
@@ -159,7 +157,7 @@ TEST_F(CTable, WrongAnswersAreNamed) {
         nestgrid_grid t = table.table;
         change(t);
         return refusal<GridError>(
-            [&] { (void)isosurface(AnyGrid<2>(t), AnyField<float>(grid, field), 3.0); });
+            [&] { (void)isosurface<2>(*open_table<float>(t, field_in_c(grid, field)), 3.0); });
     };
     EXPECT_EQ(told([](auto& t) {
                   t.split = [](const void*, void*, const nestgrid_element*, int* rule) {
@@ -190,33 +188,39 @@ auto failing(int (*)(Args...)) -> int (*)(Args...) {
     return [](Args...) { return 7; };
 }
 
+/// What drawing from tables says.
+template <class Real>
+std::string told(const nestgrid_grid& grid, const nestgrid_field& field, double isovalue) {
+    return refusal<GridError>([&] {
+        (void)isosurface<3>(*open_table<Real>(grid, field), isovalue,
+                            {.normals = true, .cap = true});
+    });
+}
+std::string with_code_7(const std::string& operation, const std::string& what) {
+    return "the operation '" + operation + "' of the " + what + " failed with code 7";
+}
+
 TEST(Failures, NameTheOperation) {
-    const auto told = [](const nestgrid_grid& t, const auto& f, double isovalue) {
-        return refusal<GridError>([&] {
-            const AnyGrid<3> grid(t);
-            (void)isosurface(grid, f, isovalue, {.normals = true, .cap = true});
-        });
-    };
     const LatticeBisection<3> lattice({.samples = {5, 6, 7}});
     std::vector<float> values(210, 0.0F);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 11);
     const LatticeField samples(lattice, std::span<const float>(values));
-    const nestgrid_grid grid = make_table(lattice);
-    const nestgrid_field field = make_table(lattice, samples);
-    EXPECT_EQ(told(grid, AnyField<float>(field), 5.5), "");
+    const TableInC in_c(lattice);
+    nestgrid_grid grid = in_c.table;
+    nestgrid_field field = field_in_c(lattice, samples);
+    grid.last_error = nullptr;
+    field.last_error = nullptr;
+    EXPECT_EQ(told<float>(grid, field, 5.5), "");
 
-    const auto sentence = [](const std::string& operation, const std::string& what) {
-        return "the operation '" + operation + "' of the " + what + " failed with code 7";
-    };
     const auto expect_named = [&](auto nestgrid_grid::*operation, const std::string& name) {
         nestgrid_grid t = grid;
         ASSERT_NE(t.*operation, nullptr) << name;
         t.*operation = failing(t.*operation);
-        EXPECT_EQ(told(t, AnyField<float>(field), 5.5), sentence(name, "grid"));
+        EXPECT_EQ(told<float>(t, field, 5.5), with_code_7(name, "grid"));
     };
     expect_named(&nestgrid_grid::coarse_count, "coarse_count");
     expect_named(&nestgrid_grid::coarse, "coarse");
-    expect_named(&nestgrid_grid::library_split, "split");
+    expect_named(&nestgrid_grid::split, "split");
     expect_named(&nestgrid_grid::children, "children");
     expect_named(&nestgrid_grid::corner_keys, "corner_keys");
     expect_named(&nestgrid_grid::new_keys, "new_keys");
@@ -229,24 +233,33 @@ TEST(Failures, NameTheOperation) {
     const auto expect_field_named = [&](auto nestgrid_field::*operation, const std::string& name) {
         nestgrid_field t = field;
         t.*operation = failing(t.*operation);
-        EXPECT_EQ(told(grid, AnyField<float>(t), 5.5), sentence(name, "field"));
+        EXPECT_EQ(told<float>(grid, t, 5.5), with_code_7(name, "field"));
     };
     expect_field_named(&nestgrid_field::coarse_values, "coarse_values");
     expect_field_named(&nestgrid_field::new_values, "new_values");
     expect_field_named(&nestgrid_field::corner_gradients, "corner_gradients");
+}
 
+TEST(Failures, NameTheOperationsOfCurvedGrids) {
     std::mt19937 random(4);
     Forest<3> forest = kuhn<3>(3);
     refine_randomly(forest, random, 100);
     const CurvedGrid curved(forest);
     const CurvedField distance(curved, [](const Point& x) { return norm(x); });
-    nestgrid_grid t = make_table(curved);
-    EXPECT_EQ(told(t, AnyField<double>(curved, distance), 0.7), "");
+    const TableInC in_c(curved);
+    const nestgrid_field field = field_in_c(curved, distance);
+    nestgrid_grid grid = in_c.table;
+    grid.last_error = nullptr;
+    EXPECT_EQ(told<double>(grid, field, 0.7), "");
+    nestgrid_grid t = grid;
     t.constrained = failing(t.constrained);
-    EXPECT_EQ(told(t, AnyField<double>(curved, distance), 0.7), sentence("constrained", "grid"));
-    t = make_table(curved);
+    EXPECT_EQ(told<double>(t, field, 0.7), with_code_7("constrained", "grid"));
+    t = grid;
     t.new_positions = failing(t.new_positions);
-    EXPECT_EQ(told(t, AnyField<double>(curved, distance), 0.7), sentence("new_positions", "grid"));
+    EXPECT_EQ(told<double>(t, field, 0.7), with_code_7("new_positions", "grid"));
+    t = grid;
+    t.make_context = [](const void*) -> void* { return nullptr; };
+    EXPECT_EQ(told<double>(t, field, 0.7), "the operation 'make_context' of the grid failed");
     EXPECT_EQ(CurvedGrid::Context::live, 0);
 }
 
@@ -263,95 +276,53 @@ TEST(Failures, AMissingValueIsToldAsByTheModel) {
     const auto direct = refusal<GridError>([&] { (void)isosurface(grid, field, 0.7); });
     EXPECT_NE(direct.find("no value at new node 4 of an element on level 1"), std::string::npos)
         << direct;
-    EXPECT_EQ(direct, refusal<GridError>([&] {
-                  (void)isosurface(AnyGrid<3>(grid), AnyField<double>(grid, field), 0.7);
-              }));
+    const TableInC in_c(grid);
+    nestgrid_field table = field_in_c(grid, field);
+    EXPECT_EQ(direct, told<double>(in_c.table, table, 0.7));
 
-    nestgrid_field table = make_table(grid, field);
     table.coarse_values = [](const void*, void*, std::size_t, std::size_t, void*,
                              std::uint64_t* missing) {
         *missing = 4;
         return 0;
     };
-    EXPECT_EQ(refusal<GridError>(
-                  [&] { (void)isosurface(AnyGrid<3>(grid), AnyField<double>(table), 0.7); }),
+    EXPECT_EQ(told<double>(in_c.table, table, 0.7),
               "the field has no value at corner 2 of coarse element 0");
 }
 
-/// Throws wherever it can.
-template <class Error>
-struct Throwing {
-    using Element = int;
-    struct Context {
-        explicit Context(const Throwing&) { fail(); }
-    };
-    using value_type = double;
-    static constexpr int dimension = 3;
-
-    [[noreturn]] static void fail() { throw Error("no"); }
-    Context make_context() const { return Context(*this); }
-    std::size_t coarse_count() const { fail(); }
-    CoarseElement<int> coarse(std::size_t) const { fail(); }
-    const Rule* split(int) const { fail(); }
-    void children(int, std::span<int>) const { fail(); }
-    void corner_keys(int, std::span<NodeKey>) const { fail(); }
-    void new_keys(int, std::span<NodeKey>) const { fail(); }
-    void corner_positions(int, std::span<Point>) const { fail(); }
-    void new_positions(int, NodeMask, std::span<Point>) const { fail(); }
-    NodeMask constrained(int) const { fail(); }
-    bool masked(int) const { fail(); }
-    Hidden hidden(int) const { fail(); }
-    NodeMask outside(int) const { fail(); }
-    unsigned boundary_faces(int) const { fail(); }
-    std::uint64_t epoch() const { fail(); }
-    NodeMask coarse_values(std::size_t, std::span<double>) const { fail(); }
-    NodeMask new_values(int, NodeMask, std::span<double>) const { fail(); }
-    void corner_gradients(int, std::span<Point>) const { fail(); }
+/// A grid that fails on the way down, as a C++ code behind a C interface may.
+struct Failing : Forest<3> {
+    const Rule* split(std::uint32_t e) const {
+        if (fails && e == 3) throw InvalidInput("cell 3 has left this process");
+        return Forest<3>::split(e);
+    }
+    bool fails = false;
 };
 
-template <class Error>
-void expect_codes(int code) {
-    const Throwing<Error> model;
-    const nestgrid_grid t = make_table(model);
-    const nestgrid_field f = make_table(model, model);
-    EXPECT_EQ(t.make_context(t.self), nullptr);
-    alignas(typename Throwing<Error>::Context) std::array<std::byte, 8> any{};  // nobody looks
-    void* c = any.data();
-    const nestgrid_element e{};
-    std::array<nestgrid_element, 8> children{};
-    std::array<std::uint64_t, 8> bits{};
-    std::array<double[3], 8> rows{};  // NOLINT(modernize-avoid-c-arrays)
-    nestgrid_coarse coarse{};
-    std::size_t count = 0;
-    const void* rule = nullptr;
-    int answer = 0;
-    unsigned faces = 0;
-    EXPECT_EQ(t.coarse_count(t.self, &count), code);
-    EXPECT_EQ(t.coarse(t.self, c, 0, &coarse), code);
-    EXPECT_EQ(t.library_split(t.self, c, &e, &rule), code);
-    EXPECT_EQ(t.children(t.self, c, &e, 8, children.data()), code);
-    EXPECT_EQ(t.corner_keys(t.self, c, &e, 4, bits.data()), code);
-    EXPECT_EQ(t.new_keys(t.self, c, &e, 6, bits.data()), code);
-    EXPECT_EQ(t.corner_positions(t.self, c, &e, 4, rows.data()), code);
-    EXPECT_EQ(t.new_positions(t.self, c, &e, 1, 6, rows.data()), code);
-    EXPECT_EQ(t.constrained(t.self, c, &e, bits.data()), code);
-    EXPECT_EQ(t.masked(t.self, c, &e, &answer), code);
-    EXPECT_EQ(t.hidden(t.self, c, &e, &answer), code);
-    EXPECT_EQ(t.outside(t.self, c, &e, bits.data()), code);
-    EXPECT_EQ(t.boundary_faces(t.self, c, &e, &faces), code);
-    EXPECT_EQ(t.epoch(t.self, bits.data()), code);
-    EXPECT_EQ(f.coarse_values(f.self, c, 0, 4, rows.data(), bits.data()), code);
-    EXPECT_EQ(f.new_values(f.self, c, &e, 1, 6, rows.data(), bits.data()), code);
-    EXPECT_EQ(f.corner_gradients(f.self, c, &e, 4, rows.data()), code);
-    // A task whose context could not be made is told so by every operation.
-    EXPECT_EQ(t.coarse(t.self, nullptr, 0, &coarse), 2);
-    EXPECT_EQ(f.new_values(f.self, nullptr, &e, 1, 6, rows.data(), bits.data()), 2);
-}
+/// What a table says of its failures reaches who called the library, as text.
+TEST(Failures, AreToldInTheWordsOfTheTable) {
+    Failing grid{kuhn<3>(0)};
+    const ForestField<3> field(grid, [](const Point& x) { return norm(x); });
+    const TableInC in_c(grid);
+    const nestgrid_field values = field_in_c(grid, field);
+    EXPECT_EQ(told<double>(in_c.table, values, 0.7), "");
+    grid.fails = true;
+    EXPECT_EQ(told<double>(in_c.table, values, 0.7),
+              "the operation 'split' of the grid failed: cell 3 has left this process");
+    nestgrid_grid silent = in_c.table;
+    silent.last_error = [](const void*, void*) -> const char* { return nullptr; };
+    EXPECT_EQ(told<double>(silent, values, 0.7),
+              "the operation 'split' of the grid failed with code 1");
+    nestgrid_grid old = in_c.table;  // of a library without last_error
+    old.size = offsetof(nestgrid_grid, last_error);
+    EXPECT_EQ(told<double>(old, values, 0.7),
+              "the operation 'split' of the grid failed with code 1");
 
-TEST(Failures, NothingIsThrownThroughATable) {
-    expect_codes<InvalidInput>(1);
-    expect_codes<GridError>(2);
-    expect_codes<std::runtime_error>(3);
+    grid.fails = false;
+    nestgrid_field full = values;
+    full.coarse_values = failing(values.coarse_values);
+    full.last_error = [](const void*, void*) { return "the disk is full"; };
+    EXPECT_EQ(told<double>(in_c.table, full, 0.7),
+              "the operation 'coarse_values' of the field failed: the disk is full");
 }
 
 }  // namespace

@@ -23,11 +23,13 @@ int main(int count, char** arguments) {
     for (const bool told : {true, false}) {
         nestgrid_grid table = tetrahedra_in_c(in_c.data());
         if (!told) table.middles = nullptr;
-        const AnyGrid<3> grid(table);
-        std::vector<Subject<AnyField<float>>> subjects;
+        const TabledGrid<3> grid{table};
+        std::vector<Subject<TabledField<float>>> subjects;
         for (std::size_t i = 0; i < fields.size(); ++i) {
-            subjects.push_back({fields[i].name, AnyField<float>(samples_field_in_c(&in_c[i])),
-                                fields[i].isovalue, fields[i].range});
+            subjects.push_back({fields[i].name,
+                                {samples_field_in_c(&in_c[i])},
+                                fields[i].isovalue,
+                                fields[i].range});
         }
         record_all(told ? "any3_float/told_in_c" : "any3_float/in_c", grid, subjects);
     }

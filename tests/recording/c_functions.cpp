@@ -6,6 +6,7 @@
 
 #include "forests.hpp"
 #include "lattices.hpp"
+#include "table_in_c.hpp"
 #include "tetrahedra_in_c.h"
 
 namespace {
@@ -32,10 +33,11 @@ void add_in_c(Case& c, const std::string& run, const nestgrid_grid& grid,
 template <class Grid, class Field>
 void record_in_c(const std::string& name, const Grid& grid,
                  const std::vector<Subject<Field>>& subjects) {
+    const TableInC in_c(grid);
     record(name, [&](Case& c) {
         for (const auto& s : subjects) {
             for (const double threshold : {0.0, 0.02, 0.2}) {
-                add_in_c(c, s.name, make_table(grid), make_table(grid, s.field), s.isovalue,
+                add_in_c(c, s.name, in_c.table, field_in_c(grid, s.field), s.isovalue,
                          threshold * s.range);
             }
         }

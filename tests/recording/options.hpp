@@ -109,11 +109,11 @@ void record_uses(const std::string& name, const Grid& grid,
     });
     record(name + "/series", [&](Case& c) {
         for (const auto& s : subjects) {
-            IsosurfaceSeries series(grid, s.field);
+            const auto series = series_of(grid, s.field);
             for (const auto& named : all_options()) {
                 for (const double off : {0.0, 0.04, -0.07}) {
                     c.add(s.name, grid,
-                          series.draw(s.isovalue + off * s.range, scaled(named.options, s.range)));
+                          series->draw(s.isovalue + off * s.range, scaled(named.options, s.range)));
                 }
             }
         }

@@ -8,6 +8,7 @@
 #include <nestgrid/adapters/p4est_fields.hpp>
 
 #include "options.hpp"
+#include "table_in_c.hpp"
 
 namespace {
 
@@ -23,14 +24,16 @@ void record_forest(const std::string& name, const Forest<dim>& forest, const Map
     const auto fields = catching_fields(nodes.places, 7);
     std::vector<KeyedField<Grid>> keyed;
     for (const NodalSamples& samples : fields) keyed.emplace_back(grid, nodes, samples.values);
-    const AnyGrid<dim> any(grid);
-    std::vector<Subject<AnyField<double>>> subjects;
+    const TableInC in_c(grid);
+    const TabledGrid<dim> tabled{in_c.table};
+    std::vector<Subject<TabledField<double>>> subjects;
     for (std::size_t i = 0; i < fields.size(); ++i) {
         subjects.push_back({fields[i].name.substr(0, fields[i].name.find(' ')),
-                            AnyField<double>(grid, keyed[i]), 0.0,
+                            {field_in_c(grid, keyed[i])},
+                            0.0,
                             fields[i].name == "5 units in the last place" ? 0x1p-52 : 1});
     }
-    record_options(name, any, subjects);
+    record_options(name, tabled, subjects);
 }
 
 /// The solver's own numbers of nodes, without tables.

@@ -18,6 +18,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -31,7 +32,7 @@
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
-#include <nestgrid/any_grid.hpp>
+#include <nestgrid/table.hpp>
 
 #include "thread_executor.hpp"
 
@@ -86,8 +87,7 @@ public:
     /// All of a surface, under the name of a run.
     /// \param grid whose keys name the elements
     template <class Grid, int dimension>
-    void add(const std::string& run, const Grid& grid,
-             const Isosurface<dimension>& result) {
+    void add(const std::string& run, const Grid& grid, const Isosurface<dimension>& result) {
         const auto& s = result.surface;
         Hash whole;
         const auto part = [&](const char* name, const auto& what) {
@@ -262,32 +262,81 @@ inline int finish(int count, char** arguments) {
 
 // ------------------------------------------------------------------------- the library's functions
 
+/// The table of a grid, which is borrowed.
+template <int dim>
+struct TabledGrid {
+    using Element = nestgrid_element;
+    static constexpr int dimension = dim;
+
+    bool offers(Feature feature) const {
+        const bool keys = table.corner_keys != nullptr && table.new_keys != nullptr;
+        return keys && (feature == Feature::own_keys ||
+                        (feature == Feature::dense_keys && table.node_count > 0));
+    }
+    void corner_keys(const Element& e, std::span<NodeKey> out) const {
+        void* context = table.make_context == nullptr ? nullptr : table.make_context(table.self);
+        table.corner_keys(table.self, context, &e, out.size(), out.data());
+        if (table.free_context != nullptr) table.free_context(table.self, context);
+    }
+    void new_keys(const Element& e, std::span<NodeKey> out) const {
+        table.new_keys(table.self, nullptr, &e, out.size(), out.data());
+    }
+    std::size_t node_count() const { return table.node_count; }
+
+    nestgrid_grid table;
+};
+template <class Real>
+struct TabledField {
+    using value_type = Real;
+    nestgrid_field table;
+};
+
+template <class Grid, class Field>
+std::unique_ptr<const Hierarchy<typename Field::value_type>> hierarchy_of(const Grid& grid,
+                                                                          const Field& field) {
+    using Real = typename Field::value_type;
+    if constexpr (requires { grid.table.coarse_count; }) {
+        return open_table<Real>(grid.table, field.table);
+    } else {
+        return std::unique_ptr<const Hierarchy<Real>>(
+            new detail::ErasedHierarchy<Grid, Field>(grid, field));
+    }
+}
+
 template <class Grid, class Field, class E = SequentialExecutor>
 HierarchicalIndicator prepare(const Grid& grid, const Field& field, const E& executor = {}) {
-    return HierarchicalIndicator(grid, field, executor);
+    return HierarchicalIndicator(*hierarchy_of(grid, field), {}, executor);
 }
 
 template <class Grid, class Field>
 auto draw_alone(const Grid& grid, const Field& field, double isovalue,
                 const IsosurfaceOptions& options) {
-    return isosurface(grid, field, isovalue, options);
+    return isosurface<Grid::dimension>(*hierarchy_of(grid, field), isovalue, options);
 }
 
 template <class Grid, class Field, class I, class E = SequentialExecutor>
 auto draw(const Grid& grid, const Field& field, double isovalue, const I& indicator,
           const IsosurfaceOptions& options, const E& executor = {}) {
+    const auto hierarchy = hierarchy_of(grid, field);
     if constexpr (std::is_same_v<I, HierarchicalIndicator>) {
-        return isosurface(grid, field, isovalue, indicator, options, executor);
+        return isosurface<Grid::dimension>(*hierarchy, isovalue, indicator, options, executor);
     } else {
-        return isosurface(grid, field, isovalue, Threshold(&indicator, options.threshold),
-                          indicator, options, executor);
+        return isosurface<Grid::dimension>(*hierarchy, isovalue,
+                                           Threshold(&indicator, options.threshold), indicator,
+                                           options, executor);
     }
+}
+
+template <class Grid, class Field>
+auto series_of(const Grid& grid, const Field& field) {
+    return std::make_unique<IsosurfaceSeries<Grid::dimension>>(hierarchy_of(grid, field));
 }
 
 template <class Grid, class Field, class S, class Indicator>
 auto draw_with(const Grid& grid, const Field& field, double isovalue, const S& criterion,
                const Indicator& indicator, const IsosurfaceOptions& options) {
-    return isosurface(grid, field, isovalue, criterion, indicator, options);
+    return isosurface<Grid::dimension>(*hierarchy_of(grid, field), isovalue, criterion, indicator,
+                                       options);
 }
 
 template <class I>
@@ -298,21 +347,24 @@ Threshold at_most(const I& indicator, double threshold) {
 template <class Grid, class Field, class Indicator>
 auto draw_several(const Grid& grid, const Field& field, const std::vector<double>& isovalues,
                   double threshold, const Indicator& indicator, const IsosurfaceOptions& options) {
-    return isosurfaces(grid, field, std::span<const double>(isovalues),
-                       at_most(indicator, threshold), indicator, options);
+    return isosurfaces<Grid::dimension>(*hierarchy_of(grid, field),
+                                        std::span<const double>(isovalues),
+                                        at_most(indicator, threshold), indicator, options);
 }
 
 template <class Grid, class Field, class Indicator>
 auto draw_band(const Grid& grid, const Field& field, double low, double high, double threshold,
                const Indicator& indicator, const IsosurfaceOptions& options) {
-    return isoband(grid, field, low, high, at_most(indicator, threshold), indicator, options);
+    return isoband<Grid::dimension>(*hierarchy_of(grid, field), low, high,
+                                    at_most(indicator, threshold), indicator, options);
 }
 
 template <class Grid, class Field, class Indicator>
 TriangleBudget budget(const Grid& grid, const Field& field, double isovalue,
                       const Indicator& indicator, std::uint64_t most,
                       const IsosurfaceOptions& options) {
-    return find_threshold(grid, field, isovalue, indicator, most, options);
+    return find_threshold<Grid::dimension>(*hierarchy_of(grid, field), isovalue, indicator, most,
+                                           options);
 }
 
 /// Into sinks of one's own.
@@ -320,14 +372,15 @@ template <class Grid, class Field, class Indicator, class Sink, class E = Sequen
 auto pour(const Grid& grid, const Field& field, const std::vector<double>& isovalues,
           std::vector<Sink> sinks, double threshold, const Indicator& indicator,
           const IsosurfaceOptions& options, const E& executor = {}) {
-    return extract_isosurfaces(grid, field, std::span<const double>(isovalues), std::move(sinks),
-                               at_most(indicator, threshold), indicator, options, executor);
+    return extract_isosurfaces<Grid::dimension>(
+        *hierarchy_of(grid, field), std::span<const double>(isovalues), std::move(sinks),
+        at_most(indicator, threshold), indicator, options, executor);
 }
 
 template <class Grid, class Field, class Indicator>
 double volume(const Grid& grid, const Field& field, double low, double high,
               const Indicator& indicator, double threshold) {
-    return volume_between(grid, field, low, high, indicator, threshold);
+    return volume_between(*hierarchy_of(grid, field), low, high, indicator, threshold);
 }
 
 // ------------------------------------------------------------------------------ pieces of cases

@@ -156,10 +156,14 @@ public:
               executor) {}
     /// The same for a hierarchy; leaf_errors may be empty.
     /// \param spread how `stop` is handed from finer nodes to coarser ones
-    HierarchicalIndicator(const Hierarchy<float>& hierarchy, const LeafErrors& leaf_errors,
-                          const Executor& executor, const Spread& spread = {});
-    HierarchicalIndicator(const Hierarchy<double>& hierarchy, const LeafErrors& leaf_errors,
-                          const Executor& executor, const Spread& spread = {});
+    explicit HierarchicalIndicator(const Hierarchy<float>& hierarchy,
+                                   const LeafErrors& leaf_errors = {},
+                                   const Executor& executor = SequentialExecutor{},
+                                   const Spread& spread = {});
+    explicit HierarchicalIndicator(const Hierarchy<double>& hierarchy,
+                                   const LeafErrors& leaf_errors = {},
+                                   const Executor& executor = SequentialExecutor{},
+                                   const Spread& spread = {});
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
     double stop(NodeKey node) const override { return bfloat16_value(entries_.at(node).stop); }

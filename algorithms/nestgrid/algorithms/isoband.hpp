@@ -27,16 +27,24 @@ Isosurface<dimension> join_band(std::vector<Isosurface<dimension>> levels);
 /// \return counts and the larger error bound of the two level sets
 /// \throw InvalidInput unless low < high, and for options.cap: caps of bands are not made
 /// \throw GridError as extract_isosurfaces()
+template <int dimension, class Real>
+Isosurface<dimension> isoband(const Hierarchy<Real>& hierarchy, double low, double high,
+                              const Criterion& criterion, const Bounds& bounds,
+                              const IsosurfaceOptions& options = {},
+                              const Executor& executor = SequentialExecutor{}) {
+    if (!(low < high)) throw InvalidInput("the lower isovalue is not below the upper one");
+    if (options.cap) throw InvalidInput("a band between two isovalues cannot be capped");
+    const std::array<double, 2> isovalues{low, high};
+    return detail::join_band(isosurfaces<dimension>(hierarchy, std::span<const double>(isovalues),
+                                                    criterion, bounds, options, executor));
+}
 template <class Grid, class Field>
 auto isoband(const Grid& grid, const Field& field, double low, double high,
              const Criterion& criterion, const Bounds& bounds,
              const IsosurfaceOptions& options = {},
              const Executor& executor = SequentialExecutor{}) {
-    if (!(low < high)) throw InvalidInput("the lower isovalue is not below the upper one");
-    if (options.cap) throw InvalidInput("a band between two isovalues cannot be capped");
-    const std::array<double, 2> isovalues{low, high};
-    return detail::join_band(isosurfaces(grid, field, std::span<const double>(isovalues), criterion,
-                                         bounds, options, executor));
+    return isoband<detail::surface_dimension<Grid>()>(erase(grid, field), low, high, criterion,
+                                                      bounds, options, executor);
 }
 
 }  // namespace nestgrid

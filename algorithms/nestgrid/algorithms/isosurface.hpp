@@ -14,7 +14,8 @@
 // docs/closed_surfaces.md.
 //
 // The functions below make a Hierarchy of the grid and the field (detail/erase.hpp) and call the
-// compiled library.
+// compiled library. Each also takes a hierarchy in their place, such as that of a table in C
+// (table.hpp), with its dimension: isosurface<3>(hierarchy, isovalue).
 #pragma once
 
 #include <utility>
@@ -65,28 +66,37 @@ constexpr int surface_dimension() {
 /// \return one result for each isovalue
 /// \throw GridError where the field has no value, or where the grid has changed since the bounds
 ///        were computed
-/// \throw InvalidInput where an isovalue is not a number
+/// \throw InvalidInput where an isovalue is not a number, or a hierarchy has another dimension
+template <int dimension, class Real>
+std::vector<Isosurface<dimension>> isosurfaces(const Hierarchy<Real>& hierarchy,
+                                               std::span<const double> isovalues,
+                                               const Criterion& criterion, const Bounds& bounds,
+                                               const IsosurfaceOptions& options = {},
+                                               const Executor& executor = SequentialExecutor{}) {
+    hierarchy.facts().require_dimension(dimension);
+    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues,
+                                               detail::SurfaceTargets<dimension>{}, criterion,
+                                               bounds, options, executor);
+}
 template <class Grid, class Field>
 auto isosurfaces(const Grid& grid, const Field& field, std::span<const double> isovalues,
                  const Criterion& criterion, const Bounds& bounds,
                  const IsosurfaceOptions& options = {},
                  const Executor& executor = SequentialExecutor{}) {
-    constexpr int dimension = detail::surface_dimension<Grid>();
-    return detail::draw_isosurfaces<dimension>(erase(grid, field), isovalues,
-                                               detail::SurfaceTargets<dimension>{}, criterion,
-                                               bounds, options, executor);
+    return isosurfaces<detail::surface_dimension<Grid>()>(erase(grid, field), isovalues, criterion,
+                                                          bounds, options, executor);
 }
 
 /// The same, each surface into a sink of its own (surface.hpp); those of the results stay empty.
 /// \tparam Sink a MeshSink or a SimplexSink of the grid's dimension
 /// \throw InvalidInput also where there is not one sink for each isovalue, and for normals into a
 ///        SimplexSink
-template <class Grid, class Field, class Sink>
-auto extract_isosurfaces(const Grid& grid, const Field& field, std::span<const double> isovalues,
-                         std::vector<Sink> sinks, const Criterion& criterion, const Bounds& bounds,
-                         const IsosurfaceOptions& options = {},
-                         const Executor& executor = SequentialExecutor{}) {
-    constexpr int dimension = detail::surface_dimension<Grid>();
+template <int dimension, class Real, class Sink>
+std::vector<Isosurface<dimension>> extract_isosurfaces(
+    const Hierarchy<Real>& hierarchy, std::span<const double> isovalues, std::vector<Sink> sinks,
+    const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options = {},
+    const Executor& executor = SequentialExecutor{}) {
+    hierarchy.facts().require_dimension(dimension);
     detail::SurfaceTargets<dimension> targets;
     for (auto& sink : sinks) {
         if constexpr (std::is_convertible_v<Sink*, MeshSink<dimension>*>) {
@@ -95,45 +105,71 @@ auto extract_isosurfaces(const Grid& grid, const Field& field, std::span<const d
             targets.soups.push_back(&sink);
         }
     }
-    return detail::draw_isosurfaces<dimension>(erase(grid, field), isovalues, targets, criterion,
-                                               bounds, options, executor);
+    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues, targets, criterion, bounds,
+                                               options, executor);
+}
+template <class Grid, class Field, class Sink>
+auto extract_isosurfaces(const Grid& grid, const Field& field, std::span<const double> isovalues,
+                         std::vector<Sink> sinks, const Criterion& criterion, const Bounds& bounds,
+                         const IsosurfaceOptions& options = {},
+                         const Executor& executor = SequentialExecutor{}) {
+    return extract_isosurfaces<detail::surface_dimension<Grid>()>(
+        erase(grid, field), isovalues, std::move(sinks), criterion, bounds, options, executor);
 }
 
 /// One isosurface.
+template <int dimension, class Real>
+Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
+                                 const Criterion& criterion, const Bounds& bounds,
+                                 const IsosurfaceOptions& options = {},
+                                 const Executor& executor = SequentialExecutor{}) {
+    return std::move(isosurfaces<dimension>(hierarchy, std::span<const double>(&isovalue, 1),
+                                            criterion, bounds, options, executor)
+                         .front());
+}
 template <class Grid, class Field>
 auto isosurface(const Grid& grid, const Field& field, double isovalue, const Criterion& criterion,
                 const Bounds& bounds, const IsosurfaceOptions& options = {},
                 const Executor& executor = SequentialExecutor{}) {
-    return std::move(isosurfaces(grid, field, std::span<const double>(&isovalue, 1), criterion,
-                                 bounds, options, executor)
-                         .front());
+    return isosurface<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, criterion,
+                                                         bounds, options, executor);
 }
 
 /// The same with S from options.threshold or options.max_triangles.
 /// \throw InvalidInput also where the threshold is negative or not a number, and where even the
 ///        coarsest surface has more triangles than asked for
+template <int dimension, class Real>
+Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
+                                 const HierarchicalIndicator& indicator,
+                                 const IsosurfaceOptions& options = {},
+                                 const Executor& executor = SequentialExecutor{}) {
+    hierarchy.facts().require_dimension(dimension);
+    const Threshold criterion =
+        detail::criterion_for<dimension>(hierarchy, isovalue, indicator, options, executor);
+    return isosurface<dimension>(hierarchy, isovalue, criterion, indicator, options, executor);
+}
 template <class Grid, class Field>
 auto isosurface(const Grid& grid, const Field& field, double isovalue,
                 const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
                 const Executor& executor = SequentialExecutor{}) {
-    constexpr int dimension = detail::surface_dimension<Grid>();
-    const auto hierarchy = erase(grid, field);
-    const Threshold criterion =
-        detail::criterion_for<dimension>(hierarchy, isovalue, indicator, options, executor);
-    return std::move(detail::draw_isosurfaces<dimension>(hierarchy,
-                                                         std::span<const double>(&isovalue, 1),
-                                                         detail::SurfaceTargets<dimension>{},
-                                                         criterion, indicator, options, executor)
-                         .front());
+    return isosurface<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, indicator,
+                                                         options, executor);
 }
 
 /// The same with its own preroll: one call for one surface.
+template <int dimension, class Real>
+Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
+                                 const IsosurfaceOptions& options = {},
+                                 const Executor& executor = SequentialExecutor{}) {
+    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
+    return isosurface<dimension>(hierarchy, isovalue, indicator, options, executor);
+}
 template <class Grid, class Field>
 auto isosurface(const Grid& grid, const Field& field, double isovalue,
                 const IsosurfaceOptions& options = {},
                 const Executor& executor = SequentialExecutor{}) {
-    const HierarchicalIndicator indicator(grid, field, executor);
-    return isosurface(grid, field, isovalue, indicator, options, executor);
+    return isosurface<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, options,
+                                                         executor);
 }
 
 }  // namespace nestgrid

@@ -51,6 +51,15 @@ public:
               std::unique_ptr<const Hierarchy<typename Field::value_type>>(
                   new detail::ErasedHierarchy<Grid, Field>(grid, field)),
               indicator_)} {}
+    /// The same for a hierarchy.
+    /// \throw InvalidInput also where it has another dimension
+    template <class Real>
+    explicit IsosurfaceSeries(std::unique_ptr<const Hierarchy<Real>> hierarchy,
+                              const Executor& executor = SequentialExecutor{})
+        : indicator_{*hierarchy, LeafErrors{}, executor} {
+        hierarchy->facts().require_dimension(dimension);
+        state_ = detail::make_series<dimension>(std::move(hierarchy), indicator_);
+    }
     IsosurfaceSeries(const IsosurfaceSeries&) = delete;
     IsosurfaceSeries& operator=(const IsosurfaceSeries&) = delete;
 

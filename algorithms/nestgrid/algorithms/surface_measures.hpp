@@ -46,13 +46,15 @@ std::vector<double> flux(const Surface<3>& surface, const SurfaceMeasurement& me
 /// Volume of the part of the domain where low <= U < high, under the projection with a threshold:
 /// the difference of two capped surfaces, of which nothing is kept.
 /// \throw InvalidInput unless low <= high
-template <class Grid, class Field>
-double volume_between(const Grid& grid, const Field& field, double low, double high,
+/// A hierarchy that has another dimension than 3 is InvalidInput.
+template <class Real>
+double volume_between(const Hierarchy<Real>& hierarchy, double low, double high,
                       const HierarchicalIndicator& indicator, double threshold = 0) {
-    static_assert(Grid::dimension == 3, "volumes need a grid of dimension 3");
     if (!(low <= high)) throw InvalidInput("the lower isovalue is not below the upper one");
-    Context<Grid> context = make_context(grid);
-    const Point origin = detail::call_coarse(grid, context, 0).corners[0];
+    Coarse coarse;
+    Family family;
+    hierarchy.coarse(hierarchy.open().get(), 0, coarse, family);
+    const Point origin = coarse.corners[0];
     std::array<double, 2> volume{0, 0};
     const auto adder = [&origin](double* sum) {
         return SimplexStream<3>([sum, &origin](const std::array<Point, 3>& x) {
@@ -60,10 +62,16 @@ double volume_between(const Grid& grid, const Field& field, double low, double h
         });
     };
     const std::array<double, 2> isovalues{low, high};
-    extract_isosurfaces(grid, field, std::span<const double>(isovalues),
-                        std::vector{adder(&volume[0]), adder(&volume[1])},
-                        Threshold(&indicator, threshold), indicator, {.cap = true});
+    extract_isosurfaces<3>(hierarchy, std::span<const double>(isovalues),
+                           std::vector{adder(&volume[0]), adder(&volume[1])},
+                           Threshold(&indicator, threshold), indicator, {.cap = true});
     return volume[0] - volume[1];
+}
+template <class Grid, class Field>
+double volume_between(const Grid& grid, const Field& field, double low, double high,
+                      const HierarchicalIndicator& indicator, double threshold = 0) {
+    static_assert(Grid::dimension == 3, "volumes need a grid of dimension 3");
+    return volume_between(erase(grid, field), low, high, indicator, threshold);
 }
 
 }  // namespace nestgrid

@@ -42,7 +42,25 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
 /// \param criterion_at the criterion for a threshold: S(double), one that holds at more nodes the
 ///        greater the threshold is; fine_inside (region.hpp) with a threshold of its own, say
 /// \param options cap and progress count
-/// \throw InvalidInput where even the coarsest surface has more than max_triangles
+/// \throw InvalidInput where even the coarsest surface has more than max_triangles, and for a
+///        hierarchy of another dimension
+template <int dimension, class Real, class MakeCriterion>
+    requires requires(const MakeCriterion& make) {
+        { make(0.0) } -> std::derived_from<Criterion>;
+    }
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
+                              const MakeCriterion& criterion_at,
+                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                              const IsosurfaceOptions& options = {},
+                              const Executor& executor = SequentialExecutor{}) {
+    using S = decltype(criterion_at(0.0));
+    const detail::MakeCriterion make = [&](double threshold) {
+        return std::make_unique<const S>(criterion_at(threshold));
+    };
+    hierarchy.facts().require_dimension(dimension);
+    return detail::find_threshold<dimension>(hierarchy, isovalue, make, indicator, max_triangles,
+                                             options, executor);
+}
 template <class Grid, class Field, class MakeCriterion>
     requires requires(const MakeCriterion& make) {
         { make(0.0) } -> std::derived_from<Criterion>;
@@ -52,34 +70,45 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
                               const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
                               const IsosurfaceOptions& options = {},
                               const Executor& executor = SequentialExecutor{}) {
-    using S = decltype(criterion_at(0.0));
-    const detail::MakeCriterion make = [&](double threshold) {
-        return std::make_unique<const S>(criterion_at(threshold));
-    };
-    return detail::find_threshold<detail::surface_dimension<Grid>()>(
-        erase(grid, field), isovalue, make, indicator, max_triangles, options, executor);
+    return find_threshold<detail::surface_dimension<Grid>()>(
+        erase(grid, field), isovalue, criterion_at, indicator, max_triangles, options, executor);
 }
 
 /// The same with the indicator's own criterion.
+template <int dimension, class Real>
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
+                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                              const IsosurfaceOptions& options = {},
+                              const Executor& executor = SequentialExecutor{}) {
+    const auto everywhere = [&](double threshold) { return Threshold(&indicator, threshold); };
+    return find_threshold<dimension>(hierarchy, isovalue, everywhere, indicator, max_triangles,
+                                     options, executor);
+}
 template <class Grid, class Field>
 TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
                               const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
                               const IsosurfaceOptions& options = {},
                               const Executor& executor = SequentialExecutor{}) {
-    const auto everywhere = [&](double threshold) { return Threshold(&indicator, threshold); };
-    return find_threshold(grid, field, isovalue, everywhere, indicator, max_triangles, options,
-                          executor);
+    return find_threshold<detail::surface_dimension<Grid>()>(
+        erase(grid, field), isovalue, indicator, max_triangles, options, executor);
 }
 
 /// S from options.threshold or options.max_triangles.
-/// \throw InvalidInput where the threshold is negative or not a number, and where even the coarsest
-///        surface has more triangles than asked for
+/// \throw InvalidInput where the threshold is negative or not a number, where even the coarsest
+///        surface has more triangles than asked for, and for a hierarchy of another dimension
+template <int dimension, class Real>
+Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
+                        const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
+                        const Executor& executor = SequentialExecutor{}) {
+    hierarchy.facts().require_dimension(dimension);
+    return detail::criterion_for<dimension>(hierarchy, isovalue, indicator, options, executor);
+}
 template <class Grid, class Field>
 Threshold criterion_for(const Grid& grid, const Field& field, double isovalue,
                         const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
                         const Executor& executor = SequentialExecutor{}) {
-    return detail::criterion_for<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue,
-                                                                    indicator, options, executor);
+    return criterion_for<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, indicator,
+                                                            options, executor);
 }
 
 }  // namespace nestgrid

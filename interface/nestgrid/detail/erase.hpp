@@ -33,12 +33,9 @@ template <class Grid>
 HierarchyFacts facts_of_grid(const Grid& grid) {
     HierarchyFacts facts;
     facts.dimension = Grid::dimension;
-    for (const Feature feature : {Feature::own_keys, Feature::dense_keys, Feature::own_positions,
-                                  Feature::new_positions, Feature::constrained, Feature::masked,
-                                  Feature::outside, Feature::boundary_faces, Feature::hidden}) {
-        if (may_offer<Grid>(feature) && offers(grid, feature)) {
-            facts.features |= static_cast<unsigned>(feature);
-        }
+    for (unsigned bit = 1; bit <= static_cast<unsigned>(last_feature); bit <<= 1U) {
+        const auto feature = static_cast<Feature>(bit);
+        if (may_offer<Grid>(feature) && offers(grid, feature)) facts.features |= bit;
     }
     facts.node_count = dense_key_count(grid);
     if constexpr (requires { grid.conforming(); }) facts.conforming = grid.conforming();

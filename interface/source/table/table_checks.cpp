@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include <nestgrid/any_grid.hpp>
+#include "table_grid.hpp"
 
 namespace nestgrid::detail {
 
@@ -115,29 +115,28 @@ void require(bool there, const char* name) {
 
 }  // namespace
 
-nestgrid_grid checked_table(const nestgrid_grid& given, int dimension) {
+nestgrid_grid checked_table(const nestgrid_grid& given) {
     const nestgrid_grid table = copy(given, offsetof(nestgrid_grid, corner_keys), "grid");
-    if (table.dimension != dimension) {
+    if (table.dimension != 2 && table.dimension != 3) {
         throw InvalidInput("the table is of a grid of dimension " +
-                           std::to_string(table.dimension) + ", not " + std::to_string(dimension));
+                           std::to_string(table.dimension) + ", not 2 or 3");
     }
     require(table.coarse_count != nullptr, "coarse_count");
     require(table.coarse != nullptr, "coarse");
-    require(table.split != nullptr || table.library_split != nullptr, "split");
+    require(table.split != nullptr, "split");
     require(table.children != nullptr, "children");
     return table;
 }
 
-nestgrid_field checked_table(const nestgrid_field& given, int value_type, int components) {
+nestgrid_field checked_table(const nestgrid_field& given, int value_type) {
     const nestgrid_field table = copy(given, offsetof(nestgrid_field, corner_gradients), "field");
     if (table.value_type != value_type) {
         throw InvalidInput(
             "the values of the field are of another type, float or double, than "
             "asked for");
     }
-    if (table.components != components) {
-        throw InvalidInput("the field has " + std::to_string(table.components) +
-                           " components, not " + std::to_string(components));
+    if (table.components < 1) {
+        throw InvalidInput("the field has " + std::to_string(table.components) + " components");
     }
     if (table.coarse_values == nullptr || table.new_values == nullptr) {
         throw InvalidInput(
@@ -146,13 +145,13 @@ nestgrid_field checked_table(const nestgrid_field& given, int value_type, int co
     return table;
 }
 
-std::shared_ptr<const std::deque<Rule>> rules_of_table(const nestgrid_grid& table) {
+std::deque<Rule> rules_of_table(const nestgrid_grid& table) {
     if (table.rule_count < 0 || (table.rule_count > 0 && table.rules == nullptr)) {
         throw InvalidInput("the table of the grid lacks its rules");
     }
-    auto rules = std::make_shared<std::deque<Rule>>();
+    std::deque<Rule> rules;
     for (int i = 0; i < table.rule_count; ++i) {
-        rules->push_back(TableRule(table.rules[i]).make());
+        rules.push_back(TableRule(table.rules[i]).make());
     }
     return rules;
 }

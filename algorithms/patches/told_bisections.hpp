@@ -1,44 +1,37 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bisections that C codes tell in their tables (nestgrid.h), as a grid and a field that know them
-// (known_bisection.hpp).
+// Bisections that a hierarchy tells in rows of nodes (Hierarchy::bisection_rows), as a grid and a
+// field that know them (known_bisection.hpp).
 #pragma once
 
 #include <algorithm>
-#include <vector>
+#include <array>
 
 #include <nestgrid/nestgrid.h>
+#include <nestgrid/erased_bisections.hpp>
+#include <nestgrid/hierarchy.hpp>
 #include <nestgrid/known_bisection.hpp>
 #include <nestgrid/standard_rules.hpp>
-#include <nestgrid/table.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid::engine {
 
-/// The table is borrowed.
-template <int dim>
-class TableBisections {
+/// Hierarchy and task are borrowed.
+template <int dim, class Real>
+class ToldBisections {
     static constexpr std::size_t corners_ = static_cast<std::size_t>(dim) + 1;
+    using Rows = detail::BisectionRows<Real>;
 
 public:
     using Element = nestgrid_element;
-    using Node = std::uint64_t;
-    static constexpr Node no_node = NESTGRID_NO_NODE;
+    using Node = typename Rows::Node;
+    static constexpr Node no_node = Rows::no_node;
     static constexpr int dimension = dim;
     static constexpr auto bisections = maubach_bisections<dim>();
     static constexpr std::size_t block_height = dim;
 
-    /// Whether a table has what it takes.
-    static bool are_in(const nestgrid_grid& t) {
-        return t.middles != nullptr && t.node_keys != nullptr && t.node_positions != nullptr &&
-               t.corner_keys != nullptr && t.new_keys != nullptr && t.corner_positions != nullptr &&
-               t.boundary_faces != nullptr && t.conforming != 0 && t.constrained == nullptr &&
-               t.masked == nullptr && t.hidden == nullptr && t.outside == nullptr;
-    }
-
-    /// \param context of the task that walks
-    explicit TableBisections(const nestgrid_grid& table, void* context)
-        : table_{&table}, context_{context} {
+    explicit ToldBisections(const Hierarchy<Real>& hierarchy, Task* task)
+        : hierarchy_{&hierarchy}, rows_{hierarchy.bisection_rows()}, task_{task} {
         for (int tag = 1; tag <= dim; ++tag) {
             rules_[static_cast<std::size_t>(tag - 1)] =
                 &bisection_rule(dim == 2 ? Shape::triangle : Shape::tetrahedron, tag);
@@ -61,8 +54,10 @@ public:
     }
     const Rule& rule(std::size_t number) const { return *rules_[number]; }
     unsigned boundary_faces(const Element& e) const {
+        Handle handle;
+        detail::set_handle(handle, e);
         unsigned faces = 0;
-        check(table_->boundary_faces(table_->self, context_, &e, &faces), "boundary_faces");
+        hierarchy_->corners(task_, handle, corners_, nullptr, nullptr, &faces);
         return faces;
     }
     bool whole() const { return true; }
@@ -102,39 +97,29 @@ public:
     /// The same, or no_node where an edge is not halved.
     void perhaps_middles(std::span<const Node> a, std::span<const Node> b,
                          std::span<Node> out) const {
-        check(table_->middles(table_->self, out.size(), a.data(), b.data(), out.data()), "middles");
+        rows_->middles(a, b, out);
     }
     void keys(std::span<const Node> nodes, std::span<NodeKey> out) const {
-        if constexpr (std::is_same_v<NodeKey, std::uint64_t>) {
-            check(table_->node_keys(table_->self, nodes.size(), nodes.data(), out.data()),
-                  "node_keys");
-        } else {
-            std::vector<std::uint64_t> narrow(nodes.size());
-            check(table_->node_keys(table_->self, nodes.size(), nodes.data(), narrow.data()),
-                  "node_keys");
-            std::copy(narrow.begin(), narrow.end(), out.begin());
-        }
+        rows_->keys(nodes, out);
     }
     void positions(std::span<const Node> nodes, std::span<Point> out) const {
-        check(table_->node_positions(table_->self, nodes.size(), nodes.data(), as_rows(out)),
-              "node_positions");
+        rows_->positions(nodes, out);
     }
 
 private:
-    static void check(int code, const char* operation) { check_code(code, "grid", operation); }
-
-    const nestgrid_grid* table_;
-    void* context_;
+    const Hierarchy<Real>* hierarchy_;
+    const Rows* rows_;
+    Task* task_;
     std::array<const Rule*, static_cast<std::size_t>(dim)> rules_{};
 };
 
-/// The field on it; the table is borrowed.
+/// The field on them.
 template <class Real>
-class TableValues {
+class ToldValues {
 public:
     using value_type = Real;
 
-    explicit TableValues(const nestgrid_field& table) : table_{&table} {}
+    explicit ToldValues(const detail::BisectionRows<Real>& rows) : rows_{&rows} {}
 
     template <bool whole>
     Real value_at(std::uint64_t node, NodeKey key) const {
@@ -144,20 +129,18 @@ public:
     }
     void values_at(std::span<const std::uint64_t> nodes, std::span<const NodeKey> keys,
                    std::span<Real> out) const {
-        const auto ask = [&](const std::uint64_t* narrow) {
-            check_code(
-                table_->node_values(table_->self, nodes.size(), nodes.data(), narrow, out.data()),
-                "field", "node_values");
-        };
-        if constexpr (std::is_same_v<NodeKey, std::uint64_t>) {
-            ask(keys.data());
-        } else {
-            ask(std::vector<std::uint64_t>(keys.begin(), keys.end()).data());
-        }
+        rows_->values(nodes, keys, out);
     }
 
 private:
-    const nestgrid_field* table_;
+    const detail::BisectionRows<Real>* rows_;
 };
 
-}  // namespace nestgrid::detail
+/// Walks the bisections below an element in blocks, where facts().knows_blocks: by the rows that
+/// the hierarchy tells, or else by its own bisect().
+/// \throw GridError for an element told with a tag that does not exist
+template <int dim, class Real>
+void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element, const Real* values,
+            int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
+
+}  // namespace nestgrid::engine

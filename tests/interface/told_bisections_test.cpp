@@ -5,9 +5,10 @@
 // what is told wrongly is found.
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/isosurface.h>
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/any_grid.hpp>
-#include <nestgrid/check_grid.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/table.hpp>
 
 #include "refusal.hpp"
 #include "same_surface.hpp"
@@ -61,11 +62,12 @@ protected:
         field = samples_field_in_c(&samples);
     }
     auto draw(double isovalue, const IsosurfaceOptions& options) const {
-        return isosurface(AnyGrid<3>(grid), AnyField<float>(field), isovalue, options);
+        return isosurface<3>(*open_table<float>(grid, field), isovalue, options);
     }
     std::string violation() const {
-        const auto found = check_grid(AnyGrid<3>(grid), AnyField<float>(field));
-        return found ? found->sentence : "";
+        std::array<char, 300> message{};
+        nestgrid_check_grid(&grid, &field, message.data(), message.size());
+        return message.data();
     }
 
     /// Elements that say 4 + t where t is meant.
@@ -106,7 +108,7 @@ protected:
 };
 
 TEST_F(ToldBisections, AreTakenWhereAllOfThemAreThere) {
-    const auto taken = [&] { return AnyField<float>(field).bisects(AnyGrid<3>(grid)); };
+    const auto taken = [&] { return open_table<float>(grid, field)->bisection_rows() != nullptr; };
     EXPECT_TRUE(taken());
     const auto not_taken_with = [&](auto change) {
         const auto [g, f] = std::pair(grid, field);

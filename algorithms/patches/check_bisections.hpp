@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Checks that what is known of bisections (known_bisection.hpp) is what the grid itself says.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+
+#include <nestgrid/known_bisection.hpp>
+#include <nestgrid/operations.hpp>
+#include <nestgrid/pack.hpp>
+
+namespace nestgrid::engine {
+
+/// Walks a grid that keeps the contract (check_grid.hpp), and has own keys and positions.
+/// \tparam Known the grid itself, or what it tells; Values likewise of the field
+template <class Grid, class Field, class Known, class Values>
+class BisectionCheck {
+public:
+    using Element = ElementOf<Grid>;
+    using Real = typename Field::value_type;
+
+    BisectionCheck(const Grid& grid, const Field& field, const Known& known, const Values& values,
+                   Context<Grid>& context)
+        : grid_{grid}, field_{field}, known_{known}, values_{values}, context_{context} {}
+
+    /// The first difference as a sentence.
+    std::optional<std::string> run() {
+        try {
+            for (std::size_t i = 0; i < grid_.coarse_count(); ++i) {
+                name_ = std::to_string(i);
+                walk(detail::call_coarse(grid_, context_, i).element);
+            }
+        } catch (const Found& found) {
+            return found.sentence;
+        }
+        return std::nullopt;
+    }
+
+private:
+    static constexpr std::size_t corners_ = static_cast<std::size_t>(Grid::dimension) + 1;
+    using Node = typename Known::Node;
+    using Nodes = std::array<Node, corners_>;
+
+    struct Found {
+        std::string sentence;
+    };
+
+    void demand(bool holds, const char* what) const {
+        if (holds) return;
+        throw Found{std::string(what) + " is not what is known of bisections, in element " + name_};
+    }
+
+    void walk(const Element& e) {
+        const Rule* rule = detail::call_split(grid_, context_, e);
+        check(e, rule);
+        if (rule == nullptr) return;
+        std::array<Element, 2> children;
+        detail::call_children(grid_, context_, e, std::span<Element>(children));
+        const std::string name = name_;
+        for (std::size_t c = 0; c < 2; ++c) {
+            if (is_masked(children[c])) continue;
+            name_ = name + "/" + std::to_string(c);
+            walk(children[c]);
+        }
+        name_ = name;
+    }
+
+    void check(const Element& e, const Rule* rule) {
+        const std::size_t number = known_.bisection(e);
+        demand(number < Known::bisections.size(), "the number of the bisection");
+        const KnownBisection& bisection = Known::bisections[number];
+        const Nodes n = known_.nodes(e);
+        check_corners(e, number, n);
+        const Node a = n[bisection.parent[0]];
+        const Node b = n[bisection.parent[1]];
+        demand(known_.halved(a, b) == (rule != nullptr), "whether the element is split");
+        if constexpr (AnswersInRows<Known>) check_rows(n, a, b);
+        if (rule == nullptr) return;
+        if constexpr (may_offer<Grid>(Feature::outside)) {
+            const bool none =
+                !offers(grid_, Feature::outside) || detail::call_outside(grid_, context_, e) == 0;
+            demand(none || !is_whole(n), "what is whole");
+        }
+        if constexpr (std::is_same_v<Known, Grid>) {
+            demand(&known_.rule(number) == rule, "the rule");
+        }
+        const Node z = known_.middle(a, b);
+        check_new_node(e, z);
+        if constexpr (!AnswersInRows<Known>) check_packs(a, b, z);
+        if constexpr (KnowsBlocks<Known>) {
+            if (number + 1 == Known::bisections.size()) check_block(e);
+        }
+        check_children(e, *rule, bisection, n, z);
+    }
+
+    void check_corners(const Element& e, std::size_t number, const Nodes& n) {
+        std::array<NodeKey, corners_> keys;
+        detail::call_corner_keys(grid_, context_, e, std::span<NodeKey>(keys));
+        for (std::size_t k = 0; k < corners_; ++k) {
+            demand(known_.key(n[k]) == keys[k], "the node at a corner");
+        }
+        demand(known_.nodes(known_.element(number, n)) == n, "the element of some nodes");
+        std::array<Point, corners_> x;
+        detail::call_corner_positions(grid_, context_, e, std::span<Point>(x));
+        for (std::size_t k = 0; k < corners_; ++k) {
+            demand(known_.position(n[k]) == x[k], "the position of a node");
+        }
+    }
+
+    void check_new_node(const Element& e, Node z) {
+        NodeKey key{};
+        detail::call_new_keys(grid_, context_, e, std::span<NodeKey>(&key, 1));
+        demand(known_.key(z) == key, "the new node");
+        Real value{};
+        detail::call_new_values(field_, context_, e, NodeMask{1}, std::span<Real>(&value, 1));
+        demand(values_.template value_at<false>(z, key) == value, "the value at the new node");
+        if (!known_.whole()) return;
+        demand(values_.template value_at<true>(z, key) == value, "the value at the new node");
+    }
+
+    void check_block(const Element& e) {
+        std::size_t split = 0;
+        const std::size_t ends = count_block_ends(e, Known::block_height, split);
+        demand(ends == std::size_t{1} << Known::block_height && (split == 0 || split == ends),
+               "which elements of a block are split");
+    }
+
+    void check_children(const Element& e, const Rule& rule, const KnownBisection& bisection,
+                        const Nodes& n, Node z) {
+        std::array<Element, 2> children;
+        detail::call_children(grid_, context_, e, std::span<Element>(children));
+        for (std::size_t c = 0; c < 2; ++c) {
+            const KnownBisection::Half& half = bisection.child[c];
+            demand(known_.bisection(children[c]) == half.bisection, "a child's bisection");
+            demand(rule.children[c].orientation == half.orientation, "a child's orientation");
+            const Nodes of_child = known_.nodes(children[c]);
+            for (std::size_t k = 0; k < corners_; ++k) {
+                demand(of_child[k] == (half.corner[k] == 4 ? z : n[half.corner[k]]),
+                       "a child's node");
+            }
+            const bool whole = is_whole(of_child) && !is_masked(children[c]);
+            demand(whole || !is_whole(n), "what is whole");
+        }
+    }
+
+    /// Whether several at once are what they are one by one: middles of nodes and of keys,
+    /// positions.
+    void check_packs(Node a, Node b, Node z) {
+        demand(halves_packs(
+                   a, b, z,
+                   [&](const auto& from, const auto& to) -> decltype(known_.middle(from, to)) {
+                       return known_.middle(from, to);
+                   }),
+               "the middle of a pack of nodes");
+        if constexpr (PacksPositions<Known>) {
+            std::array<Node, doubles_at_once> nodes;
+            for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = i % 2 == 0 ? a : z;
+            known_.template with_packed_positions<doubles_at_once>([&](const auto& positions) {
+                const auto x = positions(Pack<Node, doubles_at_once>::load(nodes.data()));
+                for (std::size_t i = 0; i < nodes.size(); ++i) {
+                    const Point one{x[0].numbers()[i], x[1].numbers()[i], x[2].numbers()[i]};
+                    demand(one == known_.position(nodes[i]), "the position of a pack of nodes");
+                }
+            });
+        }
+        if constexpr (KnowsBlocks<Known>) {
+            const NodeKey key = known_.key(z);
+            demand(known_.middle_key(known_.key(a), known_.key(b)) == key, "the key between two");
+            demand(halves_packs(known_.key(a), known_.key(b), key,
+                                [&](const auto& from,
+                                    const auto& to) -> decltype(known_.middle_key(from, to)) {
+                                    return known_.middle_key(from, to);
+                                }),
+                   "the middle of a pack of keys");
+        }
+    }
+    template <class T, class Middle>
+    static bool halves_packs(T from, T to, T between, const Middle& middle) {
+        if constexpr (Packable<T>) {
+            if constexpr (std::is_invocable_v<Middle, Pack<T>, Pack<T>>) {
+                const auto all = middle(Pack<T>::all(from), Pack<T>::all(to)).numbers();
+                return std::ranges::count(all, between) == std::ssize(all);
+            }
+        }
+        return true;
+    }
+
+    /// Whether a row of nodes is answered as they are one by one.
+    /// \param n at the corners, \param a, \param b those of them that are halved where one is
+    void check_rows(const Nodes& n, Node a, Node b) const {
+        std::array<NodeKey, corners_> keys;
+        std::array<Point, corners_> x;
+        std::array<Real, corners_> u;
+        known_.keys(n, keys);
+        for (std::size_t i = 0; i < n.size(); ++i) {
+            demand(keys[i] == known_.key(n[i]), "a key in a row");
+        }
+        known_.positions(n, x);
+        values_.values_at(n, keys, u);  // of keys that were found right
+        for (std::size_t i = 0; i < n.size(); ++i) {
+            demand(x[i] == known_.position(n[i]), "a position in a row");
+            demand(u[i] == values_.template value_at<true>(n[i], keys[i]), "a value in a row");
+        }
+        // In either direction, and the answers in the place of the question.
+        std::array<Node, 3> between{a, b, a};
+        const std::array<Node, 3> to{b, a, b};
+        known_.perhaps_middles(between, to, between);
+        const Node z = known_.halved(a, b) ? known_.middle(a, b) : Known::no_node;
+        demand(std::ranges::count(between, z) == std::ssize(between), "a middle in a row");
+    }
+
+    /// How many elements there are so many levels below one, and how many of them are split.
+    std::size_t count_block_ends(const Element& e, std::size_t height, std::size_t& split) {
+        const Rule* rule = detail::call_split(grid_, context_, e);
+        if (height == 0) {
+            split += rule != nullptr ? 1U : 0U;
+            return 1;
+        }
+        if (rule == nullptr) return 0;
+        std::array<Element, 2> children;
+        detail::call_children(grid_, context_, e, std::span<Element>(children));
+        std::size_t count = 0;
+        for (const Element& child : children) count += count_block_ends(child, height - 1, split);
+        return count;
+    }
+
+    bool is_whole(const Nodes& nodes) const {
+        if constexpr (requires { known_.whole(nodes); }) {
+            if (known_.whole(nodes)) return true;
+        }
+        return known_.whole();
+    }
+    bool is_masked(const Element& e) {
+        if constexpr (may_offer<Grid>(Feature::masked)) {
+            return offers(grid_, Feature::masked) && detail::call_masked(grid_, context_, e);
+        }
+        return false;
+    }
+
+    const Grid& grid_;
+    const Field& field_;
+    const Known& known_;
+    const Values& values_;
+    Context<Grid>& context_;
+    std::string name_;  // of the element
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <patches/told_bisections.hpp>
+
+#include <string>
+
+namespace nestgrid::engine {
+
+template <int dim, class Real>
+void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element, const Real* values,
+            int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) {
+    if (hierarchy.bisection_rows() == nullptr) {
+        return hierarchy.bisect(task, element, values, level, orientation, visitor);
+    }
+    using Grid = ToldBisections<dim, Real>;
+    const Grid grid(hierarchy, task);
+    const auto& e = detail::element_of<nestgrid_element>(element);
+    const std::uint64_t tag = e.word[std::size_t{dim} + 1];
+    if (tag < 1 || tag > dim) {
+        throw GridError("an element has the tag " + std::to_string(tag) + ", not 1 to " +
+                        std::to_string(dim));
+    }
+    const ToldValues<Real> field(*hierarchy.bisection_rows());
+    detail::walk_for(visitor, grid, field, e, values, level, orientation);
+}
+
+#define NESTGRID_INSTANTIATE(dim, Real)                                                       \
+    template void bisect(const Hierarchy<Real>&, Task*, const Handle&, const Real*, int, int, \
+                         detail::ErasedBisectionVisitor<dim, Real>&);
+NESTGRID_INSTANTIATE(2, float)
+NESTGRID_INSTANTIATE(2, double)
+NESTGRID_INSTANTIATE(3, float)
+NESTGRID_INSTANTIATE(3, double)
+#undef NESTGRID_INSTANTIATE
+
+}  // namespace nestgrid::engine
