@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is drawn on closed faces (walk/closed_parts.hpp): the finer side draws, the coarser
-// side adopts.
+// The segments that elements draw on closed faces (walk/closed_parts.hpp): the finer side records
+// them, the coarser side adopts them.
 //
-// Elements below a closed face record the segments they draw on it under the key of every closed
-// face around theirs. An element that has such a face for its own finds them there, for only the
-// other side divides it. Memory: of the order of the surface on these faces.
+// Invariant: a segment is stored under the key of every closed face that contains it. An element
+// that has a closed face among its own faces does not divide it, so that all segments under the key
+// of that face come from its other side.
+// Memory: of the order of the surface on closed faces.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +35,7 @@ public:
         int level = 0;
     };
 
-    /// To be called once before anything is recorded.
+    /// Must be called once, before the first record().
     /// \param elements an empty list for elements of the grid
     void begin(std::size_t attribute_count, Elements elements) {
         attribute_count_ = attribute_count;
@@ -69,10 +70,10 @@ public:
         return number;
     }
 
-    /// vertex(name) will be asked for soon.
+    /// Fetches what vertex(name) reads into the cache.
     void expect(const KeyPair& name) const { vertex_of_.prefetch(name); }
 
-    /// Adds what another task recorded, as if this one had gone on with that task's elements.
+    /// Adds the record of another task, as if this task had visited that task's elements.
     void append(const TransitionContours& other) {
         std::vector<KeyPair> names(other.cuts_.size());
         other.vertex_of_.for_each([&](const KeyPair& name, Index v) { names[v] = name; });
@@ -91,7 +92,7 @@ public:
         });
     }
 
-    /// To be called once between the last record() and the first lookup.
+    /// Must be called once, after the last record() and before the first lookup.
     void finish() {
         group_segments();
         conflicts_.for_each([&](NodeKey face, const Owner& owner) { find_gaps(face, owner); });
@@ -123,8 +124,10 @@ public:
     /// A handle of the element of an owner, valid until the next record().
     Handle element(const Owner& owner) const { return owners_.handle(owner.element); }
 
-    /// Follows what is drawn on a face, by its number, from vertex `from` until `stop(vertex)` says
-    /// so, calling pass(vertex) for those between. \return whether it got there
+    /// Follows the segments on a face from vertex `from` until stop(vertex) returns true, and calls
+    /// pass(vertex) for the vertices between.
+    /// \param face the number of the face
+    /// \return false where the segments end before
     template <class Stop, class Pass>
     bool follow(Index face, Index from, Stop&& stop, Pass&& pass) const {
         const std::span<const Segment> on_face = segments_on(face);
@@ -154,8 +157,7 @@ public:
     std::size_t memory_bytes() const {
         return (segments_.capacity() + grouped_.capacity()) * sizeof(Segment) +
                cuts_.capacity() * sizeof(Place) + attributes_.capacity() * sizeof(double) +
-               faces_.memory_bytes() + vertex_of_.memory_bytes() +
-               face_number_.memory_bytes() +
+               faces_.memory_bytes() + vertex_of_.memory_bytes() + face_number_.memory_bytes() +
                (first_on_.capacity() + face_of_.capacity() + place_.capacity()) * sizeof(Index);
     }
 
@@ -188,14 +190,14 @@ private:
         attributes_.insert(attributes_.end(), cut.attributes.begin(), cut.attributes.end());
     }
 
-    /// Of segments on one face.
+    /// Orders the segments on one face.
     static bool before(const Segment& a, const Segment& b) {
         return a.from != b.from ? a.from < b.from : a.to < b.to;
     }
 
-    /// Few segments are faster looked through than sorted.
+    /// Up to this many segments are searched one by one, which is faster than sorting them.
     static constexpr std::size_t few = 8;
-    /// Of the segments from a vertex, the one to the least vertex; or null.
+    /// The segment from a vertex to the least vertex, or null.
     static const Segment* first_from(Index from, std::span<const Segment> on_face) {
         if (on_face.size() > few) {
             const auto next =
@@ -209,7 +211,7 @@ private:
         return found;
     }
 
-    /// Puts those on one face behind each other, in order where they are many.
+    /// Groups the segments by face, and sorts those of faces that have many.
     void group_segments() {
         face_of_.resize(segments_.size());
         for (std::size_t i = 0; i < segments_.size(); ++i) {
@@ -239,7 +241,8 @@ private:
         return std::span(segments_).subspan(first, first_on_[face + 1U] - first);
     }
 
-    /// Segments that only one side draws link up to loops: each vertex is as often left as met.
+    /// Links the segments that only one side draws to loops. Each vertex begins as many of these
+    /// segments as it ends.
     void find_gaps(NodeKey face, const Owner& owner) {
         std::vector<Segment> left;
         const Index number = *face_number_.find(face);
@@ -268,15 +271,15 @@ private:
     std::vector<Segment> segments_;
     std::vector<Gap> gaps_;
     KeyTable<NodeKey, Split> split_of_;
-    KeyTable<NodeKey, Owner> conflicts_;  // divided in two directions
+    KeyTable<NodeKey, Owner> conflicts_;  // faces that are divided in two directions
     std::vector<Place> cuts_;
-    std::vector<double> attributes_;  // of each cut
+    std::vector<double> attributes_;  // of all cuts, one after the other
     std::size_t attribute_count_ = 0;
     Elements owners_;
     KeyTable<KeyPair, Index> vertex_of_;
     KeyTable<NodeKey, Index> face_number_;
-    std::vector<Index> first_on_;  // by number of face: where its segments begin
-    std::vector<Index> face_of_;   // what group_segments() needs
+    std::vector<Index> first_on_;  // index of the first segment, by number of face
+    std::vector<Index> face_of_;   // scratch of group_segments(), like the next two
     std::vector<Index> place_;
     std::vector<Segment> grouped_;
     KeyFilter faces_;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contours of what is selected of a batch of blocks as lists without gaps, of cuts, of
-// simplices and of fours. A loop over the cuts of one block ends where no processor predicts it;
-// one over those of many blocks does not.
+// The contours of all selected blocks of a batch in three dense lists: cuts, simplices and
+// quadrilaterals. Loops over dense lists have predictable ends; loops over the cuts of a single
+// block do not.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace nestgrid::engine {
 
-/// \tparam pattern of the blocks
+/// \tparam pattern the pattern of bisections of the blocks
 template <const auto& pattern>
 class BlockContourRun {
     using Contour = BlockContours::Contour;
@@ -23,20 +23,21 @@ class BlockContourRun {
 
 public:
     using Cut = BatchEdge;
-    using Corners = std::array<std::uint16_t, 3>;  // cuts; of a segment the first two
+    using Corners = std::array<std::uint16_t, 3>;  // numbers of cuts; a segment has two
     struct Four {
         std::uint16_t first_simplex;
         std::array<std::uint16_t, 4> cut;
-        std::uint16_t mirrored;  // where it is odd
+        std::uint16_t mirrored;  // odd: its simplex is mirrored
         std::array<std::uint16_t, 2> unused;
     };
 
-    // Of all blocks and of all elements beside them.
+    // Limits for a full batch of blocks and as many single simplices.
     static constexpr std::size_t most_fours = most_blocks * (pattern.ends + 1);
     static constexpr std::size_t most_cuts = 4 * most_fours;
     static constexpr std::size_t most_simplices = 2 * most_fours;
 
-    /// \param id of a block or an element
+    /// Appends the contour of a block or a single simplex.
+    /// \param id of it in the batch
     NESTGRID_INLINE void append(const Front& front, const Contour& contour, std::size_t id,
                                 bool mirrored) {
         const auto slot = static_cast<std::uint16_t>(id % most_blocks);
@@ -75,7 +76,7 @@ public:
         simplex_count += contour.simplex_count;
         four_count += contour.four_count;
     }
-    /// An element of which no other part is there.
+    /// Appends the contour of one part of a block of which not all drawn parts are selected.
     NESTGRID_NOINLINE void append_alone(const BlockContours& contours, unsigned bits,
                                         const std::array<std::uint16_t, 4>& places, bool mirrored);
 
@@ -88,10 +89,10 @@ public:
     NESTGRID_INLINE std::span<const Corners> simplices() const {
         return {simplex_.data(), simplex_count};
     }
-    /// Divides one of the fours along either diagonal.
-    /// \param other than the one between its first cut and the third
+    /// Divides a quadrilateral into two triangles.
+    /// \param other whether along the diagonal from its second cut, not from its first
     NESTGRID_INLINE void divide(const Four& four, bool other) {
-        // The second triangle behind the first; in a mirror the first two corners change places.
+        // The corners of both triangles; a mirrored simplex swaps the first two of each.
         static constexpr std::array<std::array<std::uint8_t, 6>, 4> order{
             {{0, 1, 2, 2, 3, 0}, {1, 0, 2, 3, 2, 0}, {1, 2, 3, 3, 0, 1}, {2, 1, 3, 0, 3, 1}}};
         const auto& of = order[(other ? 2U : 0U) + four.mirrored % 2U];
@@ -108,7 +109,7 @@ private:
     using Eight = std::array<std::uint16_t, 8>;
 #endif
 
-    /// Numbers of eight bits become numbers of sixteen.
+    /// Copies numbers of 8 bits as numbers of 16 bits: to[i] = factor * from[i] + more[i % 8].
     template <std::size_t count, std::uint16_t factor, class From, class To>
     NESTGRID_INLINE static void widen(const From* from, To* to, const Eight& more) {
         static_assert(count % 8 == 0);
@@ -130,7 +131,7 @@ private:
         });
     }
 
-    // What is behind the last one has no meaning.
+    // Entries behind the counts are padding that append() overwrites.
     std::array<Cut, most_cuts + 32> cut_;
     std::array<Corners, most_simplices + 16> simplex_;
     std::array<Four, most_fours + 8> four_;

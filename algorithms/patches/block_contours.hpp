@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of the sign patterns of a block of simplices: of its ends, or of larger parts that are
-// not divided, one after the other, with every cut edge named once; and of a simplex alone. Where
-// some parts are divided and what is left has many nodes, a block is taken as two halves: tables of
-// all that may be would be eight times as large.
+// Tables of contours, by the signs at the nodes of a block of simplices.
+//
+// A contour holds the loops of all parts of the block that are drawn: its ends, or larger parts
+// that are not divided. It lists every cut edge once. A block whose drawn parts have more than
+// seven nodes is drawn as two halves, which keeps the tables an eighth of the size.
 #pragma once
 
 #include <bit>
@@ -18,19 +19,20 @@
 
 namespace nestgrid::engine {
 
-/// Cuts are numbered within a contour.
+/// The contours of blocks, of halves of blocks and of single simplices. Simplices refer to cuts by
+/// their number within the contour.
 class BlockContours {
 public:
     struct Cut {
-        std::uint8_t low;   ///< node with U < C, or its row in a batch
-        std::uint8_t high;  ///< node with U >= C
+        std::uint8_t low;   ///< the node with U < C, or its row in a batch
+        std::uint8_t high;  ///< the node with U >= C, likewise
     };
-    /// The one loop of one element, whose corners take the place of nodes: a segment, a triangle,
-    /// or four cuts in a row that may be cut along either diagonal.
+    /// The loop of one simplex: a segment, a triangle, or a quadrilateral that may be divided along
+    /// either diagonal. Cuts name corners of the simplex in the place of nodes.
     struct Piece {
         std::uint8_t count = 0;
         std::array<Cut, 4> cut{};
-        std::array<std::uint8_t, 4> face{};  ///< of the element, behind a cut; contour_table.hpp
+        std::array<std::uint8_t, 4> face{};  ///< of the simplex, that follows each cut in the loop
     };
     struct Contour {
         std::uint32_t first_cut = 0;
@@ -38,35 +40,36 @@ public:
         std::uint32_t first_four = 0;
         std::uint8_t cut_count = 0;
         std::uint8_t simplex_count = 0;
-        std::uint8_t parts = 0;      ///< that have a loop, each by its first end, one bit each
-        std::uint8_t depth : 4 = 0;  ///< of the deepest of them
+        std::uint8_t parts = 0;      ///< parts that have a loop, one bit at the first end of each
+        std::uint8_t depth : 4 = 0;  ///< depth in the block of the deepest of these parts
         std::uint8_t four_count : 4 = 0;
     };
-    /// Cuts that are the corners of a triangle, of those from one to the next.
+    /// The three cuts that are the corners of a triangle; in two dimensions the first two.
     using Corners = std::array<std::uint8_t, 3>;
-    /// Two triangles and the four cuts they have, of which any diagonal will do.
+    /// A quadrilateral of four cuts, drawn as two triangles along either diagonal.
     struct Four {
-        std::uint8_t first_simplex;  ///< of the contour, and the next one
+        std::uint8_t first_simplex;  ///< the first of the two triangles in the contour
         std::array<std::uint8_t, 4> cut;
-        std::uint8_t mirrored;  ///< against the block
+        std::uint8_t mirrored;  ///< whether its simplex is mirrored relative to the block
         std::array<std::uint8_t, 2> unused;
     };
 
-    /// The contours of certain parts, which fill a block, a half of one, or are a simplex.
+    /// The contours of a set of parts that fill a block, a half of one, or are one simplex.
     class Front {
     public:
-        /// Bit i of `signs` says that node i, of an element corner i, has U >= C.
+        /// \param signs bit i says that node i of the block (corner i of a simplex) has U >= C
         NESTGRID_INLINE const Contour& at(std::size_t signs) const {
             return contours_[number_[signs & nodes_]];
         }
-        // More may be read than there are.
-        /// In the order in which the parts come to them.
+        // Readers copy fixed numbers of entries: the arrays are padded behind the last contour.
+        /// The cuts of a contour, in the order in which its parts first use them.
         NESTGRID_INLINE const Cut* cuts(const Contour& c) const {
             return cuts_.data() + c.first_cut;
         }
-        /// In the order of the parts; of a mirror behind those that are not.
+        /// The simplices of a contour, in the order of its parts. Those of mirrored blocks lie
+        /// behind those of blocks that are not mirrored.
         NESTGRID_INLINE const Corners* simplices(const Contour& c, bool mirrored) const {
-            // No branch, for no processor would predict it.
+            // Branch-free: mirroring is unpredictable.
             return simplices_.data() + c.first_simplex + (c.simplex_count & (mirrored ? ~0U : 0U));
         }
         NESTGRID_INLINE const Four* fours(const Contour& c) const {
@@ -91,17 +94,19 @@ public:
         return table;
     }
 
-    /// Of an element alone.
+    /// The contours of a single simplex.
     const Front& alone() const { return alone_; }
-    /// Of a block, in which certain parts are not divided.
-    /// \param undivided of parts 2 ... ends - 1, one bit each
-    /// \return null where it must be taken as two halves
+    /// The contours of a block.
+    /// \param undivided the parts 2 ... ends - 1 that are not divided, one bit each
+    /// \return null where the block must be drawn as two halves
     NESTGRID_INLINE const Front* block(std::size_t undivided) const { return block_[undivided]; }
-    /// The same of its part 2 or 3.
+    /// The contours of one half of a block.
+    /// \param part 2 or 3
     NESTGRID_INLINE const Front& half(std::size_t part, unsigned undivided) const {
         return half_[part - 2][number_of_half(part, undivided)];
     }
-    /// Of a simplex. Bit i of `signs` says that its corner i has U >= C.
+    /// The loop of a single simplex.
+    /// \param signs bit i says that corner i has U >= C
     const Piece& piece(unsigned signs) const { return pieces_[signs]; }
     /// The signs at the corners of a part of a block.
     template <class Part>
@@ -120,10 +125,10 @@ private:
     template <const auto& pattern>
     struct Maker;
 
-    /// Of blocks of which parts are not divided.
+    /// Limit of the nodes of a block that is not drawn as two halves.
     static constexpr std::size_t most_nodes_ = 7;
 
-    /// The part, and the two in it.
+    /// The index of the table of a half: its number, and which of the two parts in it are divided.
     static constexpr std::size_t number_of_half(std::size_t part, unsigned undivided) {
         return (undivided >> (part - 2) & 1U) | (undivided >> (2 * part - 2) & 3U) << 1U;
     }
@@ -144,9 +149,9 @@ struct BlockContours::Maker {
     const BlockContours& table;
     Front front{};
     Contour contour{};
-    std::array<std::array<std::uint8_t, 16>, 16> number{};  // of a cut, plus 1
+    std::array<std::array<std::uint8_t, 16>, 16> number{};  // 1 + the number of a cut; 0: none
 
-    /// One bit each.
+    /// The nodes of some parts, one bit each.
     template <class Parts>
     static std::size_t nodes_of(const Parts& parts) {
         std::size_t nodes = 0;
@@ -164,7 +169,7 @@ struct BlockContours::Maker {
         contour.first_simplex = static_cast<std::uint32_t>(front.simplices_.size());
         contour.first_four = static_cast<std::uint32_t>(front.fours_.size());
     }
-    /// \param first_row of the nodes in a batch
+    /// \param first_row the row of node 0 in a batch
     void add(unsigned signs, const typename Block::Part& part, std::size_t end,
              std::size_t first_row) {
         const unsigned bits = signs_of(part, pattern.corners, signs);
@@ -205,8 +210,8 @@ struct BlockContours::Maker {
         }
         front.contours_.push_back(contour);
     }
-    /// \param parts and the first ends in them
-    /// \param first_row of their nodes in a batch
+    /// \param parts pairs of a part and its first end
+    /// \param first_row the row of node 0 in a batch
     template <class Parts>
     Front make(const Parts& parts, std::size_t first_row) {
         front.nodes_ = nodes_of(parts);
@@ -236,7 +241,7 @@ BlockContours::BlockContours(Of<pattern>) {
     const Shape shape = pattern.corners == 3 ? Shape::triangle : Shape::tetrahedron;
     for (unsigned bits = 1; bits < Made::all; ++bits) pieces_[bits] = make_piece(shape, bits);
 
-    using Parts = std::vector<std::pair<std::size_t, std::size_t>>;  // and the first ends in them
+    using Parts = std::vector<std::pair<std::size_t, std::size_t>>;  // a part and its first end
     alone_ = Made{*this}.make(Parts{{1, 0}}, BatchPlaces<pattern>::block_rows);
 
     if constexpr (pattern.height > 0) {

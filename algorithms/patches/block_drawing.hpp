@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Draws what is selected of a batch of blocks of bisections: the contours of a level are put behind
-// each other, then their vertices are found, and then the simplices are put down. What is drawn,
-// and in which order, is what the general walk draws, to the last bit.
+// Draws the selected blocks of a batch, level by level: lists the contours of all blocks, finds or
+// makes the vertices of all cuts, and appends the simplices. The surface has the order and the bits
+// of the general walk.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct BlockTarget {
     std::span<const Level<Real>> levels;
     std::span<LevelSurface<dimension>> surfaces;
     SimplexTally* tally;
-    int* deepest;  ///< level of the deepest element that was drawn
+    int* deepest;  ///< depth of the deepest element drawn so far
 };
 
 /// \tparam Blocks a batch of blocks
@@ -46,9 +46,9 @@ public:
           selection_{&selection},
           contours_{&BlockContours::of<pattern_>()} {}
 
-    /// \return in how many leaves of blocks there is anything to draw
+    /// Draws the selection. \return the number of leaves in blocks that a level passes through
     unsigned draw() {
-        std::array<std::uint8_t, 2 * most_blocks> parts{};  // by number
+        std::array<std::uint8_t, 2 * most_blocks> parts{};  // drawn parts, by id
         for (std::size_t l = 0; l < target_->levels.size(); ++l) {
             level_ = &target_->levels[l];
             surface_ = &target_->surfaces[l];
@@ -83,7 +83,7 @@ public:
 
 private:
     using Front = BlockContours::Front;
-    struct Entry {  // what the level passes through
+    struct Entry {  // a block, half a block or simplex that the level passes through
         const Front* front;
         const BlockContours::Contour* contour;
         std::uint16_t first_cut;
@@ -96,7 +96,7 @@ private:
                                     : int{blocks_->element_levels[id % most_blocks]};
     }
 
-    /// Of each block and element which nodes have U >= C.
+    /// Sets signs_: the nodes of each block and simplex with U >= C, one bit each.
     NESTGRID_INLINE void set_signs() {
         using Bits = Pack<MaskOf<Real>>;
         const auto least_inside = Pack<Real>::all(level_->least_inside);
@@ -118,7 +118,7 @@ private:
             blocks_->element_count, most_blocks);
     }
 
-    /// The parts of a block that are meant to be drawn, each by its first end, one bit each.
+    /// The parts of a block that are selected, one bit at the first end of each.
     NESTGRID_INLINE unsigned parts_meant(std::size_t id) const {
         if (!Places::is_block(id)) return 1;
         const auto stops = static_cast<std::size_t>(blocks_->stops[id]);
@@ -127,8 +127,8 @@ private:
                static_cast<unsigned>(stops / pattern_.part_sets);
     }
 
-    /// function(part, bits) for those that are drawn; bits: at which corners U >= C. An element is
-    /// its part 1.
+    /// Calls function(part, bits) for the selected parts of an entry. Bit i of `bits` says that
+    /// corner i has U >= C. A single simplex is part 1.
     template <class Function>
     void for_each_part(const Entry& entry, Function&& function) const {
         const auto signs = static_cast<unsigned>(signs_[entry.id]);
@@ -170,7 +170,7 @@ private:
         surface_->builder().flush_if_full();
     }
 
-    /// The elements that are drawn, in order. \return how many
+    /// Lists the drawn elements in order. \return their number
     std::size_t list_elements(std::array<ExtractedElement, Run::most_fours>& elements) const {
         std::size_t count = 0;
         for (const Entry& entry : entries()) {
@@ -209,7 +209,8 @@ private:
         }
     }
 
-    /// \param parts drawn, each by its first end, one bit each
+    /// Raises the error bound by the bounds of the drawn parts at which the walk stopped.
+    /// \param parts the drawn parts, one bit at the first end of each
     NESTGRID_NOINLINE void raise_error_bound(std::size_t id, unsigned parts) {
         const auto raise = [&](Real bound) {
             surface_->raise_error_bound(static_cast<double>(bound));
@@ -221,8 +222,8 @@ private:
         }
     }
 
-    /// Whether a face of a block or an element lies on one of the element with which the walk of
-    /// blocks began, as those on the boundary of the domain do.
+    /// Whether a face of a block or simplex lies on a face of the element with which the walk in
+    /// blocks began. Faces on the boundary of the domain do.
     NESTGRID_INLINE bool is_on_root_face(std::size_t id) const {
         SubtreeNode faces = 0;
         for (std::size_t across = 0; across < pattern_.corners; ++across) {
@@ -235,7 +236,7 @@ private:
         return faces != 0;
     }
 
-    /// Sides of loops on the boundary of the domain.
+    /// Tells the builder which sides of loops lie on the boundary of the domain.
     NESTGRID_INLINE void put_boundaries(std::span<const BatchEdge> cuts, const Number* v) {
         for (const Entry& entry : entries()) {
             const std::size_t id = entry.id;
@@ -282,9 +283,9 @@ private:
     const BlockContours* contours_;
     const Level<Real>* level_ = nullptr;
     Surface* surface_ = nullptr;
-    std::array<MaskOf<Real>, 2 * most_blocks> signs_;  // of what is in the batch
+    std::array<MaskOf<Real>, 2 * most_blocks> signs_;  // nodes with U >= C, by id
     std::size_t count_ = 0;
-    std::array<Entry, 3 * most_blocks + 1> entry_;  // of blocks each half
+    std::array<Entry, 3 * most_blocks + 1> entry_;  // a block may need two
 };
 
 }  // namespace nestgrid::engine

@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The vertices on the cuts of all that is drawn together of known bisections; included by
-// block_drawing.hpp.
+// How BlockDrawing finds and makes vertices; included by block_drawing.hpp.
 #pragma once
 
 #include <patches/block_drawing.hpp>
 
 namespace nestgrid::engine {
 
-/// The vertices on the cuts, numbered in their order. Each step is a loop of its own, without a
-/// branch that depends on which of them are known.
+/// Finds the vertices on the cuts, and numbers new ones in the order of the cuts. Each step is a
+/// branch-free loop of its own, because whether a vertex is known is unpredictable.
 template <int dimension, class Real, class Blocks>
 NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
     std::span<const BatchEdge> cuts, Number* v) {
@@ -19,7 +18,8 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
     const NodeKey* const key = blocks_->keys[0];
     const SubtreeNode* const in_subtree = blocks_->in_subtree[0];
 
-    // Which of them the subtrees do not know, and of those the ones that may be known elsewhere.
+    // Step 1: list the cuts that the subtree tables do not know (`fresh`), and among these the cuts
+    // that other subtrees may know (`shared`).
     std::array<std::uint16_t, room> fresh;
     SubtreeVertices& within = surface_->within();
     VertexNumbers& numbers = surface_->numbers();
@@ -29,7 +29,7 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
             return InSubtree::edge_number(in_subtree[cuts[i].low], in_subtree[cuts[i].high]);
         },
         v, fresh.data());
-    std::array<std::uint16_t, room> shared;  // of `fresh`
+    std::array<std::uint16_t, room> shared;  // indices into `fresh`
     std::size_t shared_count = 0;
     for (std::size_t i = 0; i < fresh_count; ++i) {
         const auto& [low, high] = cuts[fresh[i]];
@@ -37,7 +37,8 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
         shared_count += InSubtree::is_inside(in_subtree[low], in_subtree[high]) ? 0 : 1;
     }
 
-    // Those are looked up; all before them count that are new.
+    // Step 2: look the shared cuts up by name. A new one gets the number that it has when all
+    // fresh cuts before it are new.
     std::array<VertexNumbers::Name, room> names;
     numbers.reserve(shared_count);
     for (std::size_t k = 0; k < shared_count; ++k) {
@@ -49,7 +50,7 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
     std::fill(number.begin(), number.end(), Surface::none);
     const Number first_new = surface_->builder().next_vertex();
     if (Surface::none - first_new < fresh_count) throw_too_many_vertices();
-    Number next = first_new;  // less the shared ones that are known
+    Number next = first_new;  // minus the number of shared cuts that were known
     for (std::size_t k = 0; k < shared_count; ++k) {
         const std::size_t at = shared[k];
         const auto found = numbers.find_or_add(names[k], next + static_cast<Number>(at));
@@ -57,7 +58,7 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
         next -= found.is_new ? 0U : 1U;
     }
 
-    // What is new gets its number, and is added.
+    // Step 3: number the new vertices, and add them.
     std::array<BatchEdge, room> added;
     std::size_t count = 0;
     for (std::size_t i = 0; i < fresh_count; ++i) {
@@ -71,7 +72,7 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
     if (surface_->verifies()) verify_vertices(cuts, v);
 }
 
-/// A new vertex on every cut.
+/// Makes a new vertex on every cut.
 template <int dimension, class Real, class Blocks>
 NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::make_vertices(
     std::span<const BatchEdge> cuts, Number* v) {
@@ -80,7 +81,7 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::make_vertices(
     add_vertices(cuts);
 }
 
-/// Adds new vertices, in order.
+/// Adds a vertex on each of these cuts to the builder, in order.
 template <int dimension, class Real, class Blocks>
 NESTGRID_INLINE void BlockDrawing<dimension, Real, Blocks>::add_vertices(
     std::span<const BatchEdge> cuts) {

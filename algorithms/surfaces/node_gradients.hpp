@@ -45,7 +45,7 @@ inline CornerGradient corner_gradient(const Topology& t, std::span<const Point> 
     return {g, std::abs(volume)};
 }
 
-/// One gradient per node: the weighted mean of what is added.
+/// Gradients at nodes: the weighted mean of the gradients that are added at each.
 class NodeGradients {
 public:
     using Index = std::uint32_t;
@@ -63,7 +63,7 @@ public:
     bool known(Index slot) const { return entries_[slot].weight > 0; }
     Point mean(Index slot) const { return (1 / entries_[slot].weight) * entries_[slot].gradient; }
 
-    /// The nodes by slot.
+    /// The keys of the nodes, by slot.
     std::vector<NodeKey> nodes() const {
         std::vector<NodeKey> keys(entries_.size());
         slot_of_.for_each([&](NodeKey node, Index slot) { keys[slot] = node; });
@@ -81,7 +81,7 @@ public:
 
 private:
     KeyTable<NodeKey, Index> slot_of_;
-    std::vector<CornerGradient> entries_;  // the sum, and the sum of the weights
+    std::vector<CornerGradient> entries_;  // weighted sums, and sums of weights
 };
 
 }  // namespace nestgrid::engine

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Vertices by the number of their edge in the subtrees that a walk of blocks is in
-// (subtree_nodes.hpp): a table without keys, which asks nothing that a processor had to predict.
+// A table from edges to vertices, by the numbers that edges have within the subtrees of the current
+// walk in blocks (subtree_nodes.hpp). Lookups are branch-free: no key is compared.
 //
-// Invariant: an entry says where in the lists its edge is; none_, which is greater, that it is not.
+// Invariant: entry_[e] is the place of edge e in the lists, or none_, which is greater than any
+// place.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,7 @@ public:
     using Number = std::uint32_t;
 
     /// Forgets all edges.
-    /// \param numbers what those of the edges to come are below
+    /// \param numbers a bound: all edges that follow have smaller numbers
     void begin_again(std::size_t numbers) {
         for (std::size_t i = 0; i < count_; ++i) entry_[edge_[i]] = none_;
         count_ = 0;
@@ -32,12 +33,11 @@ public:
         return (entry_.capacity() + edge_.capacity() + number_.capacity()) * sizeof(Number);
     }
 
-    /// Looks edges up, and puts those that are new into the list.
-    /// \param count of them
-    /// \param number_of  of edge i; 0 is never found
-    /// \param found where they are in the list
-    /// \param fresh those that are new; there is room for one more than `count`
-    /// \return how many
+    /// Looks `count` edges up, and appends those that are new to the lists.
+    /// \param number_of number_of(i) is the number of edge i; an edge 0 is always new
+    /// \param found the place of each edge in the lists; set
+    /// \param fresh the indices of the new edges; set. It has room for count + 1
+    /// \return the number of new edges
     template <class NumberOf>
     NESTGRID_INLINE std::size_t find(std::size_t count, NumberOf&& number_of, Number* found,
                                      std::uint16_t* fresh) {
@@ -63,9 +63,9 @@ public:
         end_ = any != 0 ? count_ : first_;
         return fresh_count;
     }
-    /// The numbers of those that were new, to be set.
+    /// The vertex numbers of the new edges, which the caller must set before end().
     std::span<Number> new_numbers() { return std::span(number_).subspan(first_, count_ - first_); }
-    /// What was found becomes the number of a vertex.
+    /// Replaces the places that find() returned by vertex numbers.
     void end(std::span<Number> found) {
         const Number* const number = number_.data();
         for (Number& v : found) v = number[v];
@@ -82,12 +82,12 @@ private:
 
     static constexpr Number none_ = std::numeric_limits<Number>::max();
 
-    std::vector<Number> entry_;   // by the number of an edge
-    std::vector<Number> edge_;    // by where it is in the list
-    std::vector<Number> number_;  // likewise, of its vertex
-    std::size_t count_ = 0;       // in the lists
-    std::size_t first_ = 0;       // of those that find() put there
-    std::size_t end_ = 0;         // of those that may be found again
+    std::vector<Number> entry_;   // place in the lists, by number of the edge
+    std::vector<Number> edge_;    // number of the edge, by place
+    std::vector<Number> number_;  // number of the vertex, by place
+    std::size_t count_ = 0;       // length of the lists
+    std::size_t first_ = 0;       // place of the first edge that the last find() appended
+    std::size_t end_ = 0;         // end of the places that stay after end()
 };
 
 }  // namespace nestgrid::engine

@@ -25,11 +25,11 @@ struct SurfaceCut {
     std::span<const double> attributes;  ///< components 1 ... of the field there
 };
 
-/// A vertex of a part of a surface that other parts may have, too.
+/// A vertex of one part of a surface that other parts may contain, too.
 struct SharedVertex {
     std::uint32_t number;
     std::array<NodeKey, 2> node;  ///< the one with the lower value first
-    double fraction;              ///< of the way to the other one
+    double fraction;              ///< of the way from the first node to the second
 };
 
 /// An element that contributes to a surface.
@@ -52,7 +52,8 @@ struct SurfacePart {
 template <class Corners, std::size_t size>
 void append_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all,
                       std::vector<std::array<std::uint32_t, size>>& to) {
-    std::array<std::array<std::uint32_t, size>, 64> some;  // memory is written once, in wide words
+    std::array<std::array<std::uint32_t, size>, 64>
+        some;  // a buffer, so that memory is written in wide words
     while (!all.empty()) {
         const std::size_t count = std::min(some.size(), all.size());
         for (std::size_t i = 0; i < count; ++i) {
@@ -92,14 +93,14 @@ public:
           shares_vertices_{false},
           elements_{sink.keeps_elements()} {}
 
-    /// Whether a vertex that several elements have is one vertex.
+    /// Whether elements share vertices.
     bool shares_vertices() const { return shares_vertices_; }
-    /// Whether a part is filled whose vertices other parts may have.
+    /// Whether the builder fills a part, and lists the vertices that other parts may contain.
     bool lists_shared() const { return shared_ != nullptr; }
     /// The number of the next vertex.
     Number next_vertex() const { return taken_ + static_cast<Number>(surface_->vertices.size()); }
 
-    /// Adds a vertex, of a part, that other parts may have.
+    /// Adds a vertex that other parts may contain. Requires lists_shared().
     void add_shared(const std::array<NodeKey, 2>& node, double fraction, const Point& x,
                     std::span<const double> attributes) {
         shared_->push_back({static_cast<Number>(surface_->vertices.size()), node, fraction});
@@ -149,7 +150,8 @@ public:
             add_element(e.element, e.shape, e.level);
         }
     }
-    /// Adds elements, simplices and references of a part whose vertices have these numbers here.
+    /// Adds the elements, simplices and references of a part.
+    /// \param numbers the numbers that the vertices of the part have here
     void add_part(const Target& part, std::span<const Number> numbers) {
         const auto append = [](const auto& from, auto& to) {
             to.insert(to.end(), from.begin(), from.end());

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The numbers of a surface's vertices by the two nodes they lie between.
+// A hash table from pairs of nodes to the numbers of the vertices between them.
 //
-// A flat hash table of 16 bytes a slot, at most five eighths full. A slot holds one word made of
-// the two keys: the keys themselves where both are below 2^32, else a mix of them, which two pairs
-// share as rarely as two nodes share a derived key (keys.hpp).
+// The table is flat, takes 16 bytes a slot and is at most five eighths full. A slot names its pair
+// by one word: both keys where all keys are below 2^32, else a hash of the keys. Two pairs have the
+// same hash as rarely as two nodes have the same derived key (keys.hpp).
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ public:
     /// \param small_keys all keys are below 2^32
     explicit VertexNumbers(bool small_keys = false) : small_keys_{small_keys} {}
 
-    /// What is asked for, the same for all tables with keys of one kind.
+    /// The word of a pair and its hash. Tables with the same kind of keys give a pair one name.
     struct Name {
         NodeKey word;
         std::size_t hash;
@@ -41,7 +41,7 @@ public:
         return {word, hash(word)};
     }
 
-    /// It will be asked for soon.
+    /// Fetches the slot of a name into the cache.
     NESTGRID_INLINE void prefetch([[maybe_unused]] const Name& name) const {
 #if defined(__GNUC__)
         __builtin_prefetch(slots_.data() + (name.hash & mask_));
@@ -60,7 +60,7 @@ public:
         return number;
     }
 
-    /// For as many more vertices.
+    /// Makes room for `more` vertices.
     NESTGRID_INLINE void reserve(std::size_t more) {
         while (8 * (size_ + more) >= 5 * slots_.size()) grow();
     }
@@ -68,9 +68,9 @@ public:
         Number number;
         bool is_new;
     };
-    /// Of a table with room for it: the number of the vertex between two nodes, which is `next`
-    /// where it is new. There is no branch that depends on whether it is.
-    /// \param next greater than the numbers there are
+    /// Finds the vertex with a name, or adds it with number `next`, without a branch. Requires
+    /// reserve(1).
+    /// \param next greater than all numbers in the table
     NESTGRID_INLINE Found find_or_add(const Name& name, Number next) {
         Slot* slot = place(name);
         const bool is_new = slot->round != round_;
@@ -94,7 +94,7 @@ private:
     struct Slot {
         NodeKey word = 0;
         Number number = 0;
-        std::uint32_t round = 0;  // in which it was used; what is older counts as empty
+        std::uint32_t round = 0;  // last round of use; a slot of an earlier round is empty
     };
 
     NESTGRID_INLINE static std::size_t hash(NodeKey word) {
@@ -110,7 +110,7 @@ private:
     }
 
     NESTGRID_NOINLINE void grow() {
-        // Twice the memory of a small table costs nothing, and moving its slots less often does.
+        // A small table grows fast, which moves its slots less often.
         const std::size_t factor = slots_.size() < (std::size_t{1} << 16U) ? 8 : 2;
         std::vector<Slot> old(slots_.empty() ? std::size_t{1024} : factor * slots_.size());
         old.swap(slots_);
