@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <surfaces/level_surface.hpp>
 
+#include <algorithm>
 #include <numeric>
 #include <string>
 
@@ -16,6 +17,8 @@ void LevelSurface<dimension>::begin(Builder builder, NodeGradients* gradients, b
     numbers_.clear();
     within_.begin_again(0);
     where_.clear();
+    areas_.clear();
+    sums_areas_ = gradients != nullptr && builder_.target() == nullptr;
     extracted_ = 0;
     error_bound_ = 0;
 }
@@ -32,6 +35,7 @@ auto LevelSurface<dimension>::add(const SurfaceCut& cut) -> Number {
     if (gradients_ != nullptr) {
         where_.push_back(
             {gradients_->slot(cut.node[0]), gradients_->slot(cut.node[1]), cut.fraction});
+        if (sums_areas_) areas_.push_back({0, 0, 0});
     }
     return number;
 }
@@ -42,6 +46,7 @@ auto LevelSurface<dimension>::add_unnamed(std::span<const Point> x,
     const Number first = builder_.next_vertex();
     if (none - first < x.size()) throw_too_many_vertices();
     if (gradients_ != nullptr) where_.resize(where_.size() + x.size(), {none, none, 0.0});
+    if (sums_areas_) areas_.resize(areas_.size() + x.size(), {0, 0, 0});
     builder_.add_vertices(x, attributes);
     return first;
 }
@@ -89,36 +94,47 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part) {
         builder_.add_boundary(ridge);
     }
     builder_.add_part(surface, number);
-    if (gradients_ == nullptr) return;
+    if (!sums_areas_) return;
     for (auto simplex : surface.simplices) {
         for (Number& v : simplex) v = number[v];
-        add_area(simplex);
+        sum_area(simplex);
     }
 }
 
-/// Adds the area vector of a triangle to its corners, for vertices without a gradient.
+/// Twice the area vector of a triangle; 0 in two dimensions.
 template <int dimension>
-void LevelSurface<dimension>::add_area(const Simplex& corners) {
-    if constexpr (dimension == 3) {
-        const Point x = position(corners[0]);
-        const Point n = cross(position(corners[1]) - x, position(corners[2]) - x);
-        for (const Number i : corners) where_[i].around = where_[i].around + n;
-    }
+Point LevelSurface<dimension>::area(const Simplex& corners) const {
+    if constexpr (dimension == 2) return {0, 0, 0};
+    const Point x = position(corners[0]);
+    return cross(position(corners[1]) - x, position(corners[dimension - 1]) - x);
 }
 
+/// The gradient at a vertex, interpolated between its nodes; 0 where none is known.
 template <int dimension>
-Point LevelSurface<dimension>::normal(const Where& where) const {
+Point LevelSurface<dimension>::gradient_at(const Where& where) const {
     const bool low = where.low != none && gradients_->known(where.low);
     const bool high = where.high != none && gradients_->known(where.high);
-    Point n = where.around;
-    if (low || high) {
-        const Point a = gradients_->mean(low ? where.low : where.high);
-        const Point b = gradients_->mean(high ? where.high : where.low);
-        const Point g = (1 - where.fraction) * a + where.fraction * b;
-        if (norm(g) > 0) n = -1.0 * g;
+    if (!low && !high) return {0, 0, 0};
+    const Point a = gradients_->mean(low ? where.low : where.high);
+    const Point b = gradients_->mean(high ? where.high : where.low);
+    return (1 - where.fraction) * a + where.fraction * b;
+}
+
+/// Adds the area vectors of the triangles around them to the normals of flat vertices.
+template <int dimension>
+void LevelSurface<dimension>::add_areas(const std::vector<bool>& flat,
+                                        std::vector<Point>& normals) const {
+    for (std::size_t v = 0; sums_areas_ && v < flat.size(); ++v) {
+        if (flat[v]) normals[v] = areas_[v];
     }
-    const double length = norm(n);
-    return length > 0 ? (1 / length) * n : n;
+    if (sums_areas_) return;
+    for (const Simplex& simplex : builder_.target()->simplices) {
+        if (std::ranges::none_of(simplex, [&](Number v) { return flat[v]; })) continue;
+        const Point n = area(simplex);
+        for (const Number v : simplex) {
+            if (flat[v]) normals[v] = normals[v] + n;
+        }
+    }
 }
 
 template <int dimension>
@@ -126,7 +142,18 @@ void LevelSurface<dimension>::set_normals() {
     if (gradients_ == nullptr) return;
     std::vector<Point> normals;
     normals.reserve(where_.size());
-    for (const Where& where : where_) normals.push_back(normal(where));
+    std::vector<bool> flat;  // vertices without a gradient
+    flat.reserve(where_.size());
+    for (const Where& where : where_) {
+        const Point g = gradient_at(where);
+        flat.push_back(!(norm(g) > 0));
+        normals.push_back(flat.back() ? Point{0, 0, 0} : -1.0 * g);
+    }
+    if (std::ranges::find(flat, true) != flat.end()) add_areas(flat, normals);
+    for (Point& n : normals) {
+        const double length = norm(n);
+        if (length > 0) n = (1 / length) * n;
+    }
     builder_.set_normals(std::move(normals));
 }
 

@@ -30,7 +30,10 @@ public:
     /// \param gradients at nodes, where normals are wanted here; else null
     void begin(Builder builder, NodeGradients* gradients, bool verify);
     /// Makes no normals: another surface makes those of this part.
-    void leave_normals() { gradients_ = nullptr; }
+    void leave_normals() {
+        gradients_ = nullptr;
+        sums_areas_ = false;
+    }
     /// Counts from now on: simplices are forgotten by forget_element().
     void count_only() { counts_only_ = true; }
     bool counts_only() const { return counts_only_; }
@@ -75,7 +78,7 @@ public:
 
     NESTGRID_INLINE void add_simplex(const Simplex& corners, std::span<const Point> reference) {
         builder_.add_simplex(corners, reference);
-        if (gradients_ != nullptr) add_area(corners);
+        if (sums_areas_) sum_area(corners);
     }
     /// Puts a part behind what is drawn. Its vertices get their numbers in the order in which it
     /// has them; those that other parts know keep theirs.
@@ -91,27 +94,34 @@ public:
     /// Makes the normals, once all is drawn.
     void set_normals();
     std::size_t memory_bytes() const {
-        return numbers_.memory_bytes() + within_.memory_bytes() + where_.capacity() * sizeof(Where);
+        return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
+               areas_.capacity() * sizeof(Point);
     }
 
 private:
-    struct Where {  // the nodes a vertex lies between, for its normal
+    struct Where {  // slots of the nodes that a vertex lies between; none inside an element
         Number low;
         Number high;
         double fraction;
-        Point around{0, 0, 0};  // area vectors of the triangles at it
     };
 
-    void add_area(const Simplex& corners);
-    Point normal(const Where& where) const;
+    Point area(const Simplex& corners) const;
+    void sum_area(const Simplex& corners) {
+        const Point n = area(corners);
+        for (const Number v : corners) areas_[v] = areas_[v] + n;
+    }
+    void add_areas(const std::vector<bool>& flat, std::vector<Point>& normals) const;
+    Point gradient_at(const Where& where) const;
 
     Builder builder_;
     VertexNumbers numbers_;
     SubtreeVertices within_;  // subtrees of bisections
     NodeGradients* gradients_ = nullptr;
-    std::vector<Where> where_;
+    std::deque<Where> where_;   // by vertex, where normals are wanted
+    std::vector<Point> areas_;  // area vectors around each vertex, where a sink takes the simplices
     std::uint64_t extracted_ = 0;
     double error_bound_ = 0;
+    bool sums_areas_ = false;
     bool verifies_ = false;
     bool counts_only_ = false;
 };

@@ -4,9 +4,16 @@
 // Gradients at nodes, for the normals of a surface (paper, section 8).
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <span>
 #include <vector>
 
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/keys.hpp>
 #include <nestgrid/shape.hpp>
 
 namespace nestgrid::engine {
@@ -46,42 +53,63 @@ inline CornerGradient corner_gradient(const Topology& t, std::span<const Point> 
 }
 
 /// Gradients at nodes: the weighted mean of the gradients that are added at each.
+///
+/// Memory: 40 bytes a node and, in the hash table, 4 bytes a slot, of which at most five eighths
+/// are used. Nothing is reserved beyond that: surfaces have millions of nodes.
 class NodeGradients {
 public:
     using Index = std::uint32_t;
 
+    /// The slot of a node, which is new where the node is.
     Index slot(NodeKey node) {
-        const auto [at, is_new] = slot_of_.insert(node, static_cast<Index>(entries_.size()));
-        const Index number = *at;
-        if (is_new) entries_.push_back({});
-        return number;
+        if (8 * (keys_.size() + 1) > 5 * slots_.size()) grow();
+        Index& at = place(node);
+        if (at == none_) {
+            at = static_cast<Index>(keys_.size());
+            keys_.push_back(node);
+            sums_.push_back({});
+        }
+        return at;
     }
     void add(Index slot, const CornerGradient& g) {
-        entries_[slot].gradient = entries_[slot].gradient + g.weight * g.gradient;
-        entries_[slot].weight += g.weight;
+        CornerGradient& sum = sums_[slot];
+        sum.gradient = sum.gradient + g.weight * g.gradient;
+        sum.weight += g.weight;
     }
-    bool known(Index slot) const { return entries_[slot].weight > 0; }
-    Point mean(Index slot) const { return (1 / entries_[slot].weight) * entries_[slot].gradient; }
+    bool known(Index slot) const { return sums_[slot].weight > 0; }
+    Point mean(Index slot) const { return (1 / sums_[slot].weight) * sums_[slot].gradient; }
 
     /// The keys of the nodes, by slot.
-    std::vector<NodeKey> nodes() const {
-        std::vector<NodeKey> keys(entries_.size());
-        slot_of_.for_each([&](NodeKey node, Index slot) { keys[slot] = node; });
-        return keys;
-    }
+    const std::deque<NodeKey>& nodes() const { return keys_; }
 
     void clear() {
-        slot_of_.clear();
-        entries_.clear();
+        std::ranges::fill(slots_, none_);
+        keys_.clear();
+        sums_.clear();
     }
 
     std::size_t memory_bytes() const {
-        return slot_of_.memory_bytes() + entries_.capacity() * sizeof(CornerGradient);
+        return slots_.capacity() * sizeof(Index) +
+               keys_.size() * (sizeof(NodeKey) + sizeof(CornerGradient));
     }
 
 private:
-    KeyTable<NodeKey, Index> slot_of_;
-    std::vector<CornerGradient> entries_;  // weighted sums, and sums of weights
+    static constexpr Index none_ = std::numeric_limits<Index>::max();
+
+    Index& place(NodeKey node) {
+        const std::size_t mask = slots_.size() - 1;
+        auto at = static_cast<std::size_t>(nestgrid::detail::mix(node)) & mask;
+        while (slots_[at] != none_ && keys_[slots_[at]] != node) at = (at + 1) & mask;
+        return slots_[at];
+    }
+    void grow() {
+        slots_.assign(std::max<std::size_t>(1024, 2 * slots_.size()), none_);
+        for (Index i = 0; i < keys_.size(); ++i) place(keys_[i]) = i;
+    }
+
+    std::vector<Index> slots_;         // a hash table: by key of the node
+    std::deque<NodeKey> keys_;         // by slot
+    std::deque<CornerGradient> sums_;  // weighted sums, and sums of weights, by slot
 };
 
 }  // namespace nestgrid::engine

@@ -93,6 +93,10 @@ public:
           shares_vertices_{false},
           elements_{sink.keeps_elements()} {}
 
+    /// The surface that is filled, or null where a sink takes it in chunks.
+    const Target* target() const {
+        return mesh_ == nullptr && soup_ == nullptr ? surface_ : nullptr;
+    }
     /// Whether elements share vertices.
     bool shares_vertices() const { return shares_vertices_; }
     /// Whether the builder fills a part, and lists the vertices that other parts may contain.
