@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include <nestgrid/geometry.hpp>
+#include <nestgrid/shape.hpp>
 
 namespace mu {
 class Parser;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <nestgrid/algorithms/contour_table.hpp>
+#include <contours/contour_table.hpp>
 
 namespace nestgrid {
 

@@ -16,9 +16,9 @@
 #include <span>
 #include <vector>
 
-#include <nestgrid/elements.hpp>
-#include <nestgrid/key_filter.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/elements.hpp>
+#include <nestgrid/detail/key_filter.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <surfaces/surface_builder.hpp>
 #include <walk/closed_parts.hpp>
 

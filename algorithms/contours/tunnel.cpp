@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include <nestgrid/algorithms/cell_contour.hpp>
+#include <contours/cell_contour.hpp>
 
 namespace nestgrid {
 

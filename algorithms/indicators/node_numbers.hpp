@@ -6,7 +6,7 @@
 
 #include <span>
 
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid::engine {
 

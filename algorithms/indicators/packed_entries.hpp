@@ -9,8 +9,8 @@
 #include <span>
 
 #include <nestgrid/algorithms/indicator.hpp>
-#include <nestgrid/inlining.hpp>
-#include <nestgrid/pack.hpp>
+#include <nestgrid/detail/inlining.hpp>
+#include <nestgrid/detail/pack.hpp>
 
 namespace nestgrid::engine {
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include <nestgrid/algorithms/round_up.hpp>
-#include <nestgrid/pack.hpp>
+#include <nestgrid/detail/pack.hpp>
 
 namespace nestgrid {
 

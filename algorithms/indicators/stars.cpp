@@ -10,7 +10,7 @@
 #include <indicators/offset.hpp>
 #include <indicators/packed_entries.hpp>
 #include <indicators/packed_round_up.hpp>
-#include <nestgrid/mean.hpp>
+#include <nestgrid/detail/mean.hpp>
 
 namespace nestgrid::engine {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include <nestgrid/shape_functions.hpp>
+#include <nestgrid/detail/shape_functions.hpp>
 
 namespace nestgrid::engine {
 

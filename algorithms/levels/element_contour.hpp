@@ -7,8 +7,8 @@
 // drew there (transitions.hpp).
 #pragma once
 
+#include <contours/contour_filling.hpp>
 #include <levels/element_cuts.hpp>
-#include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
 #include <surfaces/level_surface.hpp>
 #include <surfaces/simplex_tally.hpp>

@@ -4,10 +4,11 @@
 // The element at hand: its corners, and where a level cuts its edges.
 #pragma once
 
+#include <contours/cell_contour.hpp>
+#include <contours/cut_fraction.hpp>
 #include <contours/level.hpp>
-#include <nestgrid/algorithms/cell_contour.hpp>
-#include <nestgrid/geometry.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/geometry.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <surfaces/surface_builder.hpp>
 #include <walk/walk.hpp>
 

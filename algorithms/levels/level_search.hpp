@@ -10,7 +10,7 @@
 #include <contours/level.hpp>
 #include <indicators/packed_entries.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
-#include <nestgrid/block_glance.hpp>
+#include <patches/block_glance.hpp>
 #include <walk/criterion_question.hpp>
 
 namespace nestgrid::engine {

@@ -8,7 +8,7 @@
 #pragma once
 
 #include <nestgrid/algorithms/isosurface_options.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <walk/element_view.hpp>
 
 namespace nestgrid::engine {

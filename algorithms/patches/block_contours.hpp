@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include <nestgrid/algorithms/contour_table.hpp>
-#include <nestgrid/block_batch.hpp>
+#include <contours/contour_table.hpp>
+#include <patches/block_batch.hpp>
 
 namespace nestgrid::engine {
 

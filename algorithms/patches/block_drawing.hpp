@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <span>
 
+#include <contours/contour_filling.hpp>
 #include <contours/level.hpp>
-#include <nestgrid/algorithms/contour_filling.hpp>
 #include <patches/block_contour_run.hpp>
 #include <surfaces/level_surface.hpp>
 #include <surfaces/simplex_tally.hpp>

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include <nestgrid/known_bisection.hpp>
-#include <nestgrid/operations.hpp>
-#include <nestgrid/pack.hpp>
+#include <nestgrid/detail/pack.hpp>
+#include <nestgrid/optional.hpp>
+#include <patches/known_bisection.hpp>
 
 namespace nestgrid::engine {
 

@@ -9,10 +9,10 @@
 #include <array>
 
 #include <nestgrid/nestgrid.h>
-#include <nestgrid/erased_bisections.hpp>
 #include <nestgrid/hierarchy.hpp>
-#include <nestgrid/known_bisection.hpp>
 #include <nestgrid/standard_rules.hpp>
+#include <patches/erased_bisections.hpp>
+#include <patches/known_bisection.hpp>
 
 namespace nestgrid::engine {
 

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include <nestgrid/inlining.hpp>
+#include <nestgrid/detail/inlining.hpp>
 
 namespace nestgrid::engine {
 

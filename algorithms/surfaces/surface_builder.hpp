@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <nestgrid/algorithms/surface.hpp>
-#include <nestgrid/inlining.hpp>
+#include <nestgrid/detail/inlining.hpp>
 #include <nestgrid/keys.hpp>
 
 namespace nestgrid::engine {

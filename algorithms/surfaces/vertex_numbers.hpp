@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include <nestgrid/detail/inlining.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/error.hpp>
-#include <nestgrid/inlining.hpp>
-#include <nestgrid/key_table.hpp>
 
 namespace nestgrid::engine {
 

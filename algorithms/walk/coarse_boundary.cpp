@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/error.hpp>
-#include <nestgrid/key_table.hpp>
 
 namespace nestgrid::engine {
 

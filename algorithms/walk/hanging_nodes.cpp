@@ -3,7 +3,7 @@
 #include <walk/hanging_nodes.hpp>
 
 #include <nestgrid/algorithms/hanging_nodes.hpp>
-#include <nestgrid/hanging_probe.hpp>
+#include <nestgrid/detail/hanging_probe.hpp>
 #include <walk/for_each_element.hpp>
 
 namespace nestgrid {

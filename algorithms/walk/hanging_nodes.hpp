@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nestgrid/hanging.hpp>
+#include <nestgrid/detail/hanging.hpp>
 #include <nestgrid/hierarchy.hpp>
 
 namespace nestgrid::engine {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
-#include <nestgrid/visit.hpp>
 #include <walk/element_view.hpp>
+#include <walk/visit.hpp>
 
 namespace nestgrid::engine {
 

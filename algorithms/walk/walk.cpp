@@ -8,8 +8,8 @@
 #include <string>
 
 #include <nestgrid/error.hpp>
-#include <nestgrid/interpolate.hpp>
 #include <walk/coarse_boundary.hpp>
+#include <walk/interpolate.hpp>
 
 namespace nestgrid::engine {
 

@@ -18,7 +18,7 @@
 #include <mutex>
 #include <vector>
 
-#include <nestgrid/hanging.hpp>
+#include <nestgrid/detail/hanging.hpp>
 #include <walk/visitor.hpp>
 
 namespace nestgrid::engine {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <nestgrid/geometry.hpp>
+#include <nestgrid/shape.hpp>
 
 /// The vertices of a truncated icosahedron with edge length 2: 60 of them, on a sphere of radius
 /// 4.956: the even permutations of (0, 1, 3 p), (1, 2 + p, 2 p) and (p, 2, 2 p + 1) with all signs,

@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include <nestgrid/hanging_probe.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/detail/hanging_probe.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid {
 
@@ -83,4 +83,4 @@ std::optional<GridViolation> check_grid(const Grid& grid, const Field& field,
 
 }  // namespace nestgrid
 
-#include <nestgrid/check_grid_steps.hpp>
+#include <nestgrid/detail/check_grid_steps.hpp>

@@ -25,7 +25,7 @@
 // All operations are const and reentrant. A grid that needs state per task (a rebuilt entity, a
 // cache) names it `Context`, offers `Context make_context() const`, and takes a `Context&` as an
 // additional last argument of any operation it likes; so does its field.
-// The optional operations are listed in operations.hpp.
+// The optional operations are listed in optional.hpp.
 #pragma once
 
 #include <array>

@@ -23,9 +23,9 @@
 #include <string>
 #include <vector>
 
-#include <nestgrid/elements.hpp>
-#include <nestgrid/features.hpp>
+#include <nestgrid/detail/elements.hpp>
 #include <nestgrid/keys.hpp>
+#include <nestgrid/optional.hpp>
 #include <nestgrid/rule.hpp>
 
 namespace nestgrid {
@@ -169,7 +169,7 @@ public:
     virtual void corner_gradients(Task* task, const Handle& element,
                                   std::span<Point> out) const = 0;
 
-    /// Calls function(row) for all star rows (operations.hpp), where facts().knows_stars.
+    /// Calls function(row) for all star rows (optional.hpp), where facts().knows_stars.
     virtual void star_rows(const std::function<void(const StarRow&)>& function) const;
     /// Values at the nodes first, first + stride, ..., likewise.
     virtual void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const;

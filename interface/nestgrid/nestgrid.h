@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause
  *
  * The interface as a table of C functions, for C and Fortran codes: what grid.hpp and
- * operations.hpp ask of a C++ class, with the same names and meaning. docs/examples/c_grid.c is a
+ * optional.hpp ask of a C++ class, with the same names and meaning. docs/examples/c_grid.c is a
  * complete grid.
  *
  * All functions are reentrant and return 0, or another number where they fail; nothing is thrown

@@ -8,7 +8,7 @@
 #include <deque>
 #include <span>
 
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/rule.hpp>
 
 namespace nestgrid {

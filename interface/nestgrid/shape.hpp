@@ -18,7 +18,7 @@
 #include <span>
 #include <string_view>
 
-#include <nestgrid/geometry.hpp>
+#include <nestgrid/detail/geometry.hpp>
 
 namespace nestgrid {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nestgrid/elements.hpp>
+#include <nestgrid/detail/elements.hpp>
 #include <nestgrid/grid.hpp>
 
 namespace nestgrid_test {

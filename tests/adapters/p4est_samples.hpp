@@ -15,7 +15,7 @@
 #include <p8est_geometry.h>
 
 #include <nestgrid/adapters/p4est.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <walk/project.hpp>
 
 #include "closedness.hpp"

@@ -7,7 +7,7 @@
 #include <bit>
 
 #include <nestgrid/check_grid.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <walk/project.hpp>
 
 #include "closedness.hpp"

@@ -14,11 +14,11 @@
 
 #include <gtest/gtest.h>
 
+#include <contours/contour_filling.hpp>
 #include <nestgrid/adapters/red_green.hpp>
-#include <nestgrid/algorithms/contour_filling.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
-#include <nestgrid/shape_functions.hpp>
+#include <nestgrid/detail/shape_functions.hpp>
 
 using namespace nestgrid;
 

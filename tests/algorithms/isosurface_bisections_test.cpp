@@ -10,12 +10,12 @@
 #include <indicators/packed_entries.hpp>
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/erased_bisections.hpp>
 #include <patches/check_bisections.hpp>
 
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
 #include "table_in_c.hpp"
+#include "walked_in_blocks.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;

@@ -14,7 +14,7 @@
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
-#include <nestgrid/shape_functions.hpp>
+#include <nestgrid/detail/shape_functions.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"

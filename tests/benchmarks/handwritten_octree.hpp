@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <nestgrid/algorithms/contour_table.hpp>
+#include <contours/contour_table.hpp>
 
 #include "handwritten_bisection.hpp"
 

@@ -13,7 +13,7 @@
 #include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/adapters/prism_grid.hpp>
 #include <nestgrid/adapters/red_green.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid_test {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/erased_bisections.hpp>
+#include <patches/erased_bisections.hpp>
 
 namespace nestgrid {
 

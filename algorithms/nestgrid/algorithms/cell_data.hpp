@@ -16,8 +16,8 @@
 
 #include <nestgrid/algorithms/detail/for_each_leaf.hpp>
 #include <nestgrid/detail/erase.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/error.hpp>
-#include <nestgrid/key_table.hpp>
 
 namespace nestgrid {
 

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid {
 

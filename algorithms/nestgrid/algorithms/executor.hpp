@@ -4,7 +4,7 @@
 // What runs the tasks of an algorithm.
 //
 // A grid and a field that are walked by several threads must allow it: their const operations must
-// not change anything but the context of the task (operations.hpp).
+// not change anything but the context of the task (optional.hpp).
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <nestgrid/detail/erase.hpp>
-#include <nestgrid/hanging.hpp>
+#include <nestgrid/detail/hanging.hpp>
 
 namespace nestgrid {
 

@@ -35,8 +35,8 @@
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/detail/erase.hpp>
-#include <nestgrid/hanging.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/hanging.hpp>
+#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
 

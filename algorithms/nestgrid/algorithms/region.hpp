@@ -20,7 +20,7 @@
 
 #include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/detail/erase.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
 

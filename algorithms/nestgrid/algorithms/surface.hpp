@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include <nestgrid/elements.hpp>
+#include <nestgrid/detail/elements.hpp>
 #include <nestgrid/shape.hpp>
 
 namespace nestgrid {

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include <nestgrid/hierarchy.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nestgrid/detail/shape_functions.hpp>
 #include <nestgrid/rule_table.hpp>
-#include <nestgrid/shape_functions.hpp>
 
 #include "rule_steps.hpp"
 

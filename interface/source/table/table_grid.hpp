@@ -12,7 +12,7 @@
 #include <nestgrid/error.hpp>
 #include <nestgrid/grid.hpp>
 #include <nestgrid/keys.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid::detail {
 

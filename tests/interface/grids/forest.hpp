@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
+#include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/grid.hpp>
-#include <nestgrid/key_table.hpp>
 #include <nestgrid/keys.hpp>
 #include <nestgrid/standard_rules.hpp>
 

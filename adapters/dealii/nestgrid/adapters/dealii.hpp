@@ -19,7 +19,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <nestgrid/error.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 #include <nestgrid/rule_table.hpp>
 #include <nestgrid/standard_rules.hpp>
 

@@ -20,7 +20,7 @@
 #include <nestgrid/adapters/dune_alberta.hpp>
 #include <nestgrid/adapters/dune_rules.hpp>
 #include <nestgrid/adapters/dune_ug.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid {
 

@@ -16,9 +16,9 @@
 #include <type_traits>
 #include <vector>
 
+#include <nestgrid/detail/pack.hpp>
 #include <nestgrid/error.hpp>
-#include <nestgrid/operations.hpp>
-#include <nestgrid/pack.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid {
 

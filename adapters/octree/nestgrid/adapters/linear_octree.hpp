@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <nestgrid/adapters/coarse_checks.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {

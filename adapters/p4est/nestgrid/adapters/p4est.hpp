@@ -14,7 +14,7 @@
 
 #include <nestgrid/adapters/p4est_maps.hpp>
 #include <nestgrid/adapters/p4est_trees.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {

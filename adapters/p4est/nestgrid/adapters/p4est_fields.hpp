@@ -8,7 +8,7 @@
 
 #include <nestgrid/adapters/p4est.hpp>
 #include <nestgrid/adapters/p4est_face_codes.hpp>
-#include <nestgrid/mean.hpp>
+#include <nestgrid/detail/mean.hpp>
 
 namespace nestgrid {
 

@@ -7,7 +7,7 @@
 #include <p4est_geometry.h>
 #include <p8est_geometry.h>
 
-#include <nestgrid/geometry.hpp>
+#include <nestgrid/shape.hpp>
 
 namespace nestgrid {
 

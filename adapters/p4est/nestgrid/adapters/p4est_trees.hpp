@@ -24,8 +24,8 @@
 #include <p8est.h>
 #include <p8est_lnodes.h>
 
+#include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/error.hpp>
-#include <nestgrid/key_table.hpp>
 
 namespace nestgrid {
 

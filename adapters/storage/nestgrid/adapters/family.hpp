@@ -15,7 +15,7 @@
 //     void close(tree) const;                what the closure demands; throws InvalidInput where
 //                                            it cannot be
 // and may offer
-//     static constexpr Shape only_shape;     of all elements, as a grid (operations.hpp)
+//     static constexpr Shape only_shape;     of all elements, as a grid (optional.hpp)
 //     std::vector<std::int8_t> prepare(CoarseGrid&) const;
 //                                            puts the corners in order, and returns the orientation
 //                                            of every element then; default: nothing, all 1

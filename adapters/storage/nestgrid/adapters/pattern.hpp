@@ -17,7 +17,7 @@
 #include <memory>
 #include <vector>
 
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/rule.hpp>
 
 namespace nestgrid {

@@ -21,7 +21,7 @@
 #include <nestgrid/adapters/coarse_checks.hpp>
 #include <nestgrid/adapters/family.hpp>
 #include <nestgrid/adapters/work_tree.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 
 namespace nestgrid {
 

@@ -15,7 +15,7 @@
 #include <limits>
 
 #include <nestgrid/adapters/pattern.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
 

@@ -17,7 +17,7 @@
 #include <vtkHyperTreeGrid.h>
 
 #include <nestgrid/error.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {

@@ -9,9 +9,10 @@
 #include <cstdint>
 #include <span>
 
-#include <nestgrid/known_bisection.hpp>
-#include <nestgrid/pack.hpp>
-#include <nestgrid/wide_point.hpp>
+#include <contours/cut_fraction.hpp>
+#include <nestgrid/detail/pack.hpp>
+#include <patches/known_bisection.hpp>
+#include <surfaces/wide_point.hpp>
 
 namespace nestgrid {
 

@@ -11,12 +11,12 @@
 #include <cstring>
 #include <span>
 
-#include <nestgrid/batch_cuts.hpp>
-#include <nestgrid/bisection_block.hpp>
-#include <nestgrid/block_glance.hpp>
-#include <nestgrid/pack.hpp>
-#include <nestgrid/subtree_nodes.hpp>
-#include <nestgrid/wide_point.hpp>
+#include <nestgrid/detail/pack.hpp>
+#include <patches/batch_cuts.hpp>
+#include <patches/bisection_block.hpp>
+#include <patches/block_glance.hpp>
+#include <patches/subtree_nodes.hpp>
+#include <surfaces/wide_point.hpp>
 
 namespace nestgrid {
 

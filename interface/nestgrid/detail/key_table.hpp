@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <nestgrid/inlining.hpp>
+#include <nestgrid/detail/inlining.hpp>
 #include <nestgrid/keys.hpp>
 
 namespace nestgrid {

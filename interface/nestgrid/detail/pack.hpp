@@ -12,7 +12,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include <nestgrid/inlining.hpp>
+#include <nestgrid/detail/inlining.hpp>
 
 namespace nestgrid {
 

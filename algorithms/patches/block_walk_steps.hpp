@@ -4,7 +4,7 @@
 // The steps of BlockWalk; included by block_walk.hpp.
 #pragma once
 
-#include <nestgrid/block_walk.hpp>
+#include <patches/block_walk.hpp>
 
 namespace nestgrid {
 

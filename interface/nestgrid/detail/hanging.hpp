@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
 

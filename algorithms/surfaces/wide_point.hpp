@@ -6,8 +6,8 @@
 // these are written and read as the same two vectors.
 #pragma once
 
-#include <nestgrid/geometry.hpp>
-#include <nestgrid/inlining.hpp>
+#include <nestgrid/detail/geometry.hpp>
+#include <nestgrid/detail/inlining.hpp>
 
 namespace nestgrid {
 

@@ -10,10 +10,10 @@
 #include <cstdint>
 #include <utility>
 
-#include <nestgrid/bisection_block.hpp>
+#include <nestgrid/detail/pack.hpp>
 #include <nestgrid/keys.hpp>
-#include <nestgrid/pack.hpp>
-#include <nestgrid/subtree_nodes.hpp>
+#include <patches/bisection_block.hpp>
+#include <patches/subtree_nodes.hpp>
 
 namespace nestgrid {
 

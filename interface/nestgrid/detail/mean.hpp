@@ -18,7 +18,7 @@
 #include <span>
 #include <type_traits>
 
-#include <nestgrid/inlining.hpp>
+#include <nestgrid/detail/inlining.hpp>
 
 namespace nestgrid {
 

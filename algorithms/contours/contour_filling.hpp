@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include <nestgrid/algorithms/cell_contour.hpp>
-#include <nestgrid/inlining.hpp>
+#include <contours/cell_contour.hpp>
+#include <nestgrid/detail/inlining.hpp>
 
 namespace nestgrid {
 

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <nestgrid/known_bisection.hpp>
+#include <patches/known_bisection.hpp>
 
 namespace nestgrid {
 

@@ -8,9 +8,9 @@
 
 #include <cstring>
 
-#include <nestgrid/bisection_walk.hpp>
 #include <nestgrid/hierarchy.hpp>
-#include <nestgrid/operations.hpp>
+#include <nestgrid/optional.hpp>
+#include <patches/bisection_walk.hpp>
 
 namespace nestgrid::detail {
 
@@ -155,26 +155,3 @@ void walk_for(ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid
 }
 
 }  // namespace nestgrid::detail
-
-namespace nestgrid {
-
-/// Whether the bisections of a grid and a field can be walked in blocks (Hierarchy::bisect).
-template <class Grid, class Field>
-    requires(
-        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() ==
-            1 &&
-        detail::fits_handle<ElementOf<Grid>>)
-bool knows_blocks(const Grid&, const Field&, const HierarchyFacts&) { return true; }
-
-/// Walks them below an element.
-template <class Grid, class Field>
-    requires(
-        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() == 1)
-void bisect_blocks(
-    const Grid& grid, const Field& field, Context<Grid>&, const ElementOf<Grid>& e,
-    const typename Field::value_type* values, int level, int orientation,
-    detail::ErasedBisectionVisitor<Grid::dimension, typename Field::value_type>& visitor) {
-    detail::walk_for(visitor, grid, field, e, values, level, orientation);
-}
-
-}  // namespace nestgrid

@@ -15,9 +15,9 @@
 #include <span>
 #include <utility>
 
-#include <nestgrid/hanging.hpp>
-#include <nestgrid/key_filter.hpp>
-#include <nestgrid/key_table.hpp>
+#include <nestgrid/detail/hanging.hpp>
+#include <nestgrid/detail/key_filter.hpp>
+#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
 

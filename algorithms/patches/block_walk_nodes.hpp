@@ -5,7 +5,7 @@
 // rows; included by block_walk.hpp.
 #pragma once
 
-#include <nestgrid/block_walk.hpp>
+#include <patches/block_walk.hpp>
 
 namespace nestgrid {
 

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include <nestgrid/check_grid_steps.hpp>
+#include <nestgrid/detail/check_grid_steps.hpp>
 
 namespace nestgrid::detail {
 

@@ -15,8 +15,8 @@
 #include <array>
 #include <cstdint>
 
-#include <nestgrid/bisection_block.hpp>
-#include <nestgrid/pack.hpp>
+#include <nestgrid/detail/pack.hpp>
+#include <patches/bisection_block.hpp>
 
 namespace nestgrid {
 

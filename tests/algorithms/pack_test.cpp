@@ -11,10 +11,10 @@
 #include <random>
 #include <set>
 
-#include <nestgrid/bisection_block.hpp>
-#include <nestgrid/pack.hpp>
-#include <nestgrid/subtree_nodes.hpp>
-#include <nestgrid/wide_point.hpp>
+#include <nestgrid/detail/pack.hpp>
+#include <patches/bisection_block.hpp>
+#include <patches/subtree_nodes.hpp>
+#include <surfaces/wide_point.hpp>
 
 using namespace nestgrid;
 

@@ -299,4 +299,4 @@ void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const C
 
 }  // namespace nestgrid::detail
 
-#include <nestgrid/check_grid_walk.hpp>
+#include <nestgrid/detail/check_grid_walk.hpp>

@@ -12,7 +12,7 @@
 
 #include <cstring>
 
-#include <nestgrid/block_batch.hpp>
+#include <patches/block_batch.hpp>
 
 namespace nestgrid {
 
@@ -184,5 +184,5 @@ private:
 
 }  // namespace nestgrid
 
-#include <nestgrid/block_walk_nodes.hpp>
-#include <nestgrid/block_walk_steps.hpp>
+#include <patches/block_walk_nodes.hpp>
+#include <patches/block_walk_steps.hpp>

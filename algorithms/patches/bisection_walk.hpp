@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <nestgrid/block_walk.hpp>
+#include <patches/block_walk.hpp>
 
 namespace nestgrid {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <span>
 
-#include <nestgrid/mean.hpp>
+#include <nestgrid/detail/mean.hpp>
 #include <nestgrid/rule.hpp>
 
 namespace nestgrid::detail {

@@ -21,8 +21,8 @@
 #include <optional>
 #include <span>
 
-#include <nestgrid/algorithms/contour_table.hpp>
-#include <nestgrid/pack.hpp>
+#include <contours/contour_table.hpp>
+#include <nestgrid/detail/pack.hpp>
 
 namespace nestgrid {
 

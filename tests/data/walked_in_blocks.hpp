@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Hierarchies of all grids whose bisections are known walk them in blocks, where this comes before
+// they are made.
+#pragma once
+
+#include <nestgrid/hierarchy.hpp>
+#include <patches/erased_bisections.hpp>
+
+namespace nestgrid {
+
+/// Whether the bisections of a grid and a field can be walked in blocks (Hierarchy::bisect).
+template <class Grid, class Field>
+    requires(
+        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() ==
+            1 &&
+        detail::fits_handle<ElementOf<Grid>>)
+bool knows_blocks(const Grid&, const Field&, const HierarchyFacts&) { return true; }
+
+/// Walks them below an element.
+template <class Grid, class Field>
+    requires(
+        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() == 1)
+void bisect_blocks(
+    const Grid& grid, const Field& field, Context<Grid>&, const ElementOf<Grid>& e,
+    const typename Field::value_type* values, int level, int orientation,
+    detail::ErasedBisectionVisitor<Grid::dimension, typename Field::value_type>& visitor) {
+    detail::walk_for(visitor, grid, field, e, values, level, orientation);
+}
+
+}  // namespace nestgrid
