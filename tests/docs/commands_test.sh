@@ -1,0 +1,141 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Commands of the README and the pages, each line of a block of code marked "sh":
+#   nestgrid ...                        is run, with small files in the place of the reader's
+#   build/release/docs/examples/figures is run, and makes a figure that the same page shows
+#   other programs of build/release     are programs of this build, with a test or benchmark of their own
+#   cmake -B ...                        configures
+#   cmake, ctest --preset NAME          name a preset
+#   bash SCRIPT                         name a script
+# Any other command fails the test, and so does a figure that no command makes.
+# Arguments: the source folder, the build folder, the program, the maker of volumes.
+set -uo pipefail
+source=$1 build=$2 program=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+ran=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# What the commands call head.nii.gz and part.poly.
+"$4" "$work" || exit 1
+cp v.nii.gz head.nii.gz
+cat >part.poly <<'END'
+8 3 0 0
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+6 0
+1
+4 1 2 3 4
+1
+4 5 6 7 8
+1
+4 1 2 6 5
+1
+4 2 3 7 6
+1
+4 3 4 8 7
+1
+4 4 1 5 8
+0
+0
+END
+
+# The commands of a page, one a line.
+commands() {
+    awk '/^```sh$/ { inside = 1; next }
+         /^```$/ { inside = 0 }
+         inside && NF && $1 !~ /^#/ {
+             if (sub(/\\$/, "")) { printf "%s", $0 } else { print }
+         }' "$1"
+}
+
+# Runs a command, unless another page shows the same one.
+run() {
+    grep -qxF -e "$*" known && return
+    echo "$*" >>known
+    ran=$((ran + 1))
+    "$@" >out 2>&1 || fail "$page: '$*' ended with status $?: $(cat out)"
+}
+
+# A figure, by its own command, which the page shows.
+figure() {
+    local name=$1 file=$2
+    run "$build/docs/examples/figures" "$name" "$work/$name.png"
+    [ -s "$name.png" ] || fail "$page: figure $name was not written"
+    [ -s "$source/$file" ] || fail "$page: $file is missing"
+    grep -qF "(${file#"$base/"})" "$page" || fail "$page does not show $file"
+    echo "$file" >>made
+}
+
+nestgrid() {
+    local arguments=() skip=
+    for argument in "$@"; do
+        [ -z "$skip" ] || { skip= && continue; }
+        # Pictures need a display.
+        if [ "$argument" = --image ] && ! command -v Xvfb >/dev/null; then skip=1 && continue; fi
+        arguments+=("$argument")
+    done
+    run "$program" "${arguments[@]}"
+}
+
+check() {
+    local file
+    case "$1" in
+    nestgrid) nestgrid "${@:2}" ;;
+    build/release/docs/examples/figures) figure "$2" "$3" ;;
+    build/release/docs/examples/*)
+        file=${1##*/}
+        grep -q "add_test(NAME example.$file \|^foreach.*\b$file\b" "$source/docs/examples/CMakeLists.txt" ||
+            fail "$page: no test runs $1"
+        ;;
+    build/release/tests/benchmarks/*)
+        [ -s "$source/tests/benchmarks/${1##*/}.cpp" ] || fail "$page: there is no $1"
+        ;;
+    bash) [ -s "$source/$2" ] || fail "$page: there is no $2" ;;
+    cmake | ctest)
+        case "$2 $3" in
+        "--preset "* | "--build --preset")
+            file=$3
+            [ "$file" = --preset ] && file=$4
+            grep -q "\"name\": \"$file\"" "$source/CMakePresets.json" || fail "$page: no preset $file"
+            ;;
+        "-B build/library") run cmake -S "$source" -B "$work/library" "${@:4}" ;;
+        "--build build/library" | "--install build/library") ;;
+        *) fail "$page: '$*' is tested by nothing" ;;
+        esac
+        ;;
+    *) fail "$page: '$*' is tested by nothing" ;;
+    esac
+}
+
+: >made
+: >known
+for page in "$source"/README.md "$source"/docs/*.md; do
+    base=docs
+    [ "$page" = "$source/README.md" ] && base=.
+    while IFS= read -r line; do
+        eval "words=($line)"
+        check "${words[@]}"
+    done < <(commands "$page")
+done
+for file in "$source"/docs/figures/*.png; do
+    grep -qxF "docs/figures/${file##*/}" made || fail "no page has the command that makes ${file##*/}"
+    [ "$(stat -c %s "$file")" -lt 122880 ] || fail "${file##*/} is larger than 120 KiB"
+done
+[ $ran -gt 20 ] || fail "only $ran commands were found"
+[ $failures = 0 ] && echo "$ran commands were run"
+exit $((failures > 0))
