@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a compiler cannot guess of functions that call themselves: which to unroll, and which not.
+// Under a sanitizer it may guess: unrolled functions grow there until they take it minutes.
 #pragma once
 
 #include <cstddef>
 #include <type_traits>
 #include <utility>
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define NESTGRID_INLINE [[gnu::always_inline]] inline
 #define NESTGRID_INLINE_LAMBDA __attribute__((always_inline))
 #define NESTGRID_NOINLINE [[gnu::noinline]]

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Builds everything, the program and the solvers' adapters included, with each of the presets asan,
+# tsan and tidy, and runs the tests of the first two. Ends with one line a preset: what it did and
+# how long it took. Arguments name presets; without any, all three run.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tools/packages.sh
+need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}" clang-tidy
+
+# OpenMPI keeps memory in plugins that it unloads, so that nobody can name who leaks.
+export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
+presets=("$@")
+[ ${#presets[@]} -gt 0 ] || presets=(asan tsan tidy)
+report=()
+status=0
+for preset in "${presets[@]}"; do
+    begin=$SECONDS
+    outcome=passed
+    {
+        cmake --preset "$preset" && cmake --build --preset "$preset" &&
+            { [ "$preset" = tidy ] || ctest --preset "$preset" --parallel "$(nproc)"; }
+    } || { outcome=failed; status=1; }
+    report+=("$preset $outcome in $((SECONDS - begin)) s")
+done
+printf '%s\n' "${report[@]}"
+exit "$status"
