@@ -1,69 +1,102 @@
-# nestgrid_component(<name> [HEADERS ...] [SOURCES ...] [DEPENDS <component> ...] [LINK <target> ...]
+# The one library, libnestgrid: static, or shared with BUILD_SHARED_LIBS=ON. Components add their
+# objects to it. Link nestgrid::nestgrid or a component, which bring it along.
+function(nestgrid_library)
+  add_library(nestgrid_library)
+  # A shared library finds those it depends on beside itself.
+  set_target_properties(
+    nestgrid_library
+    PROPERTIES OUTPUT_NAME nestgrid VERSION ${PROJECT_VERSION} SOVERSION 0 EXPORT_NAME library
+               LINKER_LANGUAGE CXX INSTALL_RPATH
+               "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>")
+  add_library(nestgrid::library ALIAS nestgrid_library)
+  nestgrid_install_component(library)
+endfunction()
+
+# nestgrid_component(<name> [HEADERS ...] [SOURCES ...] [PRIVATE_INCLUDES <folder> ...]
+#                    [DEPENDS <component> ...] [LINK <target> ...]
 #                    [PACKAGES "<find_package arguments>" ...] [FIND_MODULES <file> ...])
 #
 # Makes the target nestgrid::<name>, in the tree and installed. Each component is an include root of
-# its own, so a component sees the headers of those it depends on and no others. Without SOURCES it
-# is header-only. PACKAGES are found again by whoever asks the installed package for the component,
+# its own, so a component sees the headers of those it depends on and no others. SOURCES become
+# objects of libnestgrid; they alone see PRIVATE_INCLUDES. Without SOURCES the component is
+# header-only. PACKAGES are found again by whoever asks the installed package for the component,
 # with FIND_MODULES where they bring none of their own.
 function(nestgrid_component name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;SOURCES;DEPENDS;LINK;PACKAGES;FIND_MODULES")
+  cmake_parse_arguments(
+    PARSE_ARGV 1 arg "" "" "HEADERS;SOURCES;PRIVATE_INCLUDES;DEPENDS;LINK;PACKAGES;FIND_MODULES")
   set(target nestgrid_${name})
-  if(arg_SOURCES)
-    set(scope PUBLIC)
-    add_library(${target} ${arg_SOURCES})
-    # A shared library finds those it depends on beside itself.
-    set_target_properties(
-      ${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0 POSITION_INDEPENDENT_CODE ON
-                           INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>")
-    nestgrid_warnings(${target})
-    # Products and sums are rounded one by one, so that results are equal to the last bit on all
-    # machines.
-    target_compile_options(${target} PRIVATE -ffp-contract=off)
-  else()
-    set(scope INTERFACE)
-    add_library(${target} INTERFACE)
-  endif()
+  add_library(${target} INTERFACE)
   add_library(nestgrid::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  target_compile_features(${target} ${scope} cxx_std_20)
+  target_compile_features(${target} INTERFACE cxx_std_20)
+  if(arg_SOURCES)
+    list(PREPEND arg_DEPENDS library)
+    nestgrid_objects(${target} "${arg_SOURCES}" "${arg_PRIVATE_INCLUDES}")
+  endif()
   foreach(dependency IN LISTS arg_DEPENDS)
-    target_link_libraries(${target} ${scope} nestgrid::${dependency})
+    target_link_libraries(${target} INTERFACE nestgrid::${dependency})
   endforeach()
-  target_link_libraries(${target} ${scope} ${arg_LINK})
+  target_link_libraries(${target} INTERFACE ${arg_LINK})
   file(GLOB_RECURSE forgotten RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} nestgrid/*.h nestgrid/*.hpp)
   list(REMOVE_ITEM forgotten ${arg_HEADERS})
   if(forgotten)
     message(FATAL_ERROR "nestgrid: headers that component ${name} does not list: ${forgotten}")
   endif()
   if(arg_HEADERS)
-    target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} FILES
-                                      ${arg_HEADERS})
+    target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} FILES
+                                       ${arg_HEADERS})
     if(NESTGRID_BUILD_TESTS AND NOT CMAKE_CXX_CLANG_TIDY)
       set_target_properties(${target} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
     endif()
   endif()
-  if(NESTGRID_INSTALL)
-    install(TARGETS ${target} EXPORT nestgrid-${name}-targets FILE_SET HEADERS)
-    install(
-      EXPORT nestgrid-${name}-targets
-      NAMESPACE nestgrid::
-      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/nestgrid)
-    # What the installed package needs to know of the component.
-    set(text "set(nestgrid_${name}_depends ${arg_DEPENDS})\n")
-    set(packages "")
-    if(arg_FIND_MODULES)
-      set(packages "list(PREPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})\n")
-    endif()
-    foreach(package IN LISTS arg_PACKAGES)
-      string(APPEND packages "find_dependency(${package})\n")
-    endforeach()
-    file(WRITE ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-depends.cmake "${text}")
-    file(WRITE ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-packages.cmake "${packages}")
-    install(FILES ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-depends.cmake
-                  ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-packages.cmake
-                  ${arg_FIND_MODULES}
-            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/nestgrid)
+  nestgrid_install_component(${name} DEPENDS ${arg_DEPENDS} PACKAGES ${arg_PACKAGES} FIND_MODULES
+                             ${arg_FIND_MODULES})
+endfunction()
+
+# Compiles sources into libnestgrid that include what users of the component do.
+function(nestgrid_objects target sources private_includes)
+  set(objects ${target}_objects)
+  add_library(${objects} OBJECT ${sources})
+  set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${objects} PRIVATE cxx_std_20)
+  nestgrid_warnings(${objects})
+  # Products and sums are rounded one by one, so that results are equal to the last bit on all
+  # machines.
+  target_compile_options(${objects} PRIVATE -ffp-contract=off)
+  # Not linked, for the component links the library, and the library is made of the objects.
+  target_include_directories(
+    ${objects} PRIVATE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>
+                       ${private_includes})
+  target_compile_definitions(
+    ${objects} PRIVATE $<TARGET_PROPERTY:${target},INTERFACE_COMPILE_DEFINITIONS>)
+  target_sources(nestgrid_library PRIVATE $<TARGET_OBJECTS:${objects}>)
+endfunction()
+
+# nestgrid_install_component(<name> [DEPENDS ...] [PACKAGES ...] [FIND_MODULES ...])
+function(nestgrid_install_component name)
+  if(NOT NESTGRID_INSTALL)
+    return()
   endif()
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "DEPENDS;PACKAGES;FIND_MODULES")
+  install(TARGETS nestgrid_${name} EXPORT nestgrid-${name}-targets FILE_SET HEADERS)
+  install(
+    EXPORT nestgrid-${name}-targets
+    NAMESPACE nestgrid::
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/nestgrid)
+  # What the installed package needs to know of the component.
+  set(text "set(nestgrid_${name}_depends ${arg_DEPENDS})\n")
+  set(packages "")
+  if(arg_FIND_MODULES)
+    set(packages "list(PREPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})\n")
+  endif()
+  foreach(package IN LISTS arg_PACKAGES)
+    string(APPEND packages "find_dependency(${package})\n")
+  endforeach()
+  file(WRITE ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-depends.cmake "${text}")
+  file(WRITE ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-packages.cmake "${packages}")
+  install(FILES ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-depends.cmake
+                ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-packages.cmake ${arg_FIND_MODULES}
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/nestgrid)
 endfunction()
 
 # nestgrid_optional(<name> <package> [<more find_package arguments> ...])
