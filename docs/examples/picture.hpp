@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <nestgrid/geometry.hpp>
+#include <nestgrid/detail/geometry.hpp>
 
 /// Red, green and blue between 0 and 1.
 using Colour = std::array<double, 3>;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <nestgrid/detail/hanging_probe.hpp>
+#include <nestgrid/detail/named_operations.hpp>
 #include <nestgrid/optional.hpp>
 
 namespace nestgrid {
@@ -64,6 +65,9 @@ struct CheckOptions {
     /// differ, where a solver rounds them in each element. Surfaces of such a field may still show
     /// two vertices instead of one.
     double node_value_tolerance = 0;
+    /// Where not null, check_grid appends sentences about what is legal and may yet not be meant:
+    /// which optional operations it found, so that a misspelt name is seen to be missing.
+    std::vector<std::string>* notes = nullptr;
 };
 
 namespace detail {
@@ -78,6 +82,7 @@ std::optional<GridViolation> check_grid(const Grid& grid, const Field& field,
                                         const CheckOptions& options = {}) {
     static_assert(require_nested_grid<Grid>());
     static_assert(require_nodal_field<Field, Grid>());
+    static_assert(require_fitting_operations<Grid, Field>());
     return detail::GridChecker<Grid, Field>(grid, field, options).run();
 }
 

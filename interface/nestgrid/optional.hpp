@@ -49,6 +49,8 @@
 //     void row_values(NodeKey first, std::size_t stride, std::span<value_type> out)
 //         at the nodes first, first + stride, ... of a star row or of their parents in one place;
 //         random access, with for_each_star_row
+// A member with one of these names and another signature does not compile; check_grid lists the
+// operations it found.
 #pragma once
 
 #include <cstddef>

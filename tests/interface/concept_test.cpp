@@ -48,6 +48,43 @@ static_assert(!NestedGrid<int>);
 static_assert(!NodalField<IntegerValues, ArchetypeGrid>);
 static_assert(!NodalField<NoNewValues, ArchetypeGrid>);
 
+/// Members whose constraints are not satisfied are not there.
+template <bool has>
+struct Constrained : ArchetypeGrid {
+    bool conforming() const requires(has) { return true; }
+    int masked() const requires(has) { return 0; }
+};
+static_assert(require_fitting_operations<Constrained<false>, ArchetypeField>());
+
+struct Misspelt : ArchetypeGrid {
+    bool conforming() const { return true; }
+    void new_positons(const Element&, NodeMask, std::span<Point>) const {}
+};
+
+TEST(CheckGrid, NotesTheOptionalOperationsThatItFinds) {
+    std::vector<std::string> notes;
+    EXPECT_FALSE(check_grid(Misspelt{}, ArchetypeField{}, {.notes = &notes}));
+    EXPECT_EQ(notes, (std::vector<std::string>{
+                         "optional operations found in the grid: conforming",
+                         "optional operations found in the field: none",
+                     }));
+}
+
+/// Every operation that a lattice has is in the list, in the order of operations.hpp.
+TEST(OfferedOperations, AreListed) {
+    const Samples n{5, 5, 5};
+    const LatticeBisection<3> grid({.samples = n});
+    EXPECT_EQ(offered_operations(grid),
+              (std::vector<std::string>{"corner_keys", "new_keys", "node_count", "corner_positions",
+                                        "conforming", "masked", "outside", "boundary_faces",
+                                        "for_each_star_row", "node_position", "max_corners",
+                                        "max_new_nodes", "max_children"}));
+    const std::vector<float> values(125);
+    const LatticeField field(grid, std::span<const float>(values));
+    EXPECT_EQ(offered_field_operations<LatticeBisection<3>>(field),
+              (std::vector<std::string>{"corner_gradients", "row_values"}));
+}
+
 TEST(Archetype, WorksWithEveryAlgorithm) {
     const ArchetypeGrid grid;
     const ArchetypeField field;

@@ -33,6 +33,7 @@ public:
     }
 
     std::optional<GridViolation> run() {
+        if (options_.notes != nullptr) note_operations(*options_.notes);
         try {
             for (std::size_t i = 0; i < grid_.coarse_count(); ++i) check_coarse(i);
             for (std::size_t i = 0; i < grid_.coarse_count(); ++i) walk_coarse(i);
@@ -100,6 +101,7 @@ private:
         return "element " + path.substr(1);
     }
 
+    void note_operations(std::vector<std::string>& notes) const;
     void check_coarse(std::size_t i);
     void walk_coarse(std::size_t i);
     void walk(const State& s);
@@ -135,6 +137,17 @@ private:
     std::vector<Leaf> leaves_;
     HangingProbe probe_;
 };
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::note_operations(std::vector<std::string>& notes) const {
+    const auto add = [&](const std::string& who, const std::vector<std::string>& names) {
+        std::string list = names.empty() ? "none" : names[0];
+        for (std::size_t i = 1; i < names.size(); ++i) list += ", " + names[i];
+        notes.push_back("optional operations found in the " + who + ": " + list);
+    };
+    add("grid", offered_operations(grid_));
+    add("field", offered_field_operations<Grid>(field_));
+}
 
 template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_coarse(std::size_t i) {

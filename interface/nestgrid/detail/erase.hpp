@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <memory>
 
+#include <nestgrid/detail/named_operations.hpp>
 #include <nestgrid/hierarchy.hpp>
 #include <nestgrid/optional.hpp>
 
@@ -48,6 +49,7 @@ template <class Grid, class Field>
 class ErasedHierarchy final : public Hierarchy<typename Field::value_type> {
     static_assert(require_nested_grid<Grid>());
     static_assert(require_nodal_field<Field, Grid>());
+    static_assert(require_fitting_operations<Grid, Field>());
 
 public:
     using Real = typename Field::value_type;
