@@ -12,7 +12,8 @@
 //   - the volumes of the children add up to that of the parent;
 //   - where there are new nodes, every child has one for a corner: what saturates a function of the
 //     nodes goes from a child to its father by it.
-// Consequence: the children tile the parent, and no node hangs inside one split.
+// Consequence: the children tile the parent, no node hangs inside one split, and every corner of the
+// parent is a corner of a child.
 #pragma once
 
 #include <array>
@@ -107,6 +108,8 @@ struct Rule {
     /// Derived: of which child each new node is a corner. The first one of a child where it can be,
     /// else the last one: in sorted leaves these are found without a search.
     std::vector<ChildCorner> new_corner{};
+    /// Derived: likewise of each corner of the parent.
+    std::vector<ChildCorner> old_corner{};
     std::vector<RuleEdge> edges{};  // derived: first those of the parent, as in its topology
     std::vector<RuleFace> faces{};  // derived: likewise; none in two dimensions
     int steps = 1;  // derived: the longest chain of new nodes that are parents of each other

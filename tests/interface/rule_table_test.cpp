@@ -73,13 +73,35 @@ TEST(RuleTable, RefusesChildrenThatLeaveAGap) {
     EXPECT_EQ(table.find(Shape::triangle, children), nullptr);
 }
 
-/// Every new node is where the rule says it is a corner of a child.
-TEST(Rules, NameAChildOfEveryNewNode) {
+/// Every node is where the rule says it is a corner of a child.
+TEST(Rules, NameAChildOfEveryNode) {
     for (const Rule* rule : standard_rules()) {
-        for (std::size_t n = 0; n < rule->new_nodes.size(); ++n) {
-            const ChildCorner at = rule->new_corner[n];
-            EXPECT_EQ(rule->children.at(at.child).corner.at(at.corner),
-                      static_cast<std::size_t>(rule->corner_count()) + n);
+        const auto corners = static_cast<std::size_t>(rule->corner_count());
+        std::vector<ChildCorner> all = rule->old_corner;
+        ASSERT_EQ(all.size(), corners) << rule->name;
+        all.insert(all.end(), rule->new_corner.begin(), rule->new_corner.end());
+        ASSERT_EQ(all.size(), corners + rule->new_nodes.size()) << rule->name;
+        for (std::size_t n = 0; n < all.size(); ++n) {
+            EXPECT_EQ(rule->children.at(all[n].child).corner.at(all[n].corner), n) << rule->name;
+        }
+    }
+}
+
+/// In sorted leaves a child's first and last corners are found without a search.
+TEST(Rules, PreferTheFirstCornerOfAChildThenTheLast) {
+    for (const Rule* rule : standard_rules()) {
+        for (std::size_t n = 0; n < rule->old_corner.size(); ++n) {
+            const auto is = [&](std::size_t from_end) {
+                return std::any_of(rule->children.begin(), rule->children.end(),
+                                   [&](const Child& child) {
+                                       const std::size_t last = topology(child.shape).corners - 1U;
+                                       return child.corner[from_end == 0 ? 0 : last] == n;
+                                   });
+            };
+            const auto [child, corner] = rule->old_corner[n];
+            const std::size_t last = topology(rule->children[child].shape).corners - 1U;
+            const std::size_t rank = corner == 0 ? 0 : corner == last ? 1 : 2;
+            EXPECT_EQ(rank, is(0) ? 0U : is(1) ? 1U : 2U) << rule->name;
         }
     }
 }

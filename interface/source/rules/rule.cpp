@@ -61,20 +61,23 @@ void complete_stencil(const Rule& rule, Stencil& s) {
     if (order_as_face(rule, s)) s.mean = Mean::face;
 }
 
-/// Fills Rule::new_corner: prefers a child's first corner, then its last one, then any other.
-void find_new_corners(Rule& rule) {
+/// Fills Rule::old_corner and Rule::new_corner: prefers a child's first corner, then its last one,
+/// then any other.
+void find_corners(Rule& rule) {
+    const auto old = static_cast<std::size_t>(rule.corner_count());
+    rule.old_corner.resize(old);
     rule.new_corner.resize(rule.new_nodes.size());
-    std::vector<int> rank(rule.new_nodes.size(), 3);
+    std::vector<int> rank(old + rule.new_nodes.size(), 3);
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         const Child& child = rule.children[c];
         const std::size_t corners = topology(child.shape).corners;
         for (std::size_t i = 0; i < corners; ++i) {
-            if (child.corner[i] < rule.corner_count()) continue;
-            const auto n = static_cast<std::size_t>(child.corner[i] - rule.corner_count());
+            const std::size_t n = child.corner[i];
             const int here = i == 0 ? 0 : i + 1 == corners ? 1 : 2;
             if (here >= rank[n]) continue;
             rank[n] = here;
-            rule.new_corner[n] = {static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(i)};
+            ChildCorner& at = n < old ? rule.old_corner[n] : rule.new_corner[n - old];
+            at = {static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(i)};
         }
     }
 }
@@ -161,7 +164,7 @@ Rule make_rule(std::string name, Shape parent, std::vector<Stencil> new_nodes,
     rule.children = std::move(children);
     if (auto violation = find_violation(rule)) throw InvalidInput(*violation);
     for (Stencil& s : rule.new_nodes) complete_stencil(rule, s);
-    find_new_corners(rule);
+    find_corners(rule);
     mark_nodes(rule);
     find_parent_faces(rule);
     count_steps(rule);
