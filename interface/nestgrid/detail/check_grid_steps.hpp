@@ -10,6 +10,18 @@
 
 namespace nestgrid::detail {
 
+/// As in "0.5 * (0, 0, 0) + 0.5 * (1, 0, 0)".
+inline std::string stencil_text(const std::vector<std::pair<double, Point>>& parents) {
+    std::string sum;
+    for (const auto& [weight, x] : parents) {
+        std::array<char, 160> term;
+        std::snprintf(term.data(), term.size(), "%s%g * (%g, %g, %g)", sum.empty() ? "" : " + ",
+                      weight, x[0], x[1], x[2]);
+        sum += term.data();
+    }
+    return sum;
+}
+
 inline constexpr const char* in_tensor_order =
     "; its corners are numbered in tensor order, x fastest, and not around";
 
@@ -63,9 +75,14 @@ private:
         Point position{};     // by the rules
         Values value{};
     };
+    /// How a node is made: what check_grid compares, and what it prints.
+    struct Origin {
+        NodeKey signature = 0;    // hash of the keys and weights of the parents
+        std::size_t element = 0;  // that made the node first
+        std::vector<std::pair<double, Point>> parents;  // weights and positions
+    };
     struct Node {
         NodeKey key = 0;
-        NodeKey signature = 0;
         std::size_t element = 0;  // that made it first
         Values value{};
         bool constrained = false;
@@ -107,8 +124,10 @@ private:
     void walk(const State& s);
     void check_rule(const State& s, const Rule& rule);
     void make_node(const Rule& rule, std::size_t n, std::vector<Corner>& nodes);
-    void check_node(const State& s, std::size_t n, const Corner& c, NodeKey signature,
-                    bool constrained, bool deviates);
+    void check_stencil(const State& s, const Rule& rule, std::size_t n,
+                       const std::vector<Corner>& nodes);
+    void check_node(const State& s, std::size_t n, const Corner& c, bool constrained,
+                    bool deviates);
     void check_same_value(const Values& a, const Values& b, const std::string& both) const;
     void check_new_nodes(const State& s, const Rule& rule, std::vector<Corner>& nodes);
     bool deviates_from_mean(const Stencil& stencil, const std::vector<Corner>& nodes,
@@ -131,7 +150,8 @@ private:
     std::set<const Rule*> rules_;
     std::map<std::uint64_t, std::pair<Point, std::size_t>> coarse_nodes_;
     KeyTable<NodeKey, int> coarse_faces_;
-    KeyTable<NodeKey, Node> nodes_;  // by place
+    KeyTable<NodeKey, Node> nodes_;      // by place
+    KeyTable<NodeKey, Origin> origins_;  // of new nodes, by place
     KeyTable<NodeKey, NodeKey> place_of_key_;
     KeyTable<NodeKey, NodeKey> place_of_derived_;  // new nodes only
     std::vector<Leaf> leaves_;
@@ -272,21 +292,20 @@ void GridChecker<Grid, Field>::walk_coarse(std::size_t i) {
                     c.value.begin());
         size_ = std::max(size_, norm(c.position - coarse_.corners[0]));
         check_values(s.step, "corner", k, c.value);
-        check_node(s, k, c, 0, false, false);
+        check_node(s, k, c, false, false);
     }
     walk(s);
 }
 
 template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const Corner& c,
-                                          NodeKey signature, bool constrained, bool deviates) {
+                                          bool constrained, bool deviates) {
     const std::string where = "node " + std::to_string(n) + " of " + name(s.step);
     if (const std::size_t count = dense_key_count(grid_); count > 0 && c.key >= count) {
         fail(Law::dense_key, "the key of " + where + " is not below node_count()");
     }
     Node fresh;
     fresh.key = c.key;
-    fresh.signature = signature;
     fresh.element = s.step;
     fresh.value = c.value;
     fresh.constrained = constrained;
@@ -301,9 +320,7 @@ void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const C
         return;
     }
     const std::string both = where + " and in " + name(node->element);
-    if (node->key != c.key || node->signature != signature) {
-        fail(Law::one_stencil, "one node has two stencils or keys: as " + both);
-    }
+    if (node->key != c.key) fail(Law::one_stencil, "one node has two keys: as " + both);
     check_same_value(node->value, c.value, both);
     if (node->constrained != constrained) {
         fail(Law::hanging_mask, "one node is constrained and not constrained: as " + both);

@@ -46,6 +46,27 @@ void GridChecker<Grid, Field>::make_node(const Rule& rule, std::size_t n,
     nodes.push_back(c);
 }
 
+/// \param n the last new node in `nodes`
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_stencil(const State& s, const Rule& rule, std::size_t n,
+                                             const std::vector<Corner>& nodes) {
+    const Stencil& stencil = rule.new_nodes[n];
+    Origin origin;
+    origin.element = s.step;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        const Corner& parent = nodes[stencil.parent[i]];
+        origin.signature +=
+            mix(parent.key + static_cast<std::uint64_t>(std::llround(stencil.weight[i] * 0x1p40)));
+        origin.parents.emplace_back(stencil.weight[i], parent.position);
+    }
+    const auto [known, is_new] = origins_.insert(nodes.back().place, origin);
+    if (is_new || known->signature == origin.signature) return;
+    fail(Law::one_stencil, "one node has two stencils: " + stencil_text(origin.parents) +
+                               " as node " + std::to_string(nodes.size() - 1) + " of " +
+                               name(s.step) + ", and " + stencil_text(known->parents) + " in " +
+                               name(known->element));
+}
+
 template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_own_keys(const State& s, std::span<const NodeKey> own) {
     for (std::size_t k = 0; k < own.size(); ++k) {
@@ -121,16 +142,12 @@ void GridChecker<Grid, Field>::check_new_nodes(const State& s, const Rule& rule,
         Corner& c = nodes.back();
         if (own_keys_) c.key = own[n];
         const Stencil& stencil = rule.new_nodes[n];
-        NodeKey signature = 0;
-        for (std::size_t i = 0; i < stencil.count; ++i) {
-            signature += mix(nodes[stencil.parent[i]].key +
-                             static_cast<std::uint64_t>(std::llround(stencil.weight[i] * 0x1p40)));
-        }
+        check_stencil(s, rule, n, nodes);
         std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(n * components_), components_,
                     c.value.begin());
         check_values(s.step, "new node", n, c.value);
         const bool deviates = deviates_from_mean(stencil, nodes, c.value[0]);
-        check_node(s, corners + n, c, mix(signature), (constrained >> n & 1U) != 0, deviates);
+        check_node(s, corners + n, c, (constrained >> n & 1U) != 0, deviates);
         place_of_derived_.insert(c.derived, c.place);
     }
     std::vector<NodeKey> derived;
