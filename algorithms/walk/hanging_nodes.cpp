@@ -2,25 +2,84 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <walk/hanging_nodes.hpp>
 
+#include <algorithm>
+#include <string>
+
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/detail/hanging_probe.hpp>
+#include <nestgrid/error.hpp>
 #include <walk/for_each_element.hpp>
+#include <walk/interpolate.hpp>
 
 namespace nestgrid {
 
 namespace engine {
 
+namespace {
+
+using Keys = std::array<NodeKey, max_corners + max_new_nodes>;
+
+/// Keys of the corners of a split element, then of its new nodes.
+template <class Real>
+std::span<const NodeKey> keys_of(const Walk<Real>& walk, const ElementView<Real>& view,
+                                 const Split& split, Keys& keys) {
+    walk.corners(view, keys.data(), nullptr);
+    std::ranges::copy(split.keys, keys.data() + view.corner_count());
+    return std::span<const NodeKey>(keys).first(view.corner_count() + split.keys.size());
+}
+
+/// The element as check_grid names it: number of the coarse element and of children.
+template <class Real>
+std::string name_of(const ElementView<Real>& view) {
+    if (view.father == nullptr) return std::to_string(view.coarse);
+    return name_of(*view.father) + "/" + std::to_string(int{view.child});
+}
+
+template <class Real>
+[[noreturn]] void refuse_face(const Walk<Real>& walk, const ElementView<Real>& view,
+                              const Rule& rule, const detail::OneWayFace& face) {
+    std::array<Point, max_corners + max_new_nodes> place{};
+    walk.corners(view, nullptr, place.data());
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        place[view.corner_count() + n] =
+            nestgrid::detail::interpolate(rule.new_nodes[n], place.data());
+    }
+    Point x{0, 0, 0};
+    for (const std::uint8_t corner : face) x = x + 0.25 * place[corner];
+    throw GridError("elements on the two sides of the face around (" + std::to_string(x[0]) + ", " +
+                    std::to_string(x[1]) + ", " + std::to_string(x[2]) + ") of element " +
+                    name_of(view) +
+                    " divide it in different directions first and one of them then across, so that "
+                    "a node there hangs on others than its parents: refine both in the same order, "
+                    "or each in its own direction only");
+}
+
+/// \throw GridError where nodes hang on others than their parents
+template <class Real>
+void refuse_crossed_faces(const Hierarchy<Real>& hierarchy, detail::HangingProbe& probe) {
+    const Walk<Real> walk(hierarchy, {.values = false, .keys = true, .positions = true});
+    Keys keys;
+    for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
+        if (split.rule == nullptr) return;
+        const auto face = probe.crossed_face(*split.rule, keys_of(walk, view, split, keys));
+        if (face) refuse_face(walk, view, *split.rule, *face);
+    });
+}
+
+}  // namespace
+
 template <class Real>
 HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
     const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
     detail::HangingProbe probe;
-    std::array<NodeKey, max_corners> keys;
+    Keys keys;
     for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule == nullptr) return;
         walk.corners(view, keys.data(), nullptr);
         probe.add_nodes(*split.rule, keys, split.keys);
     });
     probe.finish();
+    if (probe.divides_one_way()) refuse_crossed_faces(hierarchy, probe);
     for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule != nullptr || view.member->hidden == Hidden::wholly) return;
         walk.corners(view, keys.data(), nullptr);

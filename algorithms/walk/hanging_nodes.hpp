@@ -8,6 +8,7 @@
 namespace nestgrid::engine {
 
 /// The hanging nodes of a hierarchy, by hanging_probe.hpp. Hidden leaves constrain no node.
+/// \throw GridError where refinement is anisotropic and nodes hang on others than their parents
 template <class Real>
 HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy);
 

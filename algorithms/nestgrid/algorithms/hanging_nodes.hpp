@@ -9,7 +9,10 @@
 
 namespace nestgrid {
 
-/// Walks the whole hierarchy twice. Costs O(nodes) memory while it runs.
+/// Walks the whole hierarchy twice, and once more where a rule divides a quadrilateral face in one
+/// direction first. Costs O(nodes) memory while it runs.
+/// \throw GridError where nodes hang on others than their parents: two sides of a face divide it in
+///        different directions first, and one of them then across
 HangingNodes derive_hanging_nodes(const Hierarchy<float>& hierarchy);
 
 template <class Grid>

@@ -8,12 +8,19 @@
 // edges and faces have, and, where there is one, for those of the parts, recursively. This finds
 // nodes that a test of faces misses, because the coarse leaf touches the finer element in an edge
 // only. Keys may be derived or the grid's own.
+// The probe relies on this: where a face is divided on both sides, both sides divide it alike, or
+// one of them along one direction only and the other along the other one only. crossed_face()
+// finds the quadrilaterals where this does not hold: nodes there hang on others than their parents.
 // Costs O(nodes) memory while it runs, and keeps the keys of hanging nodes.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <nestgrid/detail/hanging.hpp>
 #include <nestgrid/detail/key_filter.hpp>
@@ -22,6 +29,30 @@
 namespace nestgrid {
 
 namespace detail {
+
+/// A quadrilateral in tensor order, by nodes of a rule that divides its edges 01 and 23 first.
+using OneWayFace = std::array<std::uint8_t, 4>;
+
+/// The quadrilaterals, parts of faces included, that a rule divides in one direction first: both
+/// nodes of the first step lie between the ends of opposite edges.
+inline std::vector<OneWayFace> one_way_faces(const Rule& rule) {
+    std::vector<OneWayFace> result;
+    for (const RuleFace& face : rule.faces) {
+        if (!face.one_way) continue;
+        const auto& c = face.corner;
+        const auto divides = [&](std::uint8_t a, std::uint8_t b) {
+            for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+                const Stencil& s = rule.new_nodes[n];
+                if ((face.first >> n & 1U) == 0 || s.mean != Mean::midpoint) continue;
+                if (std::minmax(s.parent[0], s.parent[1]) == std::minmax(a, b)) return true;
+            }
+            return false;
+        };
+        if (divides(c[0], c[1]) && divides(c[2], c[3])) result.push_back({c[0], c[1], c[3], c[2]});
+        if (divides(c[1], c[2]) && divides(c[3], c[0])) result.push_back({c[1], c[2], c[0], c[3]});
+    }
+    return result;
+}
 
 class HangingProbe {
 public:
@@ -38,6 +69,7 @@ public:
             nodes_.prefetch(parents[n]);
         }
         for (std::size_t n = 0; n < nodes.size(); ++n) nodes_.insert(parents[n], nodes[n]);
+        divides_one_way_ = divides_one_way_ || !faces_of(rule).empty();
     }
 
     /// Between the last add_nodes() and the first probe_leaf().
@@ -74,6 +106,19 @@ public:
     }
 
     HangingNodes take() { return std::move(hanging_); }
+
+    /// Whether some split divides a quadrilateral in one direction first; else no face is crossed.
+    bool divides_one_way() const { return divides_one_way_; }
+
+    /// A quadrilateral that a split divides in one direction first, while an element on its other
+    /// side divides it in both directions, first or later in the other one. After finish().
+    /// \param keys of the corners, then of the new nodes
+    std::optional<OneWayFace> crossed_face(const Rule& rule, std::span<const NodeKey> keys) {
+        for (const OneWayFace& face : faces_of(rule)) {
+            if (is_crossed(keys[face[0]], keys[face[1]], keys[face[2]], keys[face[3]])) return face;
+        }
+        return std::nullopt;
+    }
 
 private:
     struct Present {};
@@ -153,10 +198,38 @@ private:
         }
     }
 
+    /// one_way_faces(), made once for each rule.
+    const std::vector<OneWayFace>& faces_of(const Rule& rule) {
+        if (rule.divides_all || rule.parent == Shape::tetrahedron) return none_;
+        if (&rule != last_rule_) {
+            const auto at = one_way_.find(&rule);
+            last_faces_ = at != one_way_.end()
+                              ? &at->second
+                              : &one_way_.emplace(&rule, one_way_faces(rule)).first->second;
+            last_rule_ = &rule;
+        }
+        return *last_faces_;
+    }
+
+    /// Corners in tensor order. One side of the face divides its edges ab and cd first; so no node
+    /// of the other side lies between nodes of ac and bd.
+    bool is_crossed(NodeKey a, NodeKey b, NodeKey c, NodeKey d) const {
+        const Found ac = middle(a, c);
+        const Found bd = ac == nullptr ? nullptr : middle(b, d);
+        if (bd == nullptr) return false;
+        return middle(a, b, c, d) != nullptr || middle(*ac, *bd) != nullptr ||
+               is_crossed(a, b, *ac, *bd) || is_crossed(*ac, *bd, c, d);
+    }
+
     KeyTable<NodeKey, NodeKey> nodes_;  // by their parents
     KeyFilter parents_;
     KeyTable<NodeKey, Present> triangles_;
     HangingNodes hanging_;
+    const std::vector<OneWayFace> none_;
+    std::map<const Rule*, std::vector<OneWayFace>> one_way_;
+    const Rule* last_rule_ = nullptr;
+    const std::vector<OneWayFace>* last_faces_ = nullptr;  // of that
+    bool divides_one_way_ = false;
 };
 
 }  // namespace detail
