@@ -41,10 +41,12 @@ enum class Law : std::uint8_t {
     hanging_value,   ///< a hanging node's value is its interpolant
     value_present,   ///< the field gives all values
     value_finite,
-    value_unique,  ///< one node, one value
-    position,      ///< own positions: those of eq. (1), and one node, one position
-    depth,         ///< the hierarchy ends
-    hidden,        ///< an element is hidden as its children are; no leaf is in part
+    value_unique,     ///< one node, one value
+    position,         ///< own positions: those of eq. (1), and one node, one position
+    depth,            ///< the hierarchy ends
+    hidden,           ///< an element is hidden as its children are; no leaf is in part
+    hanging_parents,  ///< a node hangs on its own parents: on every leaf that it lies on, its
+                      ///< stencil gives the value that the leaf has there
 };
 
 struct GridViolation {

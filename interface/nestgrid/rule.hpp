@@ -12,8 +12,8 @@
 //   - the volumes of the children add up to that of the parent;
 //   - where there are new nodes, every child has one for a corner: what saturates a function of the
 //     nodes goes from a child to its father by it.
-// Consequence: the children tile the parent, no node hangs inside one split, and every corner of the
-// parent is a corner of a child.
+// Consequence: the children tile the parent, no node hangs inside one split, and every corner of
+// the parent is a corner of a child.
 #pragma once
 
 #include <array>

@@ -94,6 +94,20 @@ private:
         std::size_t father;
         std::size_t number;
     };
+    struct Made {  // a new node, by what made it first
+        NodeKey place = 0;
+        NodeKey derived = 0;
+        std::size_t coarse = 0;  // number of the coarse element that the weights are of
+        Weights weights{};
+        std::size_t parents = 0;
+        std::array<NodeKey, max_corners> parent{};  // places
+        std::array<double, max_corners> weight{};
+    };
+    struct Inside {  // a new node in an element
+        std::size_t node;
+        Point at;  // in reference coordinates of the coarse element
+    };
+    class LeafNodes;
     struct Leaf {
         Shape shape;
         std::array<NodeKey, max_corners> keys;
@@ -135,7 +149,13 @@ private:
     void check_positions(const State& s);
     void check_own_keys(const State& s, std::span<const NodeKey> own);
     void check_values(std::size_t step, const char* which, std::size_t n, const Values& value);
+    void add_made(const Corner& node, const Stencil& stencil, const std::vector<Corner>& nodes);
     void check_hanging();
+    void find_nodes_inside();
+    void walk_regions(std::size_t i);
+    void check_region(const State& s, const std::vector<Inside>& inside);
+    void check_leaf(const State& s, const std::vector<Inside>& inside);
+    void check_hanging_node(const State& leaf, const Made& made, bool interpolated);
     NodeKey place_of(const Weights& weights) const;
 
     const Grid& grid_;
@@ -144,6 +164,7 @@ private:
     Context<Grid> context_;
     bool own_keys_ = false;
     CoarseElement<Element> coarse_;
+    std::size_t coarse_number_ = 0;
     double size_ = 0;  // of the coarse element
     double largest_value_ = 0;
     std::vector<Step> steps_;
@@ -153,9 +174,12 @@ private:
     KeyTable<NodeKey, Node> nodes_;      // by place
     KeyTable<NodeKey, Origin> origins_;  // of new nodes, by place
     KeyTable<NodeKey, NodeKey> place_of_key_;
-    KeyTable<NodeKey, NodeKey> place_of_derived_;  // new nodes only
+    std::vector<Made> made_;                              // parents first
+    std::vector<std::vector<std::uint64_t>> coarse_ids_;  // of each coarse element
+    std::vector<std::vector<std::size_t>> inside_;        // new nodes in it, by number in made_
     std::vector<Leaf> leaves_;
     HangingProbe probe_;
+    HangingNodes hanging_;  // by derived keys
 };
 
 template <class Grid, class Field>
@@ -259,6 +283,9 @@ void GridChecker<Grid, Field>::check_values(std::size_t step, const char* which,
 template <class Grid, class Field>
 void GridChecker<Grid, Field>::walk_coarse(std::size_t i) {
     coarse_ = call_coarse(grid_, context_, i);
+    coarse_number_ = i;
+    const auto* ids = coarse_.ids.data();
+    coarse_ids_.emplace_back(ids, ids + topology(coarse_.shape).corners);
     State s;
     s.element = coarse_.element;
     s.shape = coarse_.shape;
@@ -329,4 +356,5 @@ void GridChecker<Grid, Field>::check_node(const State& s, std::size_t n, const C
 
 }  // namespace nestgrid::detail
 
+#include <nestgrid/detail/check_grid_hanging.hpp>
 #include <nestgrid/detail/check_grid_walk.hpp>

@@ -68,6 +68,22 @@ void GridChecker<Grid, Field>::check_stencil(const State& s, const Rule& rule, s
 }
 
 template <class Grid, class Field>
+void GridChecker<Grid, Field>::add_made(const Corner& node, const Stencil& stencil,
+                                        const std::vector<Corner>& nodes) {
+    Made made;
+    made.place = node.place;
+    made.derived = node.derived;
+    made.coarse = coarse_number_;
+    made.weights = node.weights;
+    made.parents = stencil.count;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        made.parent[i] = nodes[stencil.parent[i]].place;
+        made.weight[i] = stencil.weight[i];
+    }
+    made_.push_back(made);
+}
+
+template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_own_keys(const State& s, std::span<const NodeKey> own) {
     for (std::size_t k = 0; k < own.size(); ++k) {
         if (own[k] != s.corner[k].key) {
@@ -147,8 +163,8 @@ void GridChecker<Grid, Field>::check_new_nodes(const State& s, const Rule& rule,
                     c.value.begin());
         check_values(s.step, "new node", n, c.value);
         const bool deviates = deviates_from_mean(stencil, nodes, c.value[0]);
+        if (nodes_.find(c.place) == nullptr) add_made(c, stencil, nodes);
         check_node(s, corners + n, c, (constrained >> n & 1U) != 0, deviates);
-        place_of_derived_.insert(c.derived, c.place);
     }
     std::vector<NodeKey> derived;
     for (const Corner& c : nodes) derived.push_back(c.derived);
@@ -220,29 +236,6 @@ void GridChecker<Grid, Field>::walk(const State& s) {
         }
         walk(next);
     }
-}
-
-template <class Grid, class Field>
-void GridChecker<Grid, Field>::check_hanging() {
-    probe_.finish();
-    for (const Leaf& leaf : leaves_) probe_.probe_leaf(leaf.shape, leaf.keys);
-    const HangingNodes hanging = probe_.take();
-    place_of_derived_.for_each([&](NodeKey derived, NodeKey place) {
-        if (!hanging.contains(derived)) return;
-        const Node& node = *nodes_.find(place);
-        const std::string who = "a node made by " + name(node.element) + " hangs";
-        if constexpr (requires { grid_.conforming(); }) {
-            if (grid_.conforming()) {
-                fail(Law::conforming, who + ", but the grid says that it is conforming");
-            }
-        }
-        if (offers(grid_, Feature::constrained) && !node.constrained) {
-            fail(Law::hanging_mask, who + ", but is not in the constrained mask");
-        }
-        if (options_.hanging_values && node.deviates) {
-            fail(Law::hanging_value, who + ", but its value is not its interpolant");
-        }
-    });
 }
 
 }  // namespace nestgrid::detail

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What check_grid asks about hanging nodes; included by check_grid_steps.hpp.
+//
+// A node hangs on a leaf where it lies in it without being a corner. Such nodes are found by
+// reference coordinates: each coarse element hands the nodes that lie in it down to the children
+// that they lie in. So they are found whatever their keys and their parents are.
+#pragma once
+
+#include <nestgrid/detail/check_grid_steps.hpp>
+#include <nestgrid/detail/shape_functions.hpp>
+
+namespace nestgrid::detail {
+
+/// An element with flat faces, its boundary included.
+class ClosedRegion {
+public:
+    /// \param x the corners
+    ClosedRegion(Shape shape, std::span<const Point> x) {
+        const Topology& t = topology(shape);
+        Point middle{0, 0, 0};
+        for (std::size_t k = 0; k < t.corners; ++k) middle = middle + (1.0 / t.corners) * x[k];
+        for (std::size_t f = 0; f < t.faces; ++f) {
+            const auto& c = t.face[f].corner;
+            const Point along = x[c[1]] - x[c[0]];
+            const Point normal = t.dimension == 1   ? x[1] - x[0]
+                                 : t.dimension == 2 ? Point{along[1], -along[0], 0}
+                                                    : cross(along, x[c[2]] - x[c[0]]);
+            const double height = dot(normal, middle - x[c[0]]);
+            sides_.push_back({(1 / height) * normal, x[c[0]]});
+        }
+    }
+
+    bool contains(const Point& x) const {
+        return std::all_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+            return dot(side.inwards, x - side.corner) >= -1e-9;
+        });
+    }
+
+private:
+    struct Side {
+        Point inwards;  // as long as makes the distance of the element's middle 1
+        Point corner;
+    };
+    std::vector<Side> sides_;
+};
+
+/// The nodes that lie in each coarse element, by their weights over ids.
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::find_nodes_inside() {
+    std::map<std::uint64_t, std::vector<std::size_t>> elements_at;
+    for (std::size_t i = 0; i < coarse_ids_.size(); ++i) {
+        for (const std::uint64_t id : coarse_ids_[i]) elements_at[id].push_back(i);
+    }
+    inside_.resize(coarse_ids_.size());
+    for (std::size_t m = 0; m < made_.size(); ++m) {
+        const Made& node = made_[m];
+        const std::vector<std::uint64_t>& ids = coarse_ids_[node.coarse];
+        std::vector<std::uint64_t> around;
+        for (std::size_t k = 0; k < ids.size(); ++k) {
+            if (node.weights[k] != 0) around.push_back(ids[k]);
+        }
+        for (const std::size_t i : elements_at[around.front()]) {
+            const auto& of = coarse_ids_[i];
+            if (std::all_of(around.begin(), around.end(), [&](std::uint64_t id) {
+                    return std::find(of.begin(), of.end(), id) != of.end();
+                })) {
+                inside_[i].push_back(m);
+            }
+        }
+    }
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::walk_regions(std::size_t i) {
+    coarse_ = call_coarse(grid_, context_, i);
+    State s;
+    s.element = coarse_.element;
+    s.shape = coarse_.shape;
+    s.step = steps_.size();
+    steps_.push_back({root_, i});
+    const Topology& t = topology(s.shape);
+    for (std::size_t k = 0; k < t.corners; ++k) {
+        Corner& c = s.corner[k];
+        c.weights[k] = 1;
+        c.place = place_of(c.weights);
+        c.position = t.reference[k];
+    }
+    std::vector<Inside> inside;
+    for (const std::size_t m : inside_[i]) {
+        const Made& node = made_[m];
+        Inside x{m, {0, 0, 0}};
+        for (std::size_t k = 0; k < coarse_ids_[node.coarse].size(); ++k) {
+            if (node.weights[k] == 0) continue;
+            const auto* at =
+                std::find(coarse_.ids.begin(), coarse_.ids.end(), coarse_ids_[node.coarse][k]);
+            x.at = x.at + node.weights[k] *
+                              t.reference[static_cast<std::size_t>(at - coarse_.ids.begin())];
+        }
+        inside.push_back(x);
+    }
+    check_region(s, inside);
+}
+
+/// \param inside the nodes that lie in the element, parents first
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_region(const State& s, const std::vector<Inside>& inside) {
+    if constexpr (may_offer<Grid>(Feature::masked)) {
+        if (offers(grid_, Feature::masked) && call_masked(grid_, context_, s.element)) return;
+    }
+    const Rule* rule = call_split(grid_, context_, s.element);
+    if (rule == nullptr) {
+        const bool hidden = hidden_part(grid_, context_, s.element) == Hidden::wholly;
+        if (!hidden) check_leaf(s, inside);
+        return;
+    }
+    std::vector<Corner> nodes(s.corner.begin(), s.corner.begin() + topology(s.shape).corners);
+    for (std::size_t n = 0; n < rule->new_nodes.size(); ++n) make_node(*rule, n, nodes);
+    std::vector<Element> children(rule->children.size());
+    call_children(grid_, context_, s.element, std::span<Element>(children));
+    for (std::size_t k = 0; k < children.size(); ++k) {
+        const Child& child = rule->children[k];
+        State next;
+        next.element = children[k];
+        next.shape = child.shape;
+        next.step = steps_.size();
+        steps_.push_back({s.step, k});
+        std::vector<Point> places;
+        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+            next.corner[i] = nodes[child.corner[i]];
+            places.push_back(next.corner[i].position);
+        }
+        const ClosedRegion region(child.shape, places);
+        std::vector<Inside> in_child;
+        std::copy_if(inside.begin(), inside.end(), std::back_inserter(in_child),
+                     [&](const Inside& x) { return region.contains(x.at); });
+        check_region(next, in_child);
+    }
+}
+
+/// The weights of a leaf's corners at the nodes in it, as far as these follow from stencils.
+template <class Grid, class Field>
+class GridChecker<Grid, Field>::LeafNodes {
+public:
+    explicit LeafNodes(const State& leaf) : shape_{leaf.shape} {
+        for (std::size_t k = 0; k < topology(shape_).corners; ++k) {
+            Weights corner{};
+            corner[k] = 1;
+            known_.insert(leaf.corner[k].place, corner);
+        }
+    }
+    bool has(NodeKey place) const { return known_.find(place) != nullptr; }
+    /// \return whether its value is that of the leaf's shape functions
+    bool add(const Made& node) {
+        Weights weights{};
+        for (std::size_t p = 0; p < node.parents; ++p) {
+            const Weights* parent = known_.find(node.parent[p]);
+            if (parent == nullptr) return false;
+            for (std::size_t k = 0; k < max_corners; ++k) {
+                weights[k] += node.weight[p] * (*parent)[k];
+            }
+        }
+        Point at{0, 0, 0};
+        const Topology& t = topology(shape_);
+        for (std::size_t k = 0; k < t.corners; ++k) at = at + weights[k] * t.reference[k];
+        const Weights wanted = shape_functions(shape_, at);
+        for (std::size_t k = 0; k < t.corners; ++k) {
+            if (std::abs(wanted[k] - weights[k]) > 1e-9) return false;
+        }
+        known_.insert(node.place, weights);
+        return true;
+    }
+
+private:
+    Shape shape_;
+    KeyTable<NodeKey, Weights> known_;  // by place
+};
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_leaf(const State& s, const std::vector<Inside>& inside) {
+    const auto* const end = s.corner.begin() + topology(s.shape).corners;
+    const auto hangs = [&](const Inside& x) {
+        return std::none_of(s.corner.begin(), end,
+                            [&](const Corner& c) { return c.place == made_[x.node].place; });
+    };
+    if (std::none_of(inside.begin(), inside.end(), hangs)) return;
+    LeafNodes nodes(s);
+    for (const Inside& x : inside) {
+        const Made& made = made_[x.node];
+        if (nodes.has(made.place)) continue;
+        check_hanging_node(s, made, nodes.add(made));
+    }
+}
+
+/// \param interpolated whether its stencil gives the value that the leaf has there
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_hanging_node(const State& leaf, const Made& made,
+                                                  bool interpolated) {
+    const Node& node = *nodes_.find(made.place);
+    const std::string who = "a node made by " + name(node.element) + " hangs on " + name(leaf.step);
+    if constexpr (requires { grid_.conforming(); }) {
+        if (grid_.conforming()) {
+            fail(Law::conforming, who + ", but the grid says that it is conforming");
+        }
+    }
+    if (!interpolated) {
+        fail(Law::hanging_parents,
+             who +
+                 ", but its parents do not give it the value that it has there: refine both sides "
+                 "of a face in the same order, or each in its own direction only");
+    }
+    const bool grid_knows = offers(grid_, Feature::constrained);
+    if (grid_knows && !node.constrained) {
+        fail(Law::hanging_mask, who + ", but is not in the constrained mask");
+    }
+    if (!grid_knows && !hanging_.contains(made.derived)) {
+        fail(Law::hanging_parents, who +
+                                       " at another place than the middle of an edge or face, and "
+                                       "the grid does not offer 'constrained'");
+    }
+    if (options_.hanging_values && node.deviates) {
+        fail(Law::hanging_value, who + ", but its value is not its interpolant");
+    }
+}
+
+template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_hanging() {
+    probe_.finish();
+    for (const Leaf& leaf : leaves_) probe_.probe_leaf(leaf.shape, leaf.keys);
+    hanging_ = probe_.take();
+    find_nodes_inside();
+    for (std::size_t i = 0; i < inside_.size(); ++i) walk_regions(i);
+}
+
+}  // namespace nestgrid::detail
