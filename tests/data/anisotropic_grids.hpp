@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include <nestgrid/shape_functions.hpp>
+#include <nestgrid/detail/shape_functions.hpp>
 
 #include "closedness.hpp"
 #include "forest.hpp"
