@@ -57,13 +57,20 @@ template <class Real>
 /// \throw GridError where nodes hang on others than their parents
 template <class Real>
 void refuse_crossed_faces(const Hierarchy<Real>& hierarchy, detail::HangingProbe& probe) {
-    const Walk<Real> walk(hierarchy, {.values = false, .keys = true, .positions = true});
     Keys keys;
-    for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
-        if (split.rule == nullptr) return;
-        const auto face = probe.crossed_face(*split.rule, keys_of(walk, view, split, keys));
-        if (face) refuse_face(walk, view, *split.rule, *face);
-    });
+    const auto find = [&](const Walk<Real>& walk, const auto& found) {
+        for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
+            if (split.rule == nullptr) return;
+            const auto face = probe.crossed_face(*split.rule, keys_of(walk, view, split, keys));
+            if (face) found(walk, view, *split.rule, *face);
+        });
+    };
+    bool crossed = false;
+    find(Walk<Real>(hierarchy, {.values = false, .keys = true}),
+         [&](const auto&...) { crossed = true; });
+    if (!crossed) return;
+    find(Walk<Real>(hierarchy, {.values = false, .keys = true, .positions = true}),
+         [](const auto&... at) { refuse_face(at...); });
 }
 
 }  // namespace
