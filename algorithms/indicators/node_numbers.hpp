@@ -5,8 +5,10 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include <nestgrid/detail/key_table.hpp>
+#include <nestgrid/error.hpp>
 
 namespace nestgrid::engine {
 
@@ -21,10 +23,13 @@ public:
     std::size_t count() const { return are_keys() ? dense_ : sparse_.size(); }
 
     /// \param out has a place for each key
+    /// \throw GridError where a dense key is too large
     void find(std::span<const NodeKey> keys, std::span<std::size_t> out) {
         if (are_keys()) {
-            for (std::size_t i = 0; i < keys.size(); ++i)
+            for (std::size_t i = 0; i < keys.size(); ++i) {
+                if (keys[i] >= dense_) refuse(keys[i]);
                 out[i] = static_cast<std::size_t>(keys[i]);
+            }
             return;
         }
         for (const NodeKey key : keys) sparse_.prefetch(key);
@@ -40,6 +45,12 @@ public:
     }
 
 private:
+    [[noreturn]] NESTGRID_NOINLINE void refuse(NodeKey key) const {
+        throw GridError("a node has the key " + std::to_string(static_cast<std::uint64_t>(key)) +
+                        ", but node_count() is " + std::to_string(dense_) +
+                        ": own keys must lie below it");
+    }
+
     std::size_t dense_;
     KeyTable<NodeKey, std::size_t> sparse_;
 };

@@ -8,11 +8,15 @@
 
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/node_levels.hpp>
+#include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <nestgrid/detail/erase.hpp>
 #include <walk/for_each_element.hpp>
 
 #include "mutant.hpp"
+#include "refusal.hpp"
 
 using namespace nestgrid_test;
 
@@ -352,6 +356,27 @@ TEST(Promises, OfOneShapeAreKept) {
     const ZeroField<Wrong> zero;
     const auto hierarchy = erase(grid, zero);
     EXPECT_THROW(engine::count_levels(engine::Walk<float>(hierarchy, {})), GridError);
+}
+
+/// What walks a grid with this field says of its keys; each takes node_count() for a promise.
+void expect_keys_refused(const MutantGrid<3>& grid, const MutantField<3>& field) {
+    const char* const sentence = "own keys must lie below";
+    const auto expect = [&](const auto& walk) {
+        EXPECT_NE(refusal<GridError>(walk).find(sentence), std::string::npos);
+    };
+    expect([&] { HierarchicalIndicator(grid, field); });
+    expect([&] { NodeLevels{grid}; });
+    expect([&] { Region(grid, [](const Point&) { return true; }); });
+}
+
+TEST(DenseKeys, BeyondNodeCountAreRefusedByAlgorithms) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        std::mt19937 random(seed);
+        MutantGrid<3> grid = random_grid<3>(seed, random);
+        MutantField<3> field(grid, [](const Point& x) { return x[0]; });
+        ASSERT_TRUE(mutators<3>().at(Law::dense_key)(grid, field, random));
+        expect_keys_refused(grid, field);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, Mutants, testing::Range(0, int(Law::hidden) + 1));
