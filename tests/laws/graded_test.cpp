@@ -153,32 +153,52 @@ GradedGrid<dim> coarse_grid(bool prisms, std::uint32_t n) {
 struct Grading {
     std::string name;
     Shape shape;
+    std::vector<PlacedChild> children;
     const Rule* rule;
 };
 
-/// Towards a wall below; towards a corner, in steps; and all parents corners of the father.
+/// In layers, towards a wall below, and towards a corner.
 template <int dim>
 std::vector<Grading> gradings() {
     static RuleTable table;
-    const auto boxes = [&](std::string name, Shape shape, const Cuts& cuts,
-                           const ParentAxes& axes) {
-        return Grading{std::move(name), shape, &table.add(shape, cut_boxes(shape, cuts), axes)};
+    const auto make = [&](std::string name, Shape shape, std::vector<PlacedChild> children,
+                          std::initializer_list<Axes> steps) {
+        const Rule& rule = table.add(shape, children, in_steps(shape, steps));
+        return Grading{std::move(name), shape, std::move(children), &rule};
     };
     if constexpr (dim == 2) {
         const Shape shape = Shape::quadrilateral;
-        return {boxes("layers", shape, {0, 0.25, 0}, {}),
-                boxes("a wall", shape, {0.5, 1.0 / 3, 0}, in_steps(shape, {axis_x, axis_y})),
-                boxes("a corner", shape, {0.3, 0.4, 0}, in_steps(shape, {axis_y, axis_x}))};
+        return {make("layers", shape, cut_boxes(shape, {0, 0.25, 0}), {axis_y}),
+                make("a wall", shape, cut_boxes(shape, {0.5, 1.0 / 3, 0}), {axis_x, axis_y}),
+                make("a corner", shape, cut_boxes(shape, {0.3, 0.4, 0}), {axis_y, axis_x})};
     } else {
         const Shape shape = Shape::hexahedron;
         return {
-            boxes("layers", shape, {0, 0, 0.25}, {}),
-            boxes("a wall", shape, {0.5, 0.5, 1.0 / 3}, in_steps(shape, {axis_x | axis_y, axis_z})),
-            boxes("a corner", shape, {0.3, 0.4, 0.8}, in_steps(shape, {axis_z, axis_x, axis_y})),
-            {"a wall below prisms", Shape::prism,
-             &table.add(Shape::prism, cut_prism(1.0 / 3),
-                        in_steps(Shape::prism, {axis_x | axis_y, axis_z}))}};
+            make("layers", shape, cut_boxes(shape, {0, 0, 0.25}), {axis_z}),
+            make("a wall", shape, cut_boxes(shape, {0.5, 0.5, 1.0 / 3}), {axis_x | axis_y, axis_z}),
+            make("a corner", shape, cut_boxes(shape, {0.3, 0.4, 0.8}), {axis_z, axis_x, axis_y}),
+            make("a wall below prisms", Shape::prism, cut_prism(1.0 / 3),
+                 {axis_x | axis_y, axis_z})};
     }
+}
+
+template <int dim>
+void expect_cut_as_told() {
+    for (const Grading& grading : gradings<dim>()) {
+        const std::vector<Point> x = reference_nodes(*grading.rule);
+        for (std::size_t c = 0; c < grading.children.size(); ++c) {
+            for (std::size_t i = 0; i < topology(grading.shape).corners; ++i) {
+                const Point& told = grading.children[c].corners[i];
+                EXPECT_LT(norm(x[grading.rule->children[c].corner[i]] - told), 1e-15)
+                    << grading.name;
+            }
+        }
+    }
+}
+
+TEST(Graded, RulesCutWhereTheyAreTold) {
+    expect_cut_as_told<2>();
+    expect_cut_as_told<3>();
 }
 
 /// Calls test(grid) on random grids of every grading, hanging nodes and level jumps included.
