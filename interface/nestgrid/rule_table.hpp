@@ -41,9 +41,9 @@ struct ParentAxes {
     bool operator==(const ParentAxes&) const = default;
 };
 
-/// Those of a father that is divided in steps: first along the axes steps[0], then every child
-/// along steps[1], and so on. A node has the parents that the last step along an axis of its face
-/// gives. \param parent a quadrilateral, a hexahedron or a prism
+/// Those of a quadrilateral, a hexahedron or a prism that is divided in steps: first along the axes
+/// in the first step, then every child along those in the second one, and so on. A node in a face
+/// is made by the last step that divides the face.
 ParentAxes in_steps(Shape parent, std::initializer_list<Axes> steps);
 
 /// Rules by how the children lie, each made and checked once. Add those of a whole grid in the
