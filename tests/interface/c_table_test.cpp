@@ -312,6 +312,9 @@ TEST(Failures, AreToldInTheWordsOfTheTable) {
     silent.last_error = [](const void*, void*) -> const char* { return nullptr; };
     EXPECT_EQ(told<double>(silent, values, 0.7),
               "the operation 'split' of the grid failed with code 1");
+    silent.last_error = [](const void*, void*) { return ""; };
+    EXPECT_EQ(told<double>(silent, values, 0.7),
+              "the operation 'split' of the grid failed with code 1");
     nestgrid_grid old = in_c.table;  // of a library without last_error
     old.size = offsetof(nestgrid_grid, last_error);
     EXPECT_EQ(told<double>(old, values, 0.7),

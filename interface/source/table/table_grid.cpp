@@ -16,9 +16,9 @@ static_assert(NESTGRID_PRISM == static_cast<int>(Shape::prism));
 static_assert(NESTGRID_HEXAHEDRON == static_cast<int>(Shape::hexahedron));
 
 void fail_in_table(int code, const char* what, const char* operation, const char* last_error) {
+    const std::string why = last_error == nullptr ? "" : last_error;
     throw GridError("the operation '" + std::string(operation) + "' of the " + what + " failed" +
-                    (last_error == nullptr ? " with code " + std::to_string(code)
-                                           : ": " + std::string(last_error)));
+                    (why.empty() ? " with code " + std::to_string(code) : ": " + why));
 }
 
 TableContext::TableContext(const nestgrid_grid& table) : table_{&table} {
@@ -27,7 +27,7 @@ TableContext::TableContext(const nestgrid_grid& table) : table_{&table} {
     if (state_ != nullptr) return;
     const char* why = table.last_error == nullptr ? nullptr : table.last_error(table.self, nullptr);
     throw GridError("the operation 'make_context' of the grid failed" +
-                    (why == nullptr ? "" : ": " + std::string(why)));
+                    (why == nullptr || *why == '\0' ? "" : ": " + std::string(why)));
 }
 
 CoarseElement<nestgrid_element> TableGrid::coarse(std::size_t i, TableContext& c) const {
