@@ -10,17 +10,10 @@
 
 namespace nestgrid::detail {
 
-/// As in "0.5 * (0, 0, 0) + 0.5 * (1, 0, 0)".
-inline std::string stencil_text(const std::vector<std::pair<double, Point>>& parents) {
-    std::string sum;
-    for (const auto& [weight, x] : parents) {
-        std::array<char, 160> term;
-        std::snprintf(term.data(), term.size(), "%s%g * (%g, %g, %g)", sum.empty() ? "" : " + ",
-                      weight, x[0], x[1], x[2]);
-        sum += term.data();
-    }
-    return sum;
-}
+struct WeightedPoint {
+    double weight;
+    Point x;
+};
 
 inline constexpr const char* in_tensor_order =
     "; its corners are numbered in tensor order, x fastest, and not around";
@@ -79,7 +72,8 @@ private:
     struct Origin {
         NodeKey signature = 0;    // hash of the keys and weights of the parents
         std::size_t element = 0;  // that made the node first
-        std::vector<std::pair<double, Point>> parents;  // weights and positions
+        std::size_t first = 0;    // of its parents in parents_
+        std::size_t count = 0;
     };
     struct Node {
         NodeKey key = 0;
@@ -173,6 +167,7 @@ private:
     KeyTable<NodeKey, int> coarse_faces_;
     KeyTable<NodeKey, Node> nodes_;      // by place
     KeyTable<NodeKey, Origin> origins_;  // of new nodes, by place
+    std::vector<WeightedPoint> parents_;
     KeyTable<NodeKey, NodeKey> place_of_key_;
     std::vector<Made> made_;                              // parents first
     std::vector<std::vector<std::uint64_t>> coarse_ids_;  // of each coarse element

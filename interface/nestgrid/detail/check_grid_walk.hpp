@@ -10,6 +10,18 @@
 
 namespace nestgrid::detail {
 
+/// As in "0.5 * (0, 0, 0) + 0.5 * (1, 0, 0)".
+inline std::string stencil_text(std::span<const WeightedPoint> parents) {
+    std::string sum;
+    for (const auto& [weight, x] : parents) {
+        std::array<char, 160> term;
+        std::snprintf(term.data(), term.size(), "%s%g * (%g, %g, %g)", sum.empty() ? "" : " + ",
+                      weight, x[0], x[1], x[2]);
+        sum += term.data();
+    }
+    return sum;
+}
+
 template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_rule(const State& s, const Rule& rule) {
     if (rules_.insert(&rule).second) {
@@ -51,20 +63,24 @@ template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_stencil(const State& s, const Rule& rule, std::size_t n,
                                              const std::vector<Corner>& nodes) {
     const Stencil& stencil = rule.new_nodes[n];
-    Origin origin;
-    origin.element = s.step;
+    Origin origin{0, s.step, parents_.size(), stencil.count};
     for (std::size_t i = 0; i < stencil.count; ++i) {
-        const Corner& parent = nodes[stencil.parent[i]];
         origin.signature +=
-            mix(parent.key + static_cast<std::uint64_t>(std::llround(stencil.weight[i] * 0x1p40)));
-        origin.parents.emplace_back(stencil.weight[i], parent.position);
+            mix(nodes[stencil.parent[i]].key +
+                static_cast<std::uint64_t>(std::llround(stencil.weight[i] * 0x1p40)));
     }
     const auto [known, is_new] = origins_.insert(nodes.back().place, origin);
-    if (is_new || known->signature == origin.signature) return;
-    fail(Law::one_stencil, "one node has two stencils: " + stencil_text(origin.parents) +
-                               " as node " + std::to_string(nodes.size() - 1) + " of " +
-                               name(s.step) + ", and " + stencil_text(known->parents) + " in " +
-                               name(known->element));
+    if (!is_new && known->signature == origin.signature) return;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        parents_.push_back({stencil.weight[i], nodes[stencil.parent[i]].position});
+    }
+    if (is_new) return;
+    const auto text = [&](const Origin& of) {
+        return stencil_text(std::span(parents_).subspan(of.first, of.count));
+    };
+    fail(Law::one_stencil, "one node has two stencils: " + text(origin) + " as node " +
+                               std::to_string(nodes.size() - 1) + " of " + name(s.step) + ", and " +
+                               text(*known) + " in " + name(known->element));
 }
 
 template <class Grid, class Field>
