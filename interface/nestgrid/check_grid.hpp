@@ -47,6 +47,7 @@ enum class Law : std::uint8_t {
     hidden,           ///< an element is hidden as its children are; no leaf is in part
     hanging_parents,  ///< a node hangs on its own parents: on every leaf that it lies on, its
                       ///< stencil gives the value that the leaf has there
+    coarse_ids,       ///< one place, one id; where CheckOptions::one_id_a_place demands it
 };
 
 struct GridViolation {
@@ -67,8 +68,12 @@ struct CheckOptions {
     /// differ, where a solver rounds them in each element. Surfaces of such a field may still show
     /// two vertices instead of one.
     double node_value_tolerance = 0;
+    /// Demand that coarse corners at one place have one id: for grids without slits. Ids that each
+    /// element counts for itself look like slits everywhere.
+    bool one_id_a_place = false;
     /// Where not null, check_grid appends sentences about what is legal and may yet not be meant:
-    /// which optional operations it found, so that a misspelt name is seen to be missing.
+    /// which optional operations it found, so that a misspelt name is seen to be missing, and
+    /// coarse corners that lie at one place under different ids.
     std::vector<std::string>* notes = nullptr;
 };
 

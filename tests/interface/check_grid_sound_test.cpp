@@ -120,4 +120,37 @@ TEST(CheckGrid, SaysHowCornersAreNumbered) {
     EXPECT_NE(violation->sentence.find("tensor order"), std::string::npos) << violation->sentence;
 }
 
+/// Coarse elements that count their ids themselves.
+class Islands : public Forest<3> {
+public:
+    explicit Islands(Forest<3> forest) : Forest<3>(std::move(forest)) {}
+    CoarseElement<Element> coarse(std::size_t i) const {
+        CoarseElement<Element> result = Forest<3>::coarse(i);
+        for (std::size_t k = 0; k < 8; ++k) result.ids[k] = 8 * i + k;
+        return result;
+    }
+};
+
+TEST(CheckGrid, NotesCoarseCornersAtOnePlaceWithDifferentIds) {
+    std::mt19937 random(1);
+    const Forest<3> forest = boxes<3>(random, 2);
+    const Islands islands(forest);
+    const ForestField<3> field(forest, wave);
+    std::vector<std::string> notes;
+    CheckOptions options;
+    options.notes = &notes;
+    const auto note = [&] { return notes.back(); };
+    EXPECT_FALSE(check_grid(forest, field, options));
+    EXPECT_EQ(note().find("different ids"), std::string::npos) << note();
+    EXPECT_FALSE(check_grid(islands, field, options));
+    EXPECT_NE(note().find("different ids at 19 of 27 places"), std::string::npos) << note();
+    const std::string sentence = note();
+    options.one_id_a_place = true;
+    EXPECT_FALSE(check_grid(forest, field, options));
+    const auto violation = check_grid(islands, field, options);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->law, Law::coarse_ids);
+    EXPECT_EQ(violation->sentence, sentence);
+}
+
 }  // namespace

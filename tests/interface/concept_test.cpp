@@ -70,7 +70,7 @@ TEST(CheckGrid, NotesTheOptionalOperationsThatItFinds) {
                      }));
 }
 
-/// Every operation that a lattice has is in the list, in the order of operations.hpp.
+/// Every operation that a lattice has is in the list, in the order of optional.hpp.
 TEST(OfferedOperations, AreListed) {
     const Samples n{5, 5, 5};
     const LatticeBisection<3> grid({.samples = n});

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Optional operations with other signatures than those of operations.hpp: each refused in English.
+// Optional operations with other signatures than those of optional.hpp: each refused in English.
 #include <nestgrid/check_grid.hpp>
 
 #include "archetype.hpp"

@@ -41,6 +41,7 @@ public:
         if (options_.notes != nullptr) note_operations(*options_.notes);
         try {
             for (std::size_t i = 0; i < grid_.coarse_count(); ++i) check_coarse(i);
+            check_ids();
             for (std::size_t i = 0; i < grid_.coarse_count(); ++i) walk_coarse(i);
             check_hanging();
         } catch (const Found& found) {
@@ -128,6 +129,7 @@ private:
 
     void note_operations(std::vector<std::string>& notes) const;
     void check_coarse(std::size_t i);
+    void check_ids() const;
     void walk_coarse(std::size_t i);
     void walk(const State& s);
     void check_rule(const State& s, const Rule& rule);
@@ -164,6 +166,8 @@ private:
     std::vector<Step> steps_;
     std::set<const Rule*> rules_;
     std::map<std::uint64_t, std::pair<Point, std::size_t>> coarse_nodes_;
+    std::map<Point, std::uint64_t> id_at_;  // of the first coarse corner there
+    std::set<Point> several_ids_at_;
     KeyTable<NodeKey, int> coarse_faces_;
     KeyTable<NodeKey, Node> nodes_;      // by place
     KeyTable<NodeKey, Origin> origins_;  // of new nodes, by place
@@ -219,6 +223,8 @@ void GridChecker<Grid, Field>::check_coarse(std::size_t i) {
                  "coarse node " + std::to_string(c.ids[k]) + " is at one place in coarse element " +
                      std::to_string(at->second.second) + " and at another in " + who);
         }
+        const std::uint64_t id_there = id_at_.try_emplace(c.corners[k], c.ids[k]).first->second;
+        if (id_there != c.ids[k]) several_ids_at_.insert(c.corners[k]);
     }
     const double volume = measure(c.shape, std::span(c.corners).first(t.corners));
     if (c.orientation != 1 && c.orientation != -1) {

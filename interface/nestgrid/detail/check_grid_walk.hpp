@@ -23,6 +23,19 @@ inline std::string stencil_text(std::span<const WeightedPoint> parents) {
 }
 
 template <class Grid, class Field>
+void GridChecker<Grid, Field>::check_ids() const {
+    if (several_ids_at_.empty()) return;
+    const Point& x = *several_ids_at_.begin();
+    const std::string sentence =
+        "coarse corners have different ids at " + std::to_string(several_ids_at_.size()) + " of " +
+        std::to_string(id_at_.size()) + " places, such as (" + std::to_string(x[0]) + ", " +
+        std::to_string(x[1]) + ", " + std::to_string(x[2]) +
+        "): elements share no node there, as at a slit or where each counts its ids itself";
+    if (options_.one_id_a_place) fail(Law::coarse_ids, sentence);
+    if (options_.notes != nullptr) options_.notes->push_back(sentence);
+}
+
+template <class Grid, class Field>
 void GridChecker<Grid, Field>::check_rule(const State& s, const Rule& rule) {
     if (rules_.insert(&rule).second) {
         if (const auto violation = find_violation(rule)) {

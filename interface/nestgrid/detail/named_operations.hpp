@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The optional operations (operations.hpp) by name: whether a class that names one has it with a
+// The optional operations (optional.hpp) by name: whether a class that names one has it with a
 // signature that the library calls, and the list of those that a grid and a field offer.
 //
 // A member is looked at where it can be called as an optional operation, or where its name stands
@@ -144,7 +144,7 @@ consteval bool require_fitting_operations() {
 }
 
 /// The names of the optional operations and constants that the library finds in a grid, in the
-/// order of operations.hpp.
+/// order of optional.hpp.
 template <class Grid>
 std::vector<std::string> offered_operations(const Grid& grid) {
     std::vector<std::string> names;
