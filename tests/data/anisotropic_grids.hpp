@@ -124,8 +124,8 @@ inline Forest<3> cubes_and_prisms(std::mt19937& random) {
     return forest;
 }
 
-/// Refined in one to three levels.
-/// \param few of the halvings that are used; a grid of a few rules is more often sound
+/// Refined in one to three levels. At most three of the halvings are used: a grid of a few rules is
+/// more often sound.
 inline Forest<3> random_anisotropic_grid(std::mt19937& random) {
     const auto pick = [&](unsigned of) { return static_cast<unsigned>(random() % of); };
     Forest<3> forest = cubes_and_prisms(random);

@@ -56,6 +56,71 @@ void expect_refused_by_both(const Grid& grid, const ForestField<3>& field) {
     EXPECT_NE(refused_by_preroll(grid, field).find("different directions"), std::string::npos);
 }
 
+/// Directions in which an element is halved, one level after the other; all children alike, or the
+/// first one only.
+struct Halved {
+    std::vector<unsigned> directions;
+    bool first_only = false;
+};
+
+/// Two cubes side by side along x.
+Forest<3> two_cubes(const Halved& left, const Halved& right) {
+    Forest<3> forest;
+    for (unsigned i = 0; i < 12; ++i) {
+        forest.add_node({double(i % 3), double(i / 3 % 2), double(i / 6)});
+    }
+    forest.add_coarse(Shape::hexahedron, {0, 1, 3, 4, 6, 7, 9, 10}, 1);
+    forest.add_coarse(Shape::hexahedron, {1, 2, 4, 5, 7, 8, 10, 11}, 1);
+    for (std::uint32_t e = 0; e < 2; ++e) {
+        const Halved& how = e == 0 ? left : right;
+        std::vector<std::uint32_t> leaves{e};
+        for (const unsigned direction : how.directions) {
+            std::vector<std::uint32_t> children;
+            for (const std::uint32_t leaf : leaves) {
+                forest.refine(leaf, halvings()[direction]);
+                for (std::uint32_t c = 0; c < 2; ++c) {
+                    children.push_back(forest.cells[leaf].first_child + c);
+                }
+                if (how.first_only) break;
+            }
+            leaves = children;
+        }
+    }
+    return forest;
+}
+
+constexpr unsigned y = 1;
+constexpr unsigned z = 2;
+
+TEST(Anisotropic, FacesDividedAcrossAreRefusedByName) {
+    for (const Halved& right : {Halved{{z}}, Halved{{z, y}}, Halved{{z, y}, true}}) {
+        const Forest<3> grid = two_cubes({{y, z}}, right);
+        const auto field = noise(grid, 1);
+        const auto violation = check_grid(grid, field);
+        ASSERT_TRUE(violation);
+        const bool two_keys = right.directions.size() == 2;
+        EXPECT_EQ(violation->law, two_keys ? Law::one_stencil : Law::hanging_parents);
+        EXPECT_NE(violation->sentence.find("element 0"), std::string::npos);
+        EXPECT_NE(violation->sentence.find("element 1"), std::string::npos);
+        EXPECT_NE(refused_by_preroll(grid, field).find("around (1.000000, 0.500000, 0.500000)"),
+                  std::string::npos)
+            << refused_by_preroll(grid, field);
+    }
+}
+
+TEST(Anisotropic, FacesDividedInOneOrderAreSupported) {
+    const std::vector<std::pair<Halved, Halved>> sides{
+        {{{y}}, {{z}}},       {{{z, y}}, {{z}}},          {{{y, z}, true}, {{}}},
+        {{{y, y}}, {{z, z}}}, {{{z, y}}, {{z, y}, true}},
+    };
+    for (const auto& [left, right] : sides) {
+        const Forest<3> grid = two_cubes(left, right);
+        const auto field = noise(grid, 2);
+        EXPECT_FALSE(check_grid(grid, field));
+        expect_closed_surfaces(grid, field);
+    }
+}
+
 TEST(Anisotropic, UnsupportedGridsAreRefusedByBoth) {
     unsigned unsupported = 0;
     on_random_grids(6000, 0, [&](const Forest<3>& forest, std::mt19937& random) {
@@ -93,7 +158,6 @@ TEST(Anisotropic, SupportedGridsDrawClosedSurfaces) {
     EXPECT_EQ(supported, 900U);
     EXPECT_GT(hanging, 300U);
     EXPECT_LE(refused, 36U);
-    std::printf("%u hang, %u refused of %u\n", hanging, refused, supported);
 }
 
 }  // namespace
