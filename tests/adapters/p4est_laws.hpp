@@ -131,7 +131,7 @@ void expect_closed_at_all_thresholds(const Grid& grid, const Field& field,
     expect_closed_surfaces<Grid::dimension>(
         erase(grid, field), expected, [&](const Elements& elements, std::size_t i) {
             const auto& e = elements.as<ElementOf<Grid>>()[i];
-            return detail::call_split(grid, context, e) == nullptr;
+            return nestgrid::detail::call_split(grid, context, e) == nullptr;
         });
 }
 

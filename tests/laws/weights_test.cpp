@@ -75,7 +75,7 @@ private:
 template <class Grid>
 HierarchicalIndicator spread_indicator(const Grid& grid, const NodeField<Grid, double>& field,
                                        const Spread& spread) {
-    return {erase(grid, field), LeafErrors{}, SequentialExecutor{}, spread};
+    return HierarchicalIndicator(erase(grid, field), LeafErrors{}, SequentialExecutor{}, spread);
 }
 
 template <class Family>

@@ -107,8 +107,8 @@ template <class Grid, class Field>
 Threshold criterion_for(const Grid& grid, const Field& field, double isovalue,
                         const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
                         const Executor& executor = SequentialExecutor{}) {
-    return criterion_for<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, indicator,
-                                                            options, executor);
+    return nestgrid::criterion_for<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue,
+                                                                      indicator, options, executor);
 }
 
 }  // namespace nestgrid
