@@ -78,7 +78,8 @@ NESTGRID_INLINE auto LevelSearch<Real>::range_of(const View& view, std::size_t c
     return range;
 }
 
-/// Where S > 0 at a corner, a saturated criterion has S = 1 at all new nodes, and is not asked.
+/// Where S > 0 at a corner, a saturated criterion has S = 1 at all new nodes, and is not asked; but
+/// a criterion may be saturated only up to nodes outside.
 template <class Real>
 auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
                              CriterionQuestion& question) const -> Sight {
@@ -93,7 +94,9 @@ auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
     }
     if (!interest) return {{Visit::skip, 0}, bound};
     if (rule == nullptr) return {{Visit::stop, 0}, bound};
-    if (saturated_ && view.interpolated != 0) return {{Visit::stop, rule->all()}, bound};
+    if (saturated_ && view.interpolated != 0 && split.outside == 0) {
+        return {{Visit::stop, rule->all()}, bound};
+    }
     if (!asks_for_masks_) return {question.ask(*walk_, *criterion_, view, split), bound};
     const NodeMask interpolated = holds({*rule, split.keys, view.level + 1, split.outside});
     return {{interpolated == rule->all() ? Visit::stop : Visit::descend, interpolated}, bound};

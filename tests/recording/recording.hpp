@@ -299,7 +299,7 @@ std::unique_ptr<const Hierarchy<typename Field::value_type>> hierarchy_of(const 
         return open_table<Real>(grid.table, field.table);
     } else {
         return std::unique_ptr<const Hierarchy<Real>>(
-            new detail::ErasedHierarchy<Grid, Field>(grid, field));
+            new nestgrid::detail::ErasedHierarchy<Grid, Field>(grid, field));
     }
 }
 
