@@ -56,10 +56,12 @@ std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, d
     plain.cap = options.cap;
     plain.progress = options.progress;
     const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
-    const LevelSearch<Real> search(walk, {Level<Real>(isovalue)}, criterion, bounds);
+    const Level<Real> level(isovalue);
+    const LevelSearch<Real> search(walk, std::span(&level, 1), criterion, bounds);
     Surface<dimension> nothing;
-    Drawing drawing(walk, search, {typename Drawing::Builder(nothing, false)}, plain,
-                    isosurface_attributes);
+    const typename Drawing::Builder builder(nothing, false);
+
+    Drawing drawing(walk, search, std::span(&builder, 1), plain, isosurface_attributes);
     drawing.count_only(most);
     try {
         drawing.run(executor);
@@ -70,14 +72,14 @@ std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, d
 }
 
 template <int dimension, class Real>
-void draw_levels(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
-                 std::size_t first_attribute, std::vector<SurfaceBuilder<dimension>> builders,
+void draw_levels(const Hierarchy<Real>& hierarchy, std::span<const Level<Real>> levels,
+                 std::size_t first_attribute, std::span<const SurfaceBuilder<dimension>> builders,
                  const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
                  const Executor& executor, std::vector<Isosurface<dimension>>& results) {
     using Drawing = LevelSet<dimension, Real>;
     const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
-    const LevelSearch<Real> search(walk, std::move(levels), criterion, bounds);
-    Drawing drawing(walk, search, std::move(builders), options, first_attribute);
+    const LevelSearch<Real> search(walk, levels, criterion, bounds);
+    Drawing drawing(walk, search, builders, options, first_attribute);
     const bool cancelled = run_until_cancelled(drawing, executor);
     drawing.flush();
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -135,10 +137,10 @@ std::vector<Isosurface<dimension>> draw_isosurfaces(
     std::vector<Surface<dimension>> chunks(count);
     for (Surface<dimension>& chunk : chunks) chunk.elements = hierarchy.make_elements();
     std::vector<Isosurface<dimension>> results(count);
-    engine::draw_levels<dimension>(hierarchy, engine::levels_at<Real>(isovalues),
-                                   engine::isosurface_attributes,
-                                   make_builders(targets, chunks, options.elements), criterion,
-                                   bounds, options, executor, results);
+    const std::vector<engine::Level<Real>> levels = engine::levels_at<Real>(isovalues);
+    const auto builders = make_builders(targets, chunks, options.elements);
+    engine::draw_levels<dimension, Real>(hierarchy, levels, engine::isosurface_attributes, builders,
+                                         criterion, bounds, options, executor, results);
     for (std::size_t i = 0; sinks == 0 && i < count; ++i) {
         results[i].surface = std::move(chunks[i]);
     }
@@ -147,16 +149,16 @@ std::vector<Isosurface<dimension>> draw_isosurfaces(
 
 }  // namespace detail
 
-#define NESTGRID_INSTANTIATE(dimension, Real)                                              \
-    template std::optional<std::uint64_t> engine::count_simplices<dimension>(              \
-        const Hierarchy<Real>&, double, const Criterion&, const Bounds&, std::uint64_t,    \
-        const IsosurfaceOptions&, const Executor&);                                        \
-    template void engine::draw_levels<dimension>(                                          \
-        const Hierarchy<Real>&, std::vector<engine::Level<Real>>, std::size_t,             \
-        std::vector<engine::SurfaceBuilder<dimension>>, const Criterion&, const Bounds&,   \
-        const IsosurfaceOptions&, const Executor&, std::vector<Isosurface<dimension>>&);   \
-    template std::vector<Isosurface<dimension>> detail::draw_isosurfaces<dimension>(       \
-        const Hierarchy<Real>&, std::span<const double>, const SurfaceTargets<dimension>&, \
+#define NESTGRID_INSTANTIATE(dimension, Real)                                                \
+    template std::optional<std::uint64_t> engine::count_simplices<dimension>(                \
+        const Hierarchy<Real>&, double, const Criterion&, const Bounds&, std::uint64_t,      \
+        const IsosurfaceOptions&, const Executor&);                                          \
+    template void engine::draw_levels<dimension>(                                            \
+        const Hierarchy<Real>&, std::span<const engine::Level<Real>>, std::size_t,           \
+        std::span<const engine::SurfaceBuilder<dimension>>, const Criterion&, const Bounds&, \
+        const IsosurfaceOptions&, const Executor&, std::vector<Isosurface<dimension>>&);     \
+    template std::vector<Isosurface<dimension>> detail::draw_isosurfaces<dimension>(         \
+        const Hierarchy<Real>&, std::span<const double>, const SurfaceTargets<dimension>&,   \
         const Criterion&, const Bounds&, const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)

@@ -21,8 +21,8 @@ std::vector<Level<Real>> levels_at(std::span<const double> isovalues);
 /// \param bounds of the components that the levels are of
 /// \param criterion checked by require_saturated()
 template <int dimension, class Real>
-void draw_levels(const Hierarchy<Real>& hierarchy, std::vector<Level<Real>> levels,
-                 std::size_t first_attribute, std::vector<SurfaceBuilder<dimension>> builders,
+void draw_levels(const Hierarchy<Real>& hierarchy, std::span<const Level<Real>> levels,
+                 std::size_t first_attribute, std::span<const SurfaceBuilder<dimension>> builders,
                  const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
                  const Executor& executor, std::vector<Isosurface<dimension>>& results);
 

@@ -19,9 +19,9 @@ Real as_real(double bound) {
 }  // namespace
 
 template <class Real>
-LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::vector<Level<Real>> levels,
+LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::span<const Level<Real>> levels,
                                const Criterion& criterion, const Bounds& bounds)
-    : levels_{std::move(levels)},
+    : levels_{levels},
       walk_{&walk},
       components_{walk.components()},
       criterion_{&criterion},

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include <contours/level.hpp>
 #include <indicators/packed_entries.hpp>
@@ -15,7 +14,7 @@
 
 namespace nestgrid::engine {
 
-/// Decides about elements by levels, criterion and bounds, all of which it borrows but the levels.
+/// Decides about elements by levels, criterion and bounds, all of which it borrows.
 /// Immutable: the tasks of a traversal share one.
 template <class Real>
 class LevelSearch {
@@ -28,8 +27,8 @@ public:
         Real bound;
     };
 
-    LevelSearch(const Walk<Real>& walk, std::vector<Level<Real>> levels, const Criterion& criterion,
-                const Bounds& bounds);
+    LevelSearch(const Walk<Real>& walk, std::span<const Level<Real>> levels,
+                const Criterion& criterion, const Bounds& bounds);
 
     std::span<const Level<Real>> levels() const { return levels_; }
     const Bounds& bounds() const { return *bounds_; }
@@ -85,7 +84,7 @@ private:
     NodeMask holds(const NewNodes& nodes) const;
     NodeMask cut_children(const Rule& rule, const Real* values, const Level<Real>& level) const;
 
-    std::vector<Level<Real>> levels_;
+    std::span<const Level<Real>> levels_;
     const Walk<Real>* walk_;
     std::size_t components_;
     const Criterion* criterion_;
@@ -152,9 +151,9 @@ NESTGRID_INLINE PackedGlance<Real, around> LevelSearch<Real>::glance(
                 max(Reals::all(level.least_inside) - hi, lo - Reals::all(level.greatest_outside)),
                 result.bound);
         };
-        const std::span<const Level<Real>> levels(levels_);
-        Mask interest = passes(levels[0]);
-        for (const Level<Real>& level : levels.subspan(1)) interest = interest | passes(level);
+
+        Mask interest = passes(levels_[0]);
+        for (const Level<Real>& level : levels_.subspan(1)) interest = interest | passes(level);
         result.descend[i] = without(interest, holds);
         result.stop[i] = interest & holds;
     });

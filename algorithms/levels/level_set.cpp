@@ -23,8 +23,8 @@ bool has_small_keys(const Hierarchy<Real>& hierarchy) {
 
 template <int dimension, class Real>
 LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Real>& search,
-                                    std::vector<Builder> builders, const IsosurfaceOptions& options,
-                                    std::size_t first_attribute)
+                                    std::span<const Builder> builders,
+                                    const IsosurfaceOptions& options, std::size_t first_attribute)
     : walk_{&walk},
       search_{&search},
       options_{&options},
@@ -37,12 +37,12 @@ LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Re
     for (Transitions& t : transitions_) {
         t.record.begin(at_hand_.cuts.attribute_count(), walk.hierarchy().make_elements());
     }
-    begin(search, std::move(builders));
+    begin(search, builders);
 }
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
-                                      std::vector<Builder> builders) {
+                                      std::span<const Builder> builders) {
     search_ = &search;
     restart();
     counts_of_first_walk_ = {};
@@ -51,7 +51,7 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     normals_.begin(false);
     NodeGradients* const gradients = options_->normals ? &normals_.sums() : nullptr;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        surfaces_[i].begin(std::move(builders[i]), gradients, options_->verify);
+        surfaces_[i].begin(builders[i], gradients, options_->verify);
         transitions_[i].record.clear();
         transitions_[i].drawn_below = &transitions_[i].record;
     }

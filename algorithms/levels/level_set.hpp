@@ -29,13 +29,14 @@ public:
     /// What the walk must carry.
     static constexpr Needs needs{.values = true, .keys = true, .positions = true, .closed = true};
 
-    /// All arguments are borrowed but the builders, of which there is one for each level.
+    /// All arguments are borrowed but the builders, which are copied, one for each level.
     /// \param first_attribute the first of the components that vertices carry
-    LevelSet(const Walk<Real>& walk, const LevelSearch<Real>& search, std::vector<Builder> builders,
-             const IsosurfaceOptions& options, std::size_t first_attribute);
+    LevelSet(const Walk<Real>& walk, const LevelSearch<Real>& search,
+             std::span<const Builder> builders, const IsosurfaceOptions& options,
+             std::size_t first_attribute);
 
     /// Begins anew with other levels, as many as before, and keeps its memory.
-    void begin(const LevelSearch<Real>& search, std::vector<Builder> builders);
+    void begin(const LevelSearch<Real>& search, std::span<const Builder> builders);
     /// Counts simplices and draws nothing.
     /// \param most run() throws OverLimit where there are more
     void count_only(std::uint64_t most);

@@ -57,10 +57,10 @@ auto LevelTasks<dimension, Real>::begin(const LevelSet<dimension, Real>& leader)
         builders.back().clear();
     }
     if (task->draws) {
-        task->draws->begin(*leader.search_, std::move(builders));
+        task->draws->begin(*leader.search_, builders);
     } else {
         task->draws = std::make_unique<LevelSet<dimension, Real>>(
-            *leader.walk_, *leader.search_, std::move(builders), silent_, leader.first_attribute_);
+            *leader.walk_, *leader.search_, builders, silent_, leader.first_attribute_);
     }
     task->draws->join(leader);
     return task;

@@ -27,15 +27,16 @@ public:
         const std::span<const double> isovalues(&isovalue, 1);
         engine::require_drawable(*hierarchy_, isovalues, indicator);
         criterion_ = criterion_for<dimension>(*hierarchy_, isovalue, indicator, options, executor);
-        search_.emplace(walk_, engine::levels_at<Real>(isovalues), criterion_, indicator);
+        level_ = engine::Level<Real>(isovalue);
+        search_.emplace(walk_, std::span(&level_, 1), criterion_, indicator);
         options_ = options;
         result_.surface.clear();
-        std::vector<typename Drawing::Builder> builders;
-        builders.emplace_back(result_.surface, options.elements);
+        const typename Drawing::Builder builder(result_.surface, options.elements);
+        const std::span builders(&builder, 1);
         if (drawing_) {
-            drawing_->begin(*search_, std::move(builders));
+            drawing_->begin(*search_, builders);
         } else {
-            drawing_ = std::make_unique<Drawing>(walk_, *search_, std::move(builders), options_,
+            drawing_ = std::make_unique<Drawing>(walk_, *search_, builders, options_,
                                                  engine::isosurface_attributes);
         }
         result_.cancelled = engine::run_until_cancelled(*drawing_, executor);
@@ -48,6 +49,7 @@ private:
     Threshold criterion_;
     IsosurfaceOptions options_;
     engine::Walk<Real> walk_;
+    engine::Level<Real> level_{0};
     std::optional<engine::LevelSearch<Real>> search_;
     std::unique_ptr<Drawing> drawing_;
     Isosurface<dimension> result_;

@@ -79,10 +79,11 @@ Surface<3> slice(const Grid& grid, const Field& field, const Point& normal, doub
     const PlaneField plane(grid, field, normal, offset);
     const auto hierarchy = erase(grid, plane);
     std::vector<Isosurface<3>> result(1);
-    engine::draw_levels<3, double>(hierarchy, {engine::Level<double>(0)}, 1,
-                                   {engine::SurfaceBuilder<3>(result[0].surface, false)}, criterion,
-                                   AffineBounds(bounds), {.verify = true}, SequentialExecutor{},
-                                   result);
+    const engine::Level<double> level(0);
+    const engine::SurfaceBuilder<3> builder(result[0].surface, false);
+    engine::draw_levels<3, double>(hierarchy, std::span(&level, 1), 1, std::span(&builder, 1),
+                                   criterion, AffineBounds(bounds), {.verify = true},
+                                   SequentialExecutor{}, result);
     return std::move(result[0].surface);
 }
 
