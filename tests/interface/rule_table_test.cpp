@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/check_grid.hpp>
-#include <nestgrid/rule_table.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
+#include <nestgrid/rule_table.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 #include "forest.hpp"

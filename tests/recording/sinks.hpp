@@ -32,10 +32,10 @@ public:
         std::size_t known = 0;
         for (std::size_t t = 0; t < part.simplices.size(); ++t) {
             if (part.element_of[t] == known) {
-                told_->elements.insert(told_->elements.end(),
-                                       {static_cast<int>(part.shape_of[known]),
-                                        static_cast<int>(part.level_of[known]),
-                                        static_cast<int>(told_->simplices.size())});
+                told_->elements.insert(
+                    told_->elements.end(),
+                    {static_cast<int>(part.shape_of[known]), static_cast<int>(part.level_of[known]),
+                     static_cast<int>(told_->simplices.size())});
                 ++known;
             }
             told_->simplices.push_back(part.simplices[t]);
