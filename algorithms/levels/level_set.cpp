@@ -61,7 +61,7 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     at_hand_.plainly = draws_plainly();
     bisects_ = at_hand_.plainly && search.fits_blocks() && !records && !surfaces_.empty() &&
                walk_->hierarchy().facts().knows_blocks;
-    at_hand_.loads_keys = records || options_->normals || options_->cap ||
+    at_hand_.loads_keys = options_->normals || options_->cap ||
                           (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
 
@@ -231,7 +231,9 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::load(const View& view, bool draws) {
     if (at_hand_.loaded) return;
     at_hand_.loaded = true;
-    at_hand_.cuts.load(view, at_hand_.loads_keys || view.closed.any || view.interpolated != 0);
+    const bool keys = at_hand_.loads_keys || walks_.adopts() || view.closed.any ||
+                      view.interpolated != 0;
+    at_hand_.cuts.load(view, keys);
     deepest_ = std::max(deepest_, view.level);
     if (options_->normals && draws) normals_.add(at_hand_.cuts);
 }
@@ -253,7 +255,7 @@ void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigne
     LevelSurface<dimension>& surface = surfaces_[level];
     auto& contour = at_hand_.contour;
     const TransitionContours* const below =
-        walks_.is_recording() ? nullptr : transitions_[level].drawn_below;
+        walks_.adopts() ? transitions_[level].drawn_below : nullptr;
     const ContourTable& table = contour.table(view.shape);
     const bool adopts = at_hand_.adoption.find(below, table.cut_faces(inside));
     const Contour* const plain = at_hand_.plainly ? table.plain(inside) : nullptr;
