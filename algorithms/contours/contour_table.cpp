@@ -53,13 +53,6 @@ FaceTopology loop_around(const Topology& t) {
     return loop;
 }
 
-/// The signs around a face: bit i says that corner i of its loop has U >= C.
-unsigned signs_around(const FaceTopology& loop, unsigned pattern) {
-    unsigned signs = 0;
-    for (std::size_t i = 0; i < loop.corners; ++i) signs |= (pattern >> loop.corner[i] & 1U) << i;
-    return signs;
-}
-
 /// Moves the low bits of `bits` to the places of the bits of `mask`, in ascending order.
 unsigned spread(unsigned bits, unsigned mask) {
     unsigned result = 0;
@@ -90,7 +83,7 @@ std::uint16_t ContourMaker::cut_edges(unsigned pattern) const {
 std::uint8_t ContourMaker::cut_faces(unsigned pattern) const {
     std::uint8_t cut = 0;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
-        const unsigned signs = signs_around(faces_[f], pattern);
+        const unsigned signs = signs_of(faces_[f], pattern);
         const bool is_cut = signs != 0 && signs != (1U << faces_[f].corners) - 1;
         cut |= static_cast<std::uint8_t>(unsigned{is_cut} << f);
     }
@@ -100,9 +93,9 @@ std::uint8_t ContourMaker::cut_faces(unsigned pattern) const {
 std::uint8_t ContourMaker::alternating(unsigned pattern) const {
     std::uint8_t alternating = 0;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
-        if (faces_[f].corners != 4) continue;
-        const unsigned signs = signs_around(faces_[f], pattern);
-        if (signs == 5 || signs == 10) alternating |= static_cast<std::uint8_t>(1U << f);
+        if (alternate(faces_[f].corners, signs_of(faces_[f], pattern))) {
+            alternating |= static_cast<std::uint8_t>(1U << f);
+        }
     }
     return alternating;
 }
@@ -212,11 +205,9 @@ std::uint8_t ContourMaker::side_with(std::uint8_t edge) const {
 std::vector<std::array<std::uint8_t, 2>> ContourMaker::segments(std::size_t face, unsigned pattern,
                                                                 unsigned joined) const {
     const FaceTopology& loop = faces_[face];
-    const auto edge = [&](std::size_t i) {
-        return edge_between(shape_, loop.corner[i], loop.corner[(i + 1) % loop.corners]);
-    };
+    const auto edge = [&](std::size_t i) { return edge_at(shape_, loop, i); };
     const FaceContour& on_face =
-        face_contour(loop.corners, signs_around(loop, pattern), (joined >> face & 1U) != 0);
+        face_contour(loop.corners, signs_of(loop, pattern), (joined >> face & 1U) != 0);
     std::vector<std::array<std::uint8_t, 2>> result;
     for (std::size_t k = 0; k < on_face.count; ++k) {
         result.push_back({edge(on_face.segment[k].falls), edge(on_face.segment[k].rises)});

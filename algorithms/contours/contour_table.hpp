@@ -60,11 +60,17 @@ struct FaceContour {
     std::array<FaceSegment, 2> segment{};
 };
 
+/// Whether the signs at the corners of a face, one bit each, change along every side of a
+/// quadrilateral.
+constexpr bool alternate(std::size_t corners, unsigned signs) {
+    return corners == 4 && (signs == 5 || signs == 10);
+}
+
 namespace detail {
 constexpr FaceContour make_face_contour(std::size_t corners, unsigned signs, bool joined) {
     FaceContour contour;
     const auto positive = [&](std::size_t i) { return (signs >> (i % corners) & 1U) != 0; };
-    const bool alternating = corners == 4 && (signs == 5 || signs == 10);
+    const bool alternating = alternate(corners, signs);
     for (std::size_t i = 0; i < corners; ++i) {
         if (!positive(i) || positive(i + 1)) continue;
         std::size_t rises = 0;
@@ -96,6 +102,21 @@ inline constexpr auto face_contours = [] {
 /// The segments on a face of three or four corners.
 constexpr const FaceContour& face_contour(std::size_t corners, unsigned signs, bool joined) {
     return detail::face_contours[corners][signs][joined ? 1 : 0];
+}
+
+/// The signs at the corners of a face, one bit each.
+/// \param inside the corners of the element with U >= C, one bit each
+constexpr unsigned signs_of(const FaceTopology& face, unsigned inside) {
+    unsigned signs = 0;
+    for (std::size_t i = 0; i < face.corners; ++i) {
+        signs |= (inside >> face.corner[i] & 1U) << i;
+    }
+    return signs;
+}
+
+/// The edge of an element under a side of one of its faces.
+inline std::uint8_t edge_at(Shape shape, const FaceTopology& face, std::size_t side) {
+    return edge_between(shape, face.corner[side], face.corner[(side + 1) % face.corners]);
 }
 
 /// The contours of one shape.

@@ -17,13 +17,8 @@ void CapContour<dimension, Real>::for_each_polygon(unsigned inside, Function&& f
     for (std::size_t f = 0; f < t.faces; ++f) {
         if ((boundary >> f & 1U) == 0) continue;
         const FaceTopology& face = t.face[f];
-        unsigned signs = 0;
-        for (std::size_t i = 0; i < face.corners; ++i) {
-            signs |= (inside >> face.corner[i] & 1U) << i;
-        }
-        const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
-        const FaceContour contour =
-            face_contour(face.corners, signs, alternating && cuts_->joined(face));
+        const unsigned signs = signs_of(face, inside);
+        const FaceContour& contour = cuts_->contour(face, signs);
         for (unsigned left = signs; left != 0;) {
             function(face, polygon_from(view.shape, face, signs, contour, left));
         }
@@ -44,7 +39,7 @@ auto CapContour<dimension, Real>::polygon_from(Shape shape, const FaceTopology& 
     while ((left >> i & 1U) != 0) {
         left &= ~(1U << i);
         const std::size_t next = (i + 1) % face.corners;
-        add(i, false, edge_between(shape, face.corner[i], face.corner[next]));
+        add(i, false, edge_at(shape, face, i));
         if ((signs >> next & 1U) != 0) {
             i = next;
             continue;
@@ -55,7 +50,7 @@ auto CapContour<dimension, Real>::polygon_from(Shape shape, const FaceTopology& 
             if (contour.segment[k].falls == i) rises = contour.segment[k].rises;
         }
         i = (rises + 1) % face.corners;
-        add(rises, true, edge_between(shape, face.corner[rises], face.corner[i]));
+        add(rises, true, edge_at(shape, face, rises));
     }
     return polygon;
 }
@@ -173,10 +168,8 @@ void CapContour<dimension, Real>::draw_polygon(const FaceTopology& face, const P
     std::array<std::vector<Number>, 8> chains;
     for (std::size_t i = 0; i < n; ++i) {
         const Corner& c = polygon.corner[i];
-        const std::uint8_t a = face.corner[c.from];
-        const std::uint8_t b = face.corner[(c.from + 1U) % face.corners];
-        v[i] = c.cut ? contour_->vertex(edge_between(cuts_->view().shape, a, b))
-                     : contour_->node_vertex(a);
+        v[i] = c.cut ? contour_->vertex(edge_at(cuts_->view().shape, face, c.from))
+                     : contour_->node_vertex(face.corner[c.from]);
         chains[i] = chain(face, polygon, i, drawn_below);
     }
     ContourFilling<ElementContour<dimension, Real>> filling(*contour_);

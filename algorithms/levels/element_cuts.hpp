@@ -74,6 +74,11 @@ public:
     SurfaceCut node(std::size_t corner) const;
     /// Attributes at a point of the reference element. Valid until the next call, cut() or node().
     std::span<const double> attributes_at(const Point& reference) const;
+    /// The segments on a face.
+    /// \param signs at its corners, one bit each
+    const FaceContour& contour(const FaceTopology& face, unsigned signs) const {
+        return face_contour(face.corners, signs, alternate(face.corners, signs) && joined(face));
+    }
     /// Whether the corners inside the level are joined across a face whose signs alternate.
     bool joined(const FaceTopology& face) const {
         return joins_across(u_[face.corner[0]], u_[face.corner[1]], u_[face.corner[2]],

@@ -9,20 +9,6 @@ namespace nestgrid::engine {
 
 namespace {
 
-/// Which corners of a face are inside, one bit each.
-unsigned signs_of(const FaceTopology& face, unsigned inside) {
-    unsigned signs = 0;
-    for (std::size_t i = 0; i < face.corners; ++i) {
-        signs |= (inside >> face.corner[i] & 1U) << i;
-    }
-    return signs;
-}
-
-/// The edge of the element under side `side` of a face.
-std::uint8_t edge_at(Shape shape, const FaceTopology& face, std::size_t side) {
-    return edge_between(shape, face.corner[side], face.corner[(side + 1) % face.corners]);
-}
-
 /// Whether the sign changes along a side of a face.
 bool is_cut(unsigned signs, std::size_t side, std::size_t corners) {
     return (signs >> side & 1U) != (signs >> ((side + 1) % corners) & 1U);
@@ -51,10 +37,7 @@ public:
             const ClosedFace* around = view.closed.face(f);
             if (around == nullptr) continue;
             const FaceTopology& face = view.topology().face[f];
-            const unsigned signs = signs_of(face, inside);
-            const bool alternating = face.corners == 4 && (signs == 5 || signs == 10);
-            const FaceContour& contour =
-                face_contour(face.corners, signs, alternating && element.joined(face));
+            const FaceContour& contour = element.contour(face, signs_of(face, inside));
             for (std::size_t i = 0; i < contour.count; ++i) {
                 std::array<std::uint8_t, 2> edge{
                     edge_at(view.shape, face, contour.segment[i].falls),
