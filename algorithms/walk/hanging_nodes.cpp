@@ -54,23 +54,17 @@ template <class Real>
                     "or each in its own direction only");
 }
 
-/// \throw GridError where nodes hang on others than their parents
+/// Says where nodes hang on others than their parents, in a walk that carries positions, too.
+/// Requires that there is such a face.
 template <class Real>
-void refuse_crossed_faces(const Hierarchy<Real>& hierarchy, detail::HangingProbe& probe) {
+void refuse_crossed_face(const Hierarchy<Real>& hierarchy, detail::HangingProbe& probe) {
+    const Walk<Real> walk(hierarchy, {.values = false, .keys = true, .positions = true});
     Keys keys;
-    const auto find = [&](const Walk<Real>& walk, const auto& found) {
-        for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
-            if (split.rule == nullptr) return;
-            const auto face = probe.crossed_face(*split.rule, keys_of(walk, view, split, keys));
-            if (face) found(walk, view, *split.rule, *face);
-        });
-    };
-    bool crossed = false;
-    find(Walk<Real>(hierarchy, {.values = false, .keys = true}),
-         [&](const auto&...) { crossed = true; });
-    if (!crossed) return;
-    find(Walk<Real>(hierarchy, {.values = false, .keys = true, .positions = true}),
-         [](const auto&... at) { refuse_face(at...); });
+    for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
+        if (split.rule == nullptr) return;
+        const auto face = probe.crossed_face(*split.rule, keys_of(walk, view, split, keys));
+        if (face) refuse_face(walk, view, *split.rule, *face);
+    });
 }
 
 }  // namespace
@@ -86,12 +80,18 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
         probe.add_nodes(*split.rule, keys, split.keys);
     });
     probe.finish();
-    if (probe.divides_one_way()) refuse_crossed_faces(hierarchy, probe);
+    const bool may_cross = probe.divides_one_way();
+    bool crossed = false;
     for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
-        if (split.rule != nullptr || view.member->hidden == Hidden::wholly) return;
-        walk.corners(view, keys.data(), nullptr);
-        probe.probe_leaf(view.shape, keys);
+        if (split.rule != nullptr) {
+            crossed = crossed || (may_cross && probe.crossed_face(
+                                                   *split.rule, keys_of(walk, view, split, keys)));
+        } else if (view.member->hidden != Hidden::wholly) {
+            walk.corners(view, keys.data(), nullptr);
+            probe.probe_leaf(view.shape, keys);
+        }
     });
+    if (crossed) refuse_crossed_face(hierarchy, probe);
     return probe.take();
 }
 
