@@ -57,6 +57,12 @@ struct Family {
     /// Where handles point to, for elements that do not fit into them.
     std::shared_ptr<void> elements;
 
+    /// Makes room for members, none of which is set, and keeps the memory.
+    void begin(std::size_t count) {
+        if (members.size() < count) members.resize(count);
+        keys.clear();
+        split = leaves = hidden = 0;
+    }
     std::span<const NodeKey> new_keys(const Member& member) const {
         return std::span(keys).subspan(member.first_key, member.rule->new_nodes.size());
     }

@@ -45,6 +45,43 @@ HierarchyFacts facts_of_grid(const Grid& grid) {
     return facts;
 }
 
+/// Sets member c of a family to an element, with its rule, masks and keys of new nodes.
+template <class Grid, class AnyContext>
+void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& context,
+                     const ElementOf<Grid>& e, Family& family, std::size_t c) {
+    Member& member = family.members[c];
+    set_handle(member.element, e);
+    if constexpr (may_offer<Grid>(Feature::masked)) {
+        if (facts.offers(Feature::masked) && call_masked(grid, context, e)) return;
+    }
+    const NodeMask bit = NodeMask{1} << c;
+    if constexpr (may_offer<Grid>(Feature::hidden)) {
+        if (facts.offers(Feature::hidden)) member.hidden = call_hidden(grid, context, e);
+        if (member.hidden == Hidden::wholly) family.hidden |= bit;
+    }
+    member.rule = call_split(grid, context, e);
+    if (member.rule == nullptr) {
+        family.leaves |= bit;
+        return;
+    }
+    family.split |= bit;
+    if constexpr (may_offer<Grid>(Feature::own_keys)) {
+        if (facts.offers(Feature::own_keys)) {
+            member.first_key = static_cast<std::uint32_t>(family.keys.size());
+            family.keys.resize(family.keys.size() + member.rule->new_nodes.size());
+            call_new_keys(grid, context, e, std::span(family.keys).subspan(member.first_key));
+        }
+    }
+    if constexpr (may_offer<Grid>(Feature::constrained)) {
+        if (facts.offers(Feature::constrained)) {
+            member.constrained = call_constrained(grid, context, e);
+        }
+    }
+    if constexpr (may_offer<Grid>(Feature::outside)) {
+        if (facts.offers(Feature::outside)) member.outside = call_outside(grid, context, e);
+    }
+}
+
 template <class Grid, class Field>
 class ErasedHierarchy final : public Hierarchy<typename Field::value_type> {
     static_assert(require_nested_grid<Grid>());
@@ -74,7 +111,7 @@ public:
             coarse.orientation = from.orientation;
             coarse.corners = from.corners;
             coarse.ids = from.ids;
-            begin(family, 1);
+            family.begin(1);
             const std::span<Element> kept = places(family, 1);
             if (!kept.empty()) kept[0] = from.element;
             describe(context, kept.empty() ? from.element : kept[0], family, 0);
@@ -100,7 +137,7 @@ public:
                                     std::span<Real>(values, rule.new_nodes.size() * components_));
             }
             const std::size_t count = rule.children.size();
-            begin(family, count);
+            family.begin(count);
             std::array<Element, fits_handle<Element> ? child_capacity<Grid>() : 1> on_stack;
             std::span<Element> children = places(family, count);
             if (children.empty()) children = std::span(on_stack).first(count);
@@ -244,46 +281,10 @@ private:
         }
     }
 
-    static void begin(Family& family, std::size_t count) {
-        if (family.members.size() < count) family.members.resize(count);
-        family.keys.clear();
-        family.split = family.leaves = family.hidden = 0;
-    }
-
     /// Sets member c of a family.
     template <class AnyContext>
     void describe(AnyContext& context, const Element& e, Family& family, std::size_t c) const {
-        Member& member = family.members[c];
-        set_handle(member.element, e);
-        if constexpr (may_offer<Grid>(Feature::masked)) {
-            if (this->offers(Feature::masked) && call_masked(*grid_, context, e)) return;
-        }
-        const NodeMask bit = NodeMask{1} << c;
-        if constexpr (may_offer<Grid>(Feature::hidden)) {
-            if (this->offers(Feature::hidden)) member.hidden = call_hidden(*grid_, context, e);
-            if (member.hidden == Hidden::wholly) family.hidden |= bit;
-        }
-        member.rule = call_split(*grid_, context, e);
-        if (member.rule == nullptr) {
-            family.leaves |= bit;
-            return;
-        }
-        family.split |= bit;
-        if constexpr (may_offer<Grid>(Feature::own_keys)) {
-            if (this->offers(Feature::own_keys)) {
-                member.first_key = static_cast<std::uint32_t>(family.keys.size());
-                family.keys.resize(family.keys.size() + member.rule->new_nodes.size());
-                call_new_keys(*grid_, context, e, std::span(family.keys).subspan(member.first_key));
-            }
-        }
-        if constexpr (may_offer<Grid>(Feature::constrained)) {
-            if (this->offers(Feature::constrained)) {
-                member.constrained = call_constrained(*grid_, context, e);
-            }
-        }
-        if constexpr (may_offer<Grid>(Feature::outside)) {
-            if (this->offers(Feature::outside)) member.outside = call_outside(*grid_, context, e);
-        }
+        describe_member(*grid_, this->facts_, context, e, family, c);
     }
 
     const Grid* grid_;

@@ -64,6 +64,18 @@ private:
     void* state_ = nullptr;
 };
 
+/// Fails where an operation of a table returned a code.
+/// \param what the table is of: "grid" or "field"
+/// \param context that the operation was given, or null
+template <class Table>
+void require_success(const Table& table, const char* what, int code, const char* operation,
+                     const TableContext* context) {
+    if (code == 0) return;
+    void* const state = context == nullptr ? nullptr : context->state();
+    fail_in_table(code, what, operation,
+                  table.last_error == nullptr ? nullptr : table.last_error(table.self, state));
+}
+
 /// The grid of a table. Contexts point to it.
 class TableGrid {
 public:
@@ -145,12 +157,7 @@ public:
 private:
     /// \param context that the operation was given, or null
     void check(int code, const char* operation, const TableContext* context) const {
-        if (code == 0) return;
-        fail_in_table(
-            code, "grid", operation,
-            table_.last_error == nullptr
-                ? nullptr
-                : table_.last_error(table_.self, context == nullptr ? nullptr : context->state()));
+        require_success(table_, "grid", code, operation, context);
     }
     template <class Answer, class Function>
     Answer ask(Function function, const char* operation, const Element& e, TableContext& c) const {
@@ -209,12 +216,7 @@ private:
         return values.size() / static_cast<std::size_t>(table_.components);
     }
     void check(int code, const char* operation, const TableContext* context) const {
-        if (code == 0) return;
-        fail_in_table(
-            code, "field", operation,
-            table_.last_error == nullptr
-                ? nullptr
-                : table_.last_error(table_.self, context == nullptr ? nullptr : context->state()));
+        require_success(table_, "field", code, operation, context);
     }
 
     nestgrid_field table_;

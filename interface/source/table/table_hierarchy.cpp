@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include <nestgrid/detail/erase.hpp>
 #include <nestgrid/table.hpp>
 
 #include "table_grid.hpp"
@@ -45,7 +46,7 @@ public:
         coarse.orientation = from.orientation;
         coarse.corners = from.corners;
         coarse.ids = from.ids;
-        begin(family, 1);
+        family.begin(1);
         describe(context_of(task), from.element, family, 0);
     }
     NodeMask coarse_values(Task* task, std::size_t i, std::size_t corners,
@@ -56,7 +57,7 @@ public:
                    Real* values, NodeMask wanted, Family& family) const override {
         const NodeMask missing = which == 0 ? 0 : new_values(task, element, rule, which, values);
         const std::size_t count = rule.children.size();
-        begin(family, count);
+        family.begin(count);
         std::array<nestgrid_element, max_children> children;
         grid_.children(of(element), std::span(children).first(count), context_of(task));
         for (std::size_t c = 0; c < count; ++c) {
@@ -113,33 +114,9 @@ private:
         return {values, nodes * static_cast<std::size_t>(this->facts_.components)};
     }
 
-    static void begin(Family& family, std::size_t count) {
-        if (family.members.size() < count) family.members.resize(count);
-        family.keys.clear();
-        family.split = family.leaves = family.hidden = 0;
-    }
-    /// Sets member c of a family.
     void describe(TableContext& context, const nestgrid_element& e, Family& family,
                   std::size_t c) const {
-        Member& member = family.members[c];
-        set_handle(member.element, e);
-        if (this->offers(Feature::masked) && grid_.masked(e, context)) return;
-        const NodeMask bit = NodeMask{1} << c;
-        if (this->offers(Feature::hidden)) member.hidden = grid_.hidden(e, context);
-        if (member.hidden == Hidden::wholly) family.hidden |= bit;
-        member.rule = grid_.split(e, context);
-        if (member.rule == nullptr) {
-            family.leaves |= bit;
-            return;
-        }
-        family.split |= bit;
-        if (this->offers(Feature::own_keys)) {
-            member.first_key = static_cast<std::uint32_t>(family.keys.size());
-            family.keys.resize(family.keys.size() + member.rule->new_nodes.size());
-            grid_.new_keys(e, std::span(family.keys).subspan(member.first_key), context);
-        }
-        if (this->offers(Feature::constrained)) member.constrained = grid_.constrained(e, context);
-        if (this->offers(Feature::outside)) member.outside = grid_.outside(e, context);
+        describe_member(grid_, this->facts_, context, e, family, c);
     }
 
     void middles(std::span<const Node> a, std::span<const Node> b,
