@@ -6,9 +6,10 @@
 
 namespace nestgrid {
 
-/// Where an edge is cut, seen from its lower end: nowhere nearer than this to an end, in edges.
+/// Cuts keep this distance from both ends of an edge, in lengths of the edge.
 inline constexpr double least_cut_fraction = 0x1p-20;
 
+/// The place of a cut on an edge, from 0 at its lower to 1 at its higher end.
 /// \tparam Number double, or several at once
 /// \param low, high U at the ends, low < isovalue <= high
 /// \param least, most least_cut_fraction, and 1 less it

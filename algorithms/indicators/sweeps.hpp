@@ -72,7 +72,7 @@ private:
         nodes_.resize(number_of_.count());
         return std::span(numbers_).first(keys.size());
     }
-    /// What a new node hands to its parents: `stop` is spread before.
+    /// The numbers that a new node hands to its parents, which spread `stop` first.
     struct Below {
         std::uint16_t stop = 0;
         std::uint16_t bound = 0;

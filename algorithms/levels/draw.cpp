@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include <levels/level_set.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {
@@ -38,13 +37,6 @@ void require_saturated(const Criterion& criterion, const Bounds& bounds) {
     }
 }
 
-template <class Real>
-std::vector<Level<Real>> levels_at(std::span<const double> isovalues) {
-    std::vector<Level<Real>> levels;
-    for (const double isovalue : isovalues) levels.emplace_back(isovalue);
-    return levels;
-}
-
 template <int dimension, class Real>
 std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, double isovalue,
                                              const Criterion& criterion, const Bounds& bounds,
@@ -60,7 +52,6 @@ std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, d
     const LevelSearch<Real> search(walk, std::span(&level, 1), criterion, bounds);
     Surface<dimension> nothing;
     const typename Drawing::Builder builder(nothing, false);
-
     Drawing drawing(walk, search, std::span(&builder, 1), plain, isosurface_attributes);
     drawing.count_only(most);
     try {
@@ -137,7 +128,8 @@ std::vector<Isosurface<dimension>> draw_isosurfaces(
     std::vector<Surface<dimension>> chunks(count);
     for (Surface<dimension>& chunk : chunks) chunk.elements = hierarchy.make_elements();
     std::vector<Isosurface<dimension>> results(count);
-    const std::vector<engine::Level<Real>> levels = engine::levels_at<Real>(isovalues);
+    std::vector<engine::Level<Real>> levels;
+    for (const double isovalue : isovalues) levels.emplace_back(isovalue);
     const auto builders = make_builders(targets, chunks, options.elements);
     engine::draw_levels<dimension, Real>(hierarchy, levels, engine::isosurface_attributes, builders,
                                          criterion, bounds, options, executor, results);

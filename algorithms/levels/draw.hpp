@@ -14,9 +14,6 @@ namespace nestgrid::engine {
 /// The first component of the field that an isosurface of component 0 carries along.
 inline constexpr std::size_t isosurface_attributes = 1;
 
-template <class Real>
-std::vector<Level<Real>> levels_at(std::span<const double> isovalues);
-
 /// Draws levels into builders, one a level, and sets what is known beside the surfaces.
 /// \param bounds of the components that the levels are of
 /// \param criterion checked by require_saturated()

@@ -186,7 +186,7 @@ void ElementContour<dimension, Real>::fill_gap(LevelSurface<dimension>& surface,
     begun_ = true;
     surface_->builder().add_element(owner, shape, level);
     Point x{0, 0, 0};
-    std::vector<double> attributes(attribute_count_, 0.0);
+    std::vector<double> attributes(cuts_->attribute_count(), 0.0);
     const double weight = 1.0 / static_cast<double>(loop.size());
     for (const SurfaceCut& cut : loop) {
         number_of(surface_->vertex_between({cut.node[0], cut.node[1]}, [&] { return cut; }),

@@ -25,10 +25,7 @@ public:
 
     /// All arguments are borrowed.
     ElementContour(ElementCuts<Real>& cuts, SimplexTally& tally, const IsosurfaceOptions& options)
-        : cuts_{&cuts},
-          tally_{&tally},
-          options_{&options},
-          attribute_count_{cuts.attribute_count()} {}
+        : cuts_{&cuts}, tally_{&tally}, options_{&options} {}
 
     /// The contour of an element that no finer side drew on, where it may be drawn by
     /// draw_plainly(): no signs on a face alternate and no loop is filled around its middle.
@@ -90,13 +87,13 @@ private:
     void put_boundary(const ContourLoop& loop, const Vertices& v, unsigned boundary);
     Point reference_on_face(const Point& x, const FaceTopology& face) const;
     /// Whether it must be known where vertices lie in the element.
-    bool wants_reference() const { return options_->reference || attribute_count_ > 0; }
+    bool wants_reference() const { return options_->reference || cuts_->attribute_count() > 0; }
     Number number_of(Number vertex, const Point& reference);
 
     ElementCuts<Real>* cuts_;
     SimplexTally* tally_;
     const IsosurfaceOptions* options_;
-    std::size_t attribute_count_;
+
     std::array<const ContourTable*, shape_count> table_{};
     LevelSurface<dimension>* surface_ = nullptr;
     bool begun_ = false;

@@ -48,7 +48,7 @@ public:
     std::size_t attribute_count() const { return attributes_.size(); }
     const std::array<NodeKey, max_corners>& keys() const { return key_; }
     const std::array<Point, max_corners>& positions() const { return x_; }
-    /// What the level is the zero of, at the corners.
+    /// The component less the value of the level, at the corners.
     const std::array<double, max_corners>& u() const { return u_; }
 
     /// The name of the vertex on a cut edge.
@@ -61,7 +61,7 @@ public:
     }
     /// The cut of an edge.
     SurfaceCut cut(std::uint8_t edge) const;
-    /// The same without attributes, of an edge around which nothing is closed.
+    /// The cut of an edge that no maximal edge contains, without attributes.
     /// \param inside the corners inside the level, one bit each
     NESTGRID_INLINE SurfaceCut plain_cut(std::uint8_t edge, unsigned inside) const {
         const auto [low, high] = ends(edge, inside);

@@ -78,8 +78,9 @@ NESTGRID_INLINE auto LevelSearch<Real>::range_of(const View& view, std::size_t c
     return range;
 }
 
-/// Where S > 0 at a corner, a saturated criterion has S = 1 at all new nodes, and is not asked; but
-/// a criterion may be saturated only up to nodes outside.
+/// Does not ask a saturated criterion about an element with a corner at which S > 0, because S is 1
+/// at all its new nodes then. Asks all the same where a new node lies outside, at which no element
+/// may stop.
 template <class Real>
 auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
                              CriterionQuestion& question) const -> Sight {
@@ -125,7 +126,8 @@ NodeMask LevelSearch<Real>::cut_leaves(const Rule& rule, const Real* values, Nod
     return of_interest & which;
 }
 
-/// The same, corner by corner, of rules with more than 64 nodes.
+/// The children with corners on both sides of a level, found corner by corner: for rules with more
+/// than 64 nodes.
 template <class Real>
 NodeMask LevelSearch<Real>::cut_children(const Rule& rule, const Real* values,
                                          const Level<Real>& level) const {
@@ -153,7 +155,7 @@ auto LevelSearch<Real>::glance(Real lo, Real hi, const Rule& rule, NodeKey node,
     return {mask != 0 ? Visit::stop : Visit::descend, bound};
 }
 
-/// On an element with these new nodes a component is within corner values +- this.
+/// How far a component may leave the range of the corner values on an element with these new nodes.
 template <class Real>
 Real LevelSearch<Real>::bound_of(const Rule& rule, std::span<const NodeKey> nodes) const {
     return as_real<Real>(own_bounds_ != nullptr ? own_bounds_->bound(rule, nodes)

@@ -21,7 +21,7 @@ class LevelSearch {
 public:
     using View = ElementView<Real>;
 
-    /// What is decided about an element, and how far U may leave the range of its corners there.
+    /// A decision about an element, and how far U may leave the range of its corner values in it.
     struct Sight {
         Decision decision;
         Real bound;
@@ -41,8 +41,9 @@ public:
 
     /// \param caps whether the element is of interest also where it is wholly inside
     Sight look(const View& view, const Split& split, bool caps, CriterionQuestion& question) const;
-    /// Those of the children `which`, which are leaves, that have corners on both sides of a level.
+    /// The leaves with corners on both sides of a level, one bit each.
     /// \param values of the father's split, corners first
+    /// \param which the children that are leaves, one bit each
     NodeMask cut_leaves(const Rule& rule, const Real* values, NodeMask which) const;
     /// The corners of an element that are inside a level, one bit each.
     NESTGRID_INLINE unsigned inside(const Real* value, std::size_t corners,
@@ -53,7 +54,7 @@ public:
                                       : bounds_->offset_bound(node);
     }
 
-    // The same questions by the walk in blocks.
+    // What the walk in blocks asks.
     struct Glance {
         Visit visit;
         Real bound;
@@ -61,10 +62,10 @@ public:
     /// Decides about a simplex whose one new node is `node`.
     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) const;
     bool glance_at_leaf(Real lo, Real hi) const { return of_interest(lo, hi, Real(0), 0, false); }
-    /// The same about eight, without a branch.
+    /// Decides about eight simplices at once, without a branch.
     template <std::size_t around>
     PackedGlance<Real, around> glance(const PackedElements<Real, around>& e) const;
-    /// The entries of these nodes will be asked for soon.
+    /// Fetches the entries of nodes into the cache.
     NESTGRID_INLINE void expect(const NodeKey* nodes, std::size_t rows) const {
         if (entries_ == nullptr) return;
         for (std::size_t row = 0; row < rows; ++row) {
@@ -151,7 +152,6 @@ NESTGRID_INLINE PackedGlance<Real, around> LevelSearch<Real>::glance(
                 max(Reals::all(level.least_inside) - hi, lo - Reals::all(level.greatest_outside)),
                 result.bound);
         };
-
         Mask interest = passes(levels_[0]);
         for (const Level<Real>& level : levels_.subspan(1)) interest = interest | passes(level);
         result.descend[i] = without(interest, holds);

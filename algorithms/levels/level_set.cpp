@@ -61,8 +61,8 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     at_hand_.plainly = draws_plainly();
     bisects_ = at_hand_.plainly && search.fits_blocks() && !records && !surfaces_.empty() &&
                walk_->hierarchy().facts().knows_blocks;
-    at_hand_.loads_keys = options_->normals || options_->cap ||
-                          (!surfaces_.empty() && surfaces_[0].names_vertices());
+    at_hand_.loads_keys =
+        options_->normals || options_->cap || (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
 
 /// Does as `leader` does: its pass, its limit, and what its tasks have recorded.
@@ -231,8 +231,8 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::load(const View& view, bool draws) {
     if (at_hand_.loaded) return;
     at_hand_.loaded = true;
-    const bool keys = at_hand_.loads_keys || walks_.adopts() || view.closed.any ||
-                      view.interpolated != 0;
+    const bool keys =
+        at_hand_.loads_keys || walks_.adopts() || view.closed.any || view.interpolated != 0;
     at_hand_.cuts.load(view, keys);
     deepest_ = std::max(deepest_, view.level);
     if (options_->normals && draws) normals_.add(at_hand_.cuts);

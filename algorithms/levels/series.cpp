@@ -3,7 +3,6 @@
 #include <nestgrid/algorithms/isosurface_series.hpp>
 
 #include <levels/draw.hpp>
-#include <levels/level_set.hpp>
 
 namespace nestgrid::detail {
 
