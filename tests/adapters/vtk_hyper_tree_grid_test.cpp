@@ -5,9 +5,6 @@
 #include <map>
 
 #include <vtkBitArray.h>
-#include <vtkDoubleArray.h>
-#include <vtkHyperTreeGridNonOrientedCursor.h>
-#include <vtkNew.h>
 
 #include <nestgrid/adapters/vtk_hyper_tree_grid.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
@@ -15,35 +12,13 @@
 #include <walk/project.hpp>
 
 #include "element_in.hpp"
+#include "hyper_trees.hpp"
 #include "refusal.hpp"
 #include "solver_laws.hpp"
 
 using namespace nestgrid_test;
 
 namespace {
-
-/// Coordinates of n points from 0 to 1, not quite uniform.
-vtkNew<vtkDoubleArray> coordinates(int n) {
-    vtkNew<vtkDoubleArray> x;
-    for (int i = 0; i < n; ++i) {
-        const double t = n == 1 ? 0.0 : static_cast<double>(i) / (n - 1);
-        x->InsertNextValue(t + 0.2 * t * (1 - t));
-    }
-    return x;
-}
-
-void subdivide(vtkHyperTreeGridNonOrientedCursor* cursor, std::mt19937& random, int depth,
-               vtkIdType& next) {
-    cursor->SetGlobalIndexFromLocal(next++);
-    const bool deeper = depth > 0 && (cursor->GetLevel() == 0 || random() % 3 == 0);
-    if (!deeper) return;
-    cursor->SubdivideLeaf();
-    for (int c = 0; c < cursor->GetNumberOfChildren(); ++c) {
-        cursor->ToChild(static_cast<unsigned char>(c));
-        subdivide(cursor, random, depth - 1, next);
-        cursor->ToParent();
-    }
-}
 
 /// Trees refined at random, neighbours differing by any number of levels.
 vtkNew<vtkHyperTreeGrid> random_trees(std::array<unsigned, 3> points, int depth, unsigned seed,

@@ -139,29 +139,6 @@ void expect_closed_at(const Grid& grid, const NodalSamples& samples,
     }
 }
 
-/// Refines everything once, then leaves at random, one in `rarity`, until there are enough of them;
-/// neighbours differ by several levels where the family allows it.
-template <class Grid>
-void refine_at_random(Grid& grid, std::mt19937& random, int rounds, int finest, unsigned rarity,
-                      std::size_t enough) {
-    for (int i = 0; i < rounds && grid.leaf_count() < enough; ++i) {
-        [[maybe_unused]] const auto way = random() % 4;
-        try {
-            grid.adapt([&](const Leaf& leaf) {
-                if (leaf.level >= finest || (i > 0 && random() % rarity != 0)) return Mark::keep;
-                if constexpr (std::is_same_v<Grid, PrismGrid>) {
-                    const std::array marks{Mark::refine, Mark::refine_horizontally,
-                                           Mark::refine_vertically};
-                    return marks[(way == 3 ? random() : way) % 3];
-                } else {
-                    return Mark::refine;
-                }
-            });
-        } catch (const InvalidInput&) {  // prisms refuse some mixtures of directions
-        }
-    }
-}
-
 template <class Family>
 class ClosedLevelSets : public testing::Test {};
 TYPED_TEST_SUITE(ClosedLevelSets, Families);
@@ -178,12 +155,9 @@ TYPED_TEST(ClosedLevelSets, OnUniformGrids) {
 }
 
 TYPED_TEST(ClosedLevelSets, AroundASphere) {
-    for (auto& grid : TypeParam::grids()) {
-        refine_at_sphere(grid, 3 * TypeParam::steps);
-        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 2)) {
-            expect_closed_at(grid, samples, epsilons);
-        }
-    }
+    for_each_field_at_sphere<TypeParam>(3, 2, [](const auto& grid, const auto& samples) {
+        expect_closed_at(grid, samples, epsilons);
+    });
 }
 
 TYPED_TEST(ClosedLevelSets, OnRandomGridsWithDeepSpots) {

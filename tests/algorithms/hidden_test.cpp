@@ -4,59 +4,18 @@
 // Hidden elements: nothing is drawn in them, and beside them what would be drawn without.
 #include <gtest/gtest.h>
 
-#include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <walk/project.hpp>
 
 #include "closedness.hpp"
-#include "forest.hpp"
+#include "hiding_forest.hpp"
 #include "table_in_c.hpp"
 #include "thread_executor.hpp"
 
 using namespace nestgrid_test;
 
 namespace {
-
-/// A forest of which some leaves are hidden, or known to be and drawn all the same.
-template <int dim>
-class HidingForest : public Forest<dim> {
-public:
-    using Element = std::uint32_t;
-
-    HidingForest(Forest<dim> forest, std::mt19937& random)
-        : Forest<dim>(std::move(forest)), part_(this->cells.size()) {
-        for (std::size_t e = this->cells.size(); e-- > 0;) {
-            const auto& cell = this->cells[e];
-            if (cell.rule == nullptr) {
-                part_[e] = random() % 4 == 0 ? Hidden::wholly : Hidden::not_at_all;
-                continue;
-            }
-            part_[e] = part_[cell.first_child];
-            for (std::size_t k = 1; k < cell.rule->children.size(); ++k) {
-                if (part_[cell.first_child + k] != part_[e]) part_[e] = Hidden::partly;
-            }
-        }
-        hanging_ = derive_hanging_nodes(*this);
-    }
-    Hidden hidden(Element e) const {
-        return draws_all && part_[e] != Hidden::partly ? Hidden::not_at_all : part_[e];
-    }
-    NodeMask constrained(Element e) const {
-        const auto& cell = this->cells[e];
-        NodeMask mask = 0;
-        for (std::size_t n = topology(cell.shape).corners, k = 0; n < cell.nodes.size(); ++n, ++k) {
-            mask |= NodeMask{hanging_.contains(this->keys[cell.nodes[n]])} << k;
-        }
-        return mask;
-    }
-
-    bool draws_all = false;
-
-private:
-    std::vector<Hidden> part_;
-    HangingNodes hanging_;
-};
 
 /// The simplices of elements that are shown, by the positions of their corners.
 template <int dim>

@@ -18,6 +18,7 @@
 
 #include "closedness.hpp"
 #include "families.hpp"
+#include "five_at_nodes.hpp"
 #include "sample_fields.hpp"
 #include "table_in_c.hpp"
 
@@ -29,56 +30,14 @@ constexpr double pi = 3.14159265358979323846;
 const Point centre{0.5, 0.5, 0.5};
 
 /// A scalar and what is to be carried onto its surface: 0.36 - r, then the position, then x y.
-class ScalarAndMore {
-public:
-    using value_type = double;
-    static constexpr int components = 5;
-
-    template <class Grid>
-    explicit ScalarAndMore(const Grid& grid) {
-        const auto& x = grid.node_positions();
-        for (const Point& p : x) {
-            values_.push_back({0.36 - norm(p - centre), p[0], p[1], p[2], p[0] * p[1]});
-        }
-    }
-    std::array<double, 5> at(NodeKey node) const { return values_[static_cast<std::size_t>(node)]; }
-
-private:
-    std::vector<std::array<double, 5>> values_;
-};
-
 template <class Grid>
-class FieldOn {
-public:
-    using value_type = double;
-    static constexpr int components = 5;
-
-    FieldOn(const Grid& grid, const ScalarAndMore& values) : grid_{&grid}, values_{&values} {}
-    NodeMask coarse_values(std::size_t i, std::span<double> out) const {
-        std::array<NodeKey, max_corners> keys;
-        const auto coarse = grid_->coarse(i);
-        const auto n = static_cast<std::size_t>(topology(coarse.shape).corners);
-        grid_->corner_keys(coarse.element, std::span(keys).first(n));
-        for (std::size_t k = 0; k < n; ++k) put(keys[k], out, k);
-        return 0;
+FiveAtNodes<Grid> scalar_and_more(const Grid& grid) {
+    std::vector<std::array<double, 5>> values;
+    for (const Point& p : grid.node_positions()) {
+        values.push_back({0.36 - norm(p - centre), p[0], p[1], p[2], p[0] * p[1]});
     }
-    NodeMask new_values(const typename Grid::Element& e, NodeMask which, std::span<double> out,
-                        typename Grid::Context& context) const {
-        const std::span<const std::uint32_t> nodes = grid_->new_nodes(e, context);
-        for (std::size_t k = 0; k < nodes.size(); ++k) {
-            if ((which >> k & 1U) != 0) put(nodes[k], out, k);
-        }
-        return 0;
-    }
-
-private:
-    void put(NodeKey node, std::span<double> out, std::size_t k) const {
-        const auto v = values_->at(node);
-        std::copy(v.begin(), v.end(), out.begin() + static_cast<std::ptrdiff_t>(5 * k));
-    }
-    const Grid* grid_;
-    const ScalarAndMore* values_;
-};
+    return {grid, std::move(values)};
+}
 
 template <class Grid>
 void uniform(Grid& grid, int times) {
@@ -110,8 +69,7 @@ TYPED_TEST(Uses, MeasuresConvergeWithOrderTwo) {
     for (int level = 2; level <= 4; ++level) {
         auto grid = TypeParam::grids()[0];
         uniform(grid, level * TypeParam::steps);
-        const ScalarAndMore values(grid);
-        const FieldOn field(grid, values);
+        const auto field = scalar_and_more(grid);
         const auto result = isosurface(grid, field, 0.0, {});
         expect_closed(result.surface);
         const SurfaceMeasurement m = measure_surface(result.surface);
@@ -139,8 +97,7 @@ TYPED_TEST(Uses, MeasuresConvergeWithOrderTwo) {
 TYPED_TEST(Uses, AttributesAndReferenceCoordinatesSayWhereTheTrianglesAre) {
     for (auto& grid : TypeParam::grids()) {
         refine_at_sphere(grid, 3 * TypeParam::steps);
-        const ScalarAndMore values(grid);
-        const FieldOn field(grid, values);
+        const auto field = scalar_and_more(grid);
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : {0.0, 0.05}) {
             const auto result =
@@ -242,8 +199,7 @@ TYPED_TEST(Uses, VolumesBetweenIsovaluesAreExactForLinearFunctions) {
 TYPED_TEST(Uses, DerivedScalarsAreProjectedAfterwards) {
     auto grid = TypeParam::grids()[0];
     refine_at_sphere(grid, 2 * TypeParam::steps);
-    const ScalarAndMore values(grid);
-    const FieldOn field(grid, values);
+    const auto field = scalar_and_more(grid);
     const auto derive = [](std::span<const double> u) {
         return std::hypot(u[1] - 0.5, u[2] - 0.5, u[3] - 0.5);
     };
@@ -251,8 +207,8 @@ TYPED_TEST(Uses, DerivedScalarsAreProjectedAfterwards) {
         return derive(std::array<double, 4>{0, x[0], x[1], x[2]});
     });
     const NodeField<typename TypeParam::Grid, double> directly(grid, direct);
-    const DerivedField<FieldOn<typename TypeParam::Grid>, decltype(derive), 2> derived(field,
-                                                                                       derive);
+    const DerivedField<FiveAtNodes<typename TypeParam::Grid>, decltype(derive), 2> derived(field,
+                                                                                           derive);
     for (const double threshold : {0.0, 0.02}) {
         const auto a = isosurface(grid, directly, 0.33, {.threshold = threshold}).surface;
         const auto b = isosurface(grid, derived, 0.33, {.threshold = threshold}).surface;
@@ -263,7 +219,7 @@ TYPED_TEST(Uses, DerivedScalarsAreProjectedAfterwards) {
             EXPECT_NEAR(b.attributes[2 * v + 1], b.vertices[v][0], 1e-9);
         }
     }
-    const DerivedField<FieldOn<typename TypeParam::Grid>, Component> first(field, Component{0});
+    const DerivedField<FiveAtNodes<typename TypeParam::Grid>, Component> first(field, Component{0});
     EXPECT_EQ(isosurface(grid, first, 0.0).surface.vertices,
               isosurface(grid, field, 0.0).surface.vertices);
     const std::array<double, 3> v{2, 3, 6};
@@ -274,8 +230,7 @@ TYPED_TEST(Uses, DerivedScalarsAreProjectedAfterwards) {
 TYPED_TEST(Uses, BandsAreClosedAroundTheirVolume) {
     auto grid = TypeParam::grids()[0];
     refine_at_sphere(grid, 2 * TypeParam::steps);
-    const ScalarAndMore values(grid);
-    const FieldOn field(grid, values);
+    const auto field = scalar_and_more(grid);
     const HierarchicalIndicator indicator(grid, field);
     for (const double threshold : {0.0, 0.02}) {
         const Threshold criterion{&indicator, threshold};

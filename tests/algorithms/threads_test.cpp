@@ -53,16 +53,13 @@ class Threads : public testing::Test {};
 TYPED_TEST_SUITE(Threads, Families);
 
 TYPED_TEST(Threads, DrawWhatOneDraws) {
-    for (auto& grid : TypeParam::grids()) {
-        refine_at_sphere(grid, 3 * TypeParam::steps);
-        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 7)) {
-            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
-            for (const double threshold : {0.0, 0.1, 1.0}) {
-                SCOPED_TRACE(samples.name + " at " + std::to_string(threshold));
-                expect_same_from_threads(grid, field, {0.0, 0.05}, threshold);
-            }
+    for_each_field_at_sphere<TypeParam>(3, 7, [](const auto& grid, const auto& samples) {
+        const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
+        for (const double threshold : {0.0, 0.1, 1.0}) {
+            SCOPED_TRACE(threshold);
+            expect_same_from_threads(grid, field, {0.0, 0.05}, threshold);
         }
-    }
+    });
 }
 
 template <class Grid, class Field>
@@ -98,14 +95,10 @@ void expect_same_prerolls(const Grid& grid, const Field& field, const LeafError&
 }
 
 TYPED_TEST(Threads, PrepareWhatOnePrepares) {
-    for (auto& grid : TypeParam::grids()) {
-        refine_at_sphere(grid, 3 * TypeParam::steps);
-        for (const NodalSamples& samples : catching_fields(grid.node_positions(), 7)) {
-            SCOPED_TRACE(samples.name);
-            expect_same_prerolls(
-                grid, NodeField<std::decay_t<decltype(grid)>, double>(grid, samples.values));
-        }
-    }
+    for_each_field_at_sphere<TypeParam>(3, 7, [](const auto& grid, const auto& samples) {
+        expect_same_prerolls(grid,
+                             NodeField<typename TypeParam::Grid, double>(grid, samples.values));
+    });
 }
 
 TEST(ThreadsOnSamples, PrepareWhatOnePrepares) {

@@ -260,4 +260,27 @@ std::vector<double> sample_nodes(const Grid& grid, Function&& f) {
     return values;
 }
 
+/// Refines everything once, then leaves at random, one in `rarity`, until there are enough of them;
+/// neighbours differ by several levels where the family allows it.
+template <class Grid>
+void refine_at_random(Grid& grid, std::mt19937& random, int rounds, int finest, unsigned rarity,
+                      std::size_t enough) {
+    for (int i = 0; i < rounds && grid.leaf_count() < enough; ++i) {
+        [[maybe_unused]] const auto way = random() % 4;
+        try {
+            grid.adapt([&](const Leaf& leaf) {
+                if (leaf.level >= finest || (i > 0 && random() % rarity != 0)) return Mark::keep;
+                if constexpr (std::is_same_v<Grid, PrismGrid>) {
+                    const std::array marks{Mark::refine, Mark::refine_horizontally,
+                                           Mark::refine_vertically};
+                    return marks[(way == 3 ? random() : way) % 3];
+                } else {
+                    return Mark::refine;
+                }
+            });
+        } catch (const InvalidInput&) {  // prisms refuse some mixtures of directions
+        }
+    }
+}
+
 }  // namespace nestgrid_test

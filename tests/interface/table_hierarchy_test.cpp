@@ -109,15 +109,8 @@ TEST(Tables, GiveTheSameSurfaceFromTheRequiredOperations) {
 }
 
 TEST(Tables, GiveTheSameLinesWithUnequalWeights) {
-    const Rule thirds = make_rule("thirds", Shape::triangle,
-                                  {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),
-                                   weighted_mean_of({{0, 0.5}, {2, 0.3}, {3, 0.2}}, 1)},
-                                  {{Shape::triangle, {0, 3, 4}, 1, {}},
-                                   {Shape::triangle, {3, 2, 4}, 1, {}},
-                                   {Shape::triangle, {2, 0, 4}, 1, {}},
-                                   {Shape::triangle, {3, 1, 2}, 1, {}}});
     Forest<2> forest = kuhn<2>(0);
-    for (std::uint32_t e = 0; forest.cells.size() < 200; ++e) forest.refine(e, thirds);
+    for (std::uint32_t e = 0; forest.cells.size() < 200; ++e) forest.refine(e, thirds_rule());
     const ForestField<2> field(forest, [](const Point& x) { return norm(x); });
     expect_same_behind_tables(forest, field, 0.7, {});
 }

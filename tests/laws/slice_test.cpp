@@ -52,14 +52,9 @@ void expect_slices(const Grid& grid, const NodalSamples& samples, double thresho
 
 TYPED_TEST(Slices, AreClosedAndPlanarAtEveryThreshold) {
     if constexpr (TypeParam::Grid::dimension == 3) {
-        for (auto& grid : TypeParam::grids()) {
-            refine_at_sphere(grid, 2 * TypeParam::steps);
-            for (const NodalSamples& samples : catching_fields(grid.node_positions(), 7)) {
-                for (const double threshold : {0.0, 0.1, 1.0}) {
-                    expect_slices(grid, samples, threshold);
-                }
-            }
-        }
+        for_each_field_at_sphere<TypeParam>(2, 7, [](const auto& grid, const auto& samples) {
+            for (const double threshold : {0.0, 0.1, 1.0}) expect_slices(grid, samples, threshold);
+        });
     }
 }
 

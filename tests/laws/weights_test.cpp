@@ -82,16 +82,12 @@ template <class Family>
 class Weights : public testing::Test {};
 TYPED_TEST_SUITE(Weights, Families);
 
-/// Calls test(grid, samples) on refined grids of a family.
+/// Calls test(grid, field) on refined grids of a family.
 template <class Family, class Test>
 void on_refined_grids(unsigned seed, Test&& test) {
-    for (auto& grid : Family::grids()) {
-        refine_at_sphere(grid, 3 * Family::steps);
-        for (const NodalSamples& samples : catching_fields(grid.node_positions(), seed)) {
-            SCOPED_TRACE(samples.name);
-            test(grid, NodeField<std::decay_t<decltype(grid)>, double>(grid, samples.values));
-        }
-    }
+    for_each_field_at_sphere<Family>(3, seed, [&](const auto& grid, const NodalSamples& samples) {
+        test(grid, NodeField<typename Family::Grid, double>(grid, samples.values));
+    });
 }
 
 TYPED_TEST(Weights, DrawClosedSurfaces) {

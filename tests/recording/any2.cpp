@@ -18,7 +18,7 @@ int main(int count, char** arguments) {
     record_any("any2/octree_grid", grid, recording::subjects_on<double>(grid, values));
     const auto forest = some_boxes<2>(3, 3, 200);
     record_any("any2/forest", forest, subjects_on<2>(forest, 3), true);
-    const HidingForest<2> hiding(refined(kuhn<2>(2), 7, 500), 7);
+    const HidingForest<2> hiding(refined(kuhn<2>(2), 7, 500), std::mt19937(7));
     record_any("any2/hidden", hiding, subjects_on<2>(hiding));
     return finish(count, arguments);
 }

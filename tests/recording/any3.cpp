@@ -31,7 +31,7 @@ int main(int count, char** arguments) {
     {
         const auto forest = refined(kuhn<3>(0), 9, 120);
         record_any("any3/forest", forest, subjects_on<3>(forest));
-        const HidingForest<3> hiding(some_boxes<3>(3, 2, 60), 7);
+        const HidingForest<3> hiding(some_boxes<3>(3, 2, 60), std::mt19937(7));
         record_any("any3/hidden", hiding, subjects_on<3>(hiding, 2));
     }
     {

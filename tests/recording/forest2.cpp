@@ -3,23 +3,7 @@
 #include "archetype.hpp"
 #include "forests.hpp"
 
-namespace {
-
 using namespace recording;
-
-/// New nodes that are no plain means, one of them with another new node for a parent.
-const Rule& thirds() {
-    static const Rule rule = make_rule("thirds", Shape::triangle,
-                                       {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),
-                                        weighted_mean_of({{0, 0.5}, {2, 0.3}, {3, 0.2}}, 1)},
-                                       {{Shape::triangle, {0, 3, 4}, 1, {}},
-                                        {Shape::triangle, {3, 2, 4}, 1, {}},
-                                        {Shape::triangle, {2, 0, 4}, 1, {}},
-                                        {Shape::triangle, {3, 1, 2}, 1, {}}});
-    return rule;
-}
-
-}  // namespace
 
 int main(int count, char** arguments) {
     const auto boxes2 = some_boxes<2>(3, 3, 200);
@@ -34,7 +18,7 @@ int main(int count, char** arguments) {
     }
     record_options("forest2/red", red, subjects_on(red));
     Forest<2> unequal = kuhn<2>(0);
-    for (std::uint32_t e = 0; unequal.cells.size() < 400; ++e) unequal.refine(e, thirds());
+    for (std::uint32_t e = 0; unequal.cells.size() < 400; ++e) unequal.refine(e, thirds_rule());
     record_options("forest2/thirds", unequal, subjects_on(unequal));
     record("forest2/archetype", [](Case& c) {
         const ArchetypeGrid grid;

@@ -3,14 +3,12 @@
 //
 // VTK's hyper tree grids, with the means of their cells; masked and not.
 #include <vtkBitArray.h>
-#include <vtkDoubleArray.h>
-#include <vtkHyperTreeGridNonOrientedCursor.h>
-#include <vtkNew.h>
 
 #include <nestgrid/adapters/vtk_hyper_tree_grid.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
 
 #include "closedness.hpp"
+#include "hyper_trees.hpp"
 #include "options.hpp"
 
 namespace {
@@ -18,36 +16,14 @@ namespace {
 using namespace recording;
 using namespace nestgrid_test;
 
-vtkNew<vtkDoubleArray> coordinates(unsigned n) {
-    vtkNew<vtkDoubleArray> x;
-    for (unsigned i = 0; i < n; ++i) {
-        const double t = n == 1 ? 0.0 : static_cast<double>(i) / (n - 1);
-        x->InsertNextValue(t + 0.2 * t * (1 - t));
-    }
-    return x;
-}
-
-void subdivide(vtkHyperTreeGridNonOrientedCursor* cursor, std::mt19937& random, int depth,
-               vtkIdType& next) {
-    cursor->SetGlobalIndexFromLocal(next++);
-    const bool deeper = depth > 0 && (cursor->GetLevel() == 0 || random() % 3 == 0);
-    if (!deeper) return;
-    cursor->SubdivideLeaf();
-    for (int c = 0; c < cursor->GetNumberOfChildren(); ++c) {
-        cursor->ToChild(static_cast<unsigned char>(c));
-        subdivide(cursor, random, depth - 1, next);
-        cursor->ToParent();
-    }
-}
-
 template <int dim>
 void record_trees(const std::string& name, std::array<unsigned, 3> points, int depth, bool masked) {
     vtkNew<vtkHyperTreeGrid> trees;
     trees->SetDimensions(points.data());
     trees->SetBranchFactor(2);
-    trees->SetXCoordinates(coordinates(points[0]));
-    trees->SetYCoordinates(coordinates(points[1]));
-    trees->SetZCoordinates(coordinates(points[2]));
+    trees->SetXCoordinates(coordinates(static_cast<int>(points[0])));
+    trees->SetYCoordinates(coordinates(static_cast<int>(points[1])));
+    trees->SetZCoordinates(coordinates(static_cast<int>(points[2])));
     std::mt19937 random(dim);
     vtkIdType next = 0;
     vtkNew<vtkHyperTreeGridNonOrientedCursor> cursor;

@@ -12,27 +12,6 @@ namespace recording {
 
 using namespace nestgrid_test;
 
-template <class Grid>
-void refine_some(Grid& grid, unsigned seed, int rounds, std::size_t enough) {
-    std::mt19937 random(seed);
-    for (int i = 0; i < rounds && grid.leaf_count() < enough; ++i) {
-        const auto way = random() % 4;
-        try {
-            grid.adapt([&](const Leaf&) {
-                if (i > 0 && random() % 4 != 0) return Mark::keep;
-                if constexpr (std::is_same_v<Grid, PrismGrid>) {
-                    const std::array marks{Mark::refine, Mark::refine_horizontally,
-                                           Mark::refine_vertically};
-                    return marks[(way == 3 ? random() : way) % 3];
-                } else {
-                    return Mark::refine;
-                }
-            });
-        } catch (const InvalidInput&) {  // prisms refuse some mixtures of directions
-        }
-    }
-}
-
 template <class Real, class Grid>
 std::vector<Subject<NodeField<Grid, Real>>> subjects_on(const Grid& grid,
                                                         std::vector<std::vector<Real>>& values) {
@@ -69,7 +48,9 @@ void record_family(const std::string& name, bool all = true) {
         }
     }
     auto grid = Family::grids()[1];
-    refine_some(grid, 5, 3 * Family::steps, Family::Grid::dimension == 3 ? 400 : 800);
+    std::mt19937 random(5);
+    refine_at_random(grid, random, 3 * Family::steps, std::numeric_limits<int>::max(), 4,
+                     Family::Grid::dimension == 3 ? 400 : 800);
     std::vector<std::vector<Real>> values;
     const auto subjects = subjects_on<Real>(grid, values);
     record_preroll(name + "/random", grid, subjects);

@@ -199,4 +199,16 @@ Forest<dim> kuhn(int tag) {
     return forest;
 }
 
+/// New nodes that are no plain means, one of them with another new node for a parent.
+inline const Rule& thirds_rule() {
+    static const Rule rule = make_rule("thirds", Shape::triangle,
+                                       {weighted_mean_of({{0, 2.0 / 3}, {1, 1.0 / 3}}),
+                                        weighted_mean_of({{0, 0.5}, {2, 0.3}, {3, 0.2}}, 1)},
+                                       {{Shape::triangle, {0, 3, 4}, 1, {}},
+                                        {Shape::triangle, {3, 2, 4}, 1, {}},
+                                        {Shape::triangle, {2, 0, 4}, 1, {}},
+                                        {Shape::triangle, {3, 1, 2}, 1, {}}});
+    return rule;
+}
+
 }  // namespace nestgrid_test
