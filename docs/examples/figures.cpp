@@ -31,8 +31,7 @@ void bucky_figure(const std::string& file) {
     int view = 0;
     for (const double threshold : {0.0, 0.02, 0.1}) {
         const auto result = isosurface(bucky.grid, bucky.field, 0.275, {.threshold = threshold});
-        picture.look(view++, ball);
-        draw(picture, result.surface, true, [](std::size_t) { return sand; });
+        draw_ball(picture, view++, result.surface);
         std::printf("threshold %g: %zu triangles\n", threshold, result.surface.simplices.size());
     }
     picture.write(file);
@@ -113,8 +112,7 @@ void budget_figure(const std::string& file) {
         const auto result = isosurface(grid, field, 0.275, indicator, {.max_triangles = most});
         std::printf("%zu triangles of %zu, |U - C| <= %g\n", result.surface.simplices.size(),
                     static_cast<std::size_t>(most), result.error_bound);
-        picture.look(view++, ball);
-        draw(picture, result.surface, true, [](std::size_t) { return sand; });
+        draw_ball(picture, view++, result.surface);
     }
     // [budget]
     picture.write(file);
@@ -142,8 +140,7 @@ void region_figure(const std::string& file) {
     Picture picture(380, 380, 2);
     int view = 0;
     for (const auto* surface : {&result.surface, &within.surface}) {
-        picture.look(view++, ball);
-        draw(picture, *surface, true, [](std::size_t) { return sand; });
+        draw_ball(picture, view++, *surface);
         std::printf("%zu triangles\n", surface->simplices.size());
     }
     picture.write(file);
@@ -199,8 +196,7 @@ void criteria_figure(const std::string& file) {
     Picture picture(380, 380, 2);
     int view = 0;
     for (const auto* result : {&open, &closed}) {
-        picture.look(view++, ball);
-        draw(picture, result->surface, true, [](std::size_t) { return sand; });
+        draw_ball(picture, view++, result->surface);
         draw_open_edges(picture, result->surface);
         const SurfaceReport report = surface_report(result->surface);
         std::printf("%zu triangles, %zu open edges, |U - C| <= %g\n", report.triangles,
@@ -220,8 +216,7 @@ void levels_figure(const std::string& file) {
     const NodeLevels levels(grid);
     for (const int deepest : {18, 15, 12}) {
         const auto result = isosurface(grid, field, 0.275, levels.deeper_than(deepest), indicator);
-        picture.look(view++, ball);
-        draw(picture, result.surface, true, [](std::size_t) { return sand; });
+        draw_ball(picture, view++, result.surface);
     }
     // [levels]
     picture.write(file);

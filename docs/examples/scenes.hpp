@@ -175,6 +175,12 @@ inline const View ball{
     .towards_eye = {1.1, 1.5, 0.7}, .up = {0, 0, 1}, .centre = {32, 32, 32}, .height = 64};
 inline const View plane{.height = 2.06};
 
+/// Draws a surface of the bucky ball into one of the picture's views.
+inline void draw_ball(Picture& picture, int view, const Surface<3>& surface) {
+    picture.look(view, ball);
+    draw(picture, surface, true, [](std::size_t) { return sand; });
+}
+
 /// The samples of the bucky ball with 65 a side, and their hierarchy of tetrahedra.
 struct Bucky {
     LatticeBisection<3> grid{{.samples = {65, 65, 65}}};
