@@ -157,14 +157,6 @@ constexpr std::size_t corner_capacity() {
     }
 }
 template <class Grid>
-constexpr std::size_t new_node_capacity() {
-    if constexpr (requires { Grid::max_new_nodes; }) {
-        return static_cast<std::size_t>(Grid::max_new_nodes);
-    } else {
-        return max_new_nodes;
-    }
-}
-template <class Grid>
 constexpr std::size_t child_capacity() {
     if constexpr (requires { Grid::max_children; }) {
         return static_cast<std::size_t>(Grid::max_children);

@@ -111,8 +111,7 @@ void GridChecker<Grid, Field>::check_region(const State& s, const std::vector<In
     }
     const Rule* rule = call_split(grid_, context_, s.element);
     if (rule == nullptr) {
-        const bool hidden = hidden_part(grid_, context_, s.element) == Hidden::wholly;
-        if (!hidden) check_leaf(s, inside);
+        if (!is_hidden(grid_, context_, s.element)) check_leaf(s, inside);
         return;
     }
     std::vector<Corner> nodes(s.corner.begin(), s.corner.begin() + topology(s.shape).corners);
