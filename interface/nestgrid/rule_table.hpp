@@ -44,6 +44,7 @@ struct ParentAxes {
 /// Those of a quadrilateral, a hexahedron or a prism that is divided in steps: first along the axes
 /// in the first step, then every child along those in the second one, and so on. A node in a face
 /// is made by the last step that divides the face.
+/// \throw InvalidInput where two steps divide along one axis
 ParentAxes in_steps(Shape parent, std::initializer_list<Axes> steps);
 
 /// Rules by how the children lie, each made and checked once. Add those of a whole grid in the

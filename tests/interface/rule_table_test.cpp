@@ -289,6 +289,15 @@ TEST(RuleTable, RefusesAxesWithoutParents) {
     EXPECT_THROW(table.add(Shape::tetrahedron, placed(red_tetrahedron_rule()), axes), InvalidInput);
 }
 
+/// A second step along an axis makes nodes between new nodes, which axes do not tell from nodes
+/// between corners.
+TEST(RuleTable, RefusesTwoStepsAlongOneAxis) {
+    EXPECT_THROW(in_steps(Shape::quadrilateral, {axis_x, axis_x}), InvalidInput);
+    EXPECT_THROW(in_steps(Shape::hexahedron, {axis_x | axis_y, axis_z, axis_y}), InvalidInput);
+    EXPECT_THROW(in_steps(Shape::prism, {axis_x, axis_y}), InvalidInput);
+    EXPECT_NO_THROW(in_steps(Shape::prism, {axis_x, axis_z}));
+}
+
 /// Two elements with a common face, the one beyond the other along x (hexahedra) or across the face
 /// along y (prisms); one is divided in steps by one rule, the other by another.
 Forest<3> neighbours(Shape shape, const Rule& one, const Rule& other) {

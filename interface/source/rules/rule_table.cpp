@@ -178,6 +178,16 @@ Rule make(Shape parent, std::span<const PlacedChild> placed, const ParentAxes& a
 
 ParentAxes in_steps(Shape parent, std::initializer_list<Axes> steps) {
     const Topology& t = topology(parent);
+    Axes divided = 0;
+    for (const Axes step : steps) {
+        const Axes along = together(parent, step);
+        if ((divided & along) != 0) {
+            throw InvalidInput(
+                "a rule in steps divides its father once along each axis; a second step along an "
+                "axis divides the children by rules of their own");
+        }
+        divided = static_cast<Axes>(divided | along);
+    }
     ParentAxes result;
     const auto last_along = [&](Axes of) {
         for (auto step = steps.end(); step != steps.begin();) {
