@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
+#include <nestgrid/detail/operations.hpp>
 #include <nestgrid/detail/pack.hpp>
-#include <nestgrid/optional.hpp>
 #include <patches/known_bisection.hpp>
 
 namespace nestgrid::engine {

@@ -8,8 +8,8 @@
 
 #include <cstring>
 
+#include <nestgrid/detail/operations.hpp>
 #include <nestgrid/hierarchy.hpp>
-#include <nestgrid/optional.hpp>
 #include <patches/bisection_walk.hpp>
 
 namespace nestgrid::detail {

@@ -51,8 +51,8 @@
 #include <span>
 
 #include <nestgrid/detail/known_bisection.hpp>
+#include <nestgrid/detail/operations.hpp>
 #include <nestgrid/detail/pack.hpp>
-#include <nestgrid/optional.hpp>
 #include <walk/visit.hpp>
 
 namespace nestgrid {

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
+#include <nestgrid/detail/constants.hpp>
 #include <nestgrid/detail/hanging_probe.hpp>
-#include <nestgrid/detail/named_operations.hpp>
-#include <nestgrid/optional.hpp>
+#include <nestgrid/detail/operations.hpp>
 
 namespace nestgrid {
 

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include <nestgrid/optional.hpp>
+#include <nestgrid/detail/operations.hpp>
 
 namespace nestgrid {
 

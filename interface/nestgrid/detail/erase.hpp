@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <memory>
 
-#include <nestgrid/detail/named_operations.hpp>
+#include <nestgrid/detail/constants.hpp>
+#include <nestgrid/detail/operations.hpp>
 #include <nestgrid/hierarchy.hpp>
-#include <nestgrid/optional.hpp>
 
 namespace nestgrid {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include <nestgrid/optional.hpp>
+#include <nestgrid/detail/operations.hpp>
 #include <nestgrid/table.hpp>
 
 namespace nestgrid_test {

@@ -21,6 +21,7 @@
 #include <nestgrid/adapters/coarse_checks.hpp>
 #include <nestgrid/adapters/family.hpp>
 #include <nestgrid/adapters/work_tree.hpp>
+#include <nestgrid/detail/constants.hpp>
 #include <nestgrid/optional.hpp>
 
 namespace nestgrid {
