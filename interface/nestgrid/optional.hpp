@@ -40,7 +40,7 @@
 //     std::uint64_t epoch()
 //         changes with the grid: tells stale prerolls
 // It may also name constants, from which the sizes of arrays and the lengths of loops follow:
-//     static constexpr int max_corners, max_new_nodes, max_children
+//     static constexpr int max_corners, max_children
 //         of its elements and rules; default: those of all shapes and rules
 //     static constexpr Shape only_shape
 //         of all elements; default: simplices where there are no more corners, else any

@@ -78,7 +78,7 @@ TEST(OfferedOperations, AreListed) {
               (std::vector<std::string>{"corner_keys", "new_keys", "node_count", "corner_positions",
                                         "conforming", "masked", "outside", "boundary_faces",
                                         "for_each_star_row", "node_position", "max_corners",
-                                        "max_new_nodes", "max_children"}));
+                                        "max_children"}));
     const std::vector<float> values(125);
     const LatticeField field(grid, std::span<const float>(values));
     EXPECT_EQ(offered_field_operations<LatticeBisection<3>>(field),

@@ -50,7 +50,7 @@ inline constexpr unsigned of_grid = 1;
 inline constexpr unsigned of_field = 2;
 
 /// The type of the last argument of operations that take no context.
-class NoContextArgument {
+struct NoContextArgument {
     NoContextArgument() = delete;
 };
 
@@ -313,8 +313,6 @@ std::vector<std::string> offered_operations(const Grid& grid) {
     };
     add(
         requires { Grid::max_corners; }, "max_corners");
-    add(
-        requires { Grid::max_new_nodes; }, "max_new_nodes");
     add(
         requires { Grid::max_children; }, "max_children");
     add(
