@@ -230,10 +230,10 @@ void ContourMaker::add_loops(Contour& contour, unsigned pattern, unsigned joined
     std::array<std::uint8_t, max_edges> next;  // the edge that follows this one in its loop
     std::array<std::uint8_t, max_edges> face_of{};
     next.fill(none);
-    for (std::uint8_t f = 0; f < faces_.size(); ++f) {
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
         for (const auto& [falls, rises] : segments(f, pattern, joined)) {
             next[rises] = falls;
-            face_of[rises] = f;
+            face_of[rises] = static_cast<std::uint8_t>(f);
         }
     }
     for (std::uint8_t start = 0; start < max_edges; ++start) {

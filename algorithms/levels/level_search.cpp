@@ -118,7 +118,8 @@ NodeMask LevelSearch<Real>::cut_leaves(const Rule& rule, const Real* values, Nod
             inside |= std::uint64_t{value[n * components_] >= level.least_inside} << n;
         }
         for (NodeMask left = which; left != 0; left &= left - 1) {
-            const std::uint64_t all = rule.children[std::countr_zero(left)].nodes;
+            const auto c = static_cast<std::size_t>(std::countr_zero(left));
+            const std::uint64_t all = rule.children[c].nodes;
             const bool cut = (all & inside) != 0 && (all & ~inside) != 0;
             of_interest |= cut ? left & ~(left - 1) : NodeMask{0};
         }

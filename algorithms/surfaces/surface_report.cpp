@@ -63,7 +63,7 @@ void for_each_edge(const Sides& sides, Function&& function) {
 
 void count_edges(const Sides& sides, const Surface<3>& surface, SurfaceReport& report) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary;
-    for (const auto& edge : surface.boundary) boundary.push_back(std::minmax(edge[0], edge[1]));
+    for (const auto& edge : surface.boundary) boundary.emplace_back(std::minmax(edge[0], edge[1]));
     std::sort(boundary.begin(), boundary.end());
     for_each_edge(sides, [&](std::span<const Side> edge) {
         ++report.edges;

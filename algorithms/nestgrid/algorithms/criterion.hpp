@@ -11,6 +11,7 @@
 #include <array>
 #include <concepts>
 #include <span>
+#include <utility>
 
 #include <nestgrid/keys.hpp>
 #include <nestgrid/rule.hpp>
@@ -142,7 +143,7 @@ public:
     bool insists() const override { return a_.insists() || b_.insists(); }
 
 protected:
-    TwoCriteria(const A& a, const B& b) : a_{a}, b_{b} {}
+    TwoCriteria(A a, B b) : a_{std::move(a)}, b_{std::move(b)} {}
 
     /// Puts choose(S of a, S of b) into s.
     template <class Choose>

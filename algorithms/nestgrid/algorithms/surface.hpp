@@ -61,8 +61,8 @@ protected:
     MeshSink() = default;
     MeshSink(const MeshSink&) = default;
     MeshSink& operator=(const MeshSink&) = default;
-    MeshSink(MeshSink&&) = default;
-    MeshSink& operator=(MeshSink&&) = default;
+    MeshSink(MeshSink&&) noexcept = default;
+    MeshSink& operator=(MeshSink&&) noexcept = default;
 };
 
 /// Takes triangles (segments) in parts while they are extracted, without connections between
@@ -82,8 +82,8 @@ protected:
     SimplexSink() = default;
     SimplexSink(const SimplexSink&) = default;
     SimplexSink& operator=(const SimplexSink&) = default;
-    SimplexSink(SimplexSink&&) = default;
-    SimplexSink& operator=(SimplexSink&&) = default;
+    SimplexSink(SimplexSink&&) noexcept = default;
+    SimplexSink& operator=(SimplexSink&&) noexcept = default;
 };
 
 /// Keeps the corners of every triangle (segment) behind each other: what a renderer takes.

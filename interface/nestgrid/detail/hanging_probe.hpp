@@ -26,9 +26,7 @@
 #include <nestgrid/detail/key_filter.hpp>
 #include <nestgrid/detail/key_table.hpp>
 
-namespace nestgrid {
-
-namespace detail {
+namespace nestgrid::detail {
 
 /// A quadrilateral in tensor order, by nodes of a rule that divides its edges 01 and 23 first.
 using OneWayFace = std::array<std::uint8_t, 4>;
@@ -225,13 +223,11 @@ private:
     KeyFilter parents_;
     KeyTable<NodeKey, Present> triangles_;
     HangingNodes hanging_;
-    const std::vector<OneWayFace> none_;
+    const std::vector<OneWayFace> none_{};
     std::map<const Rule*, std::vector<OneWayFace>> one_way_;
     const Rule* last_rule_ = nullptr;
     const std::vector<OneWayFace>* last_faces_ = nullptr;  // of that
     bool divides_one_way_ = false;
 };
 
-}  // namespace detail
-
-}  // namespace nestgrid
+}  // namespace nestgrid::detail

@@ -60,6 +60,7 @@ public:
     // then waits until these have reached the cache.
     Pack() = default;
     NESTGRID_INLINE Pack(const Pack& other) { *this = other; }
+    // NOLINTNEXTLINE(bugprone-unhandled-self-assignment): then parts are copied to themselves
     NESTGRID_INLINE Pack& operator=(const Pack& other) {
         unrolled<vectors_>([&](auto v) NESTGRID_INLINE_LAMBDA { v_[v].of = other.v_[v].of; });
         return *this;
