@@ -11,7 +11,7 @@ namespace nestgrid {
 
 namespace {
 
-/// A model of NestedGrid: check_grid asks each operation alone, unlike a Hierarchy.
+/// A model of NestedGrid: BisectionCheck asks each operation alone, unlike a Hierarchy.
 template <int dim>
 class CheckedGrid : public detail::TableGrid {
 public:
@@ -28,10 +28,10 @@ public:
 template <int dim, class Real>
 std::optional<std::string> check(const Hierarchy<Real>& hierarchy, const nestgrid_grid& table,
                                  const nestgrid_field& values) {
+    if (const auto violation = check_hierarchy(hierarchy)) return violation->sentence;
+    if (hierarchy.bisection_rows() == nullptr) return std::nullopt;
     const CheckedGrid<dim> grid(table);
     const detail::TableField<Real> field(values);
-    if (const auto violation = check_grid(grid, field)) return violation->sentence;
-    if (hierarchy.bisection_rows() == nullptr) return std::nullopt;
     const auto task = hierarchy.open();
     const engine::ToldBisections<dim, Real> told(hierarchy, task.get());
     const engine::ToldValues<Real> told_values(*hierarchy.bisection_rows());

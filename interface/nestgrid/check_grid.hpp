@@ -9,18 +9,11 @@
 // Costs O(elements) memory and several times a traversal: for tests, not for production.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
-#include <nestgrid/detail/constants.hpp>
-#include <nestgrid/detail/hanging_probe.hpp>
-#include <nestgrid/detail/operations.hpp>
+#include <nestgrid/detail/erase.hpp>
 
 namespace nestgrid {
 
@@ -77,22 +70,28 @@ struct CheckOptions {
     std::vector<std::string>* notes = nullptr;
 };
 
-namespace detail {
-template <class Grid, class Field>
-class GridChecker;
-}
-
 /// The first violation of the contract, or nothing. Elements are named by the number of the coarse
 /// element and those of the children on the way down, as in "element 3/0/1".
+std::optional<GridViolation> check_hierarchy(const Hierarchy<float>& hierarchy,
+                                             const CheckOptions& options = {});
+std::optional<GridViolation> check_hierarchy(const Hierarchy<double>& hierarchy,
+                                             const CheckOptions& options = {});
+
+namespace detail {
+/// Notes the names of the optional operations that a grid and a field offer.
+void note_operations(const std::vector<std::string>& grid, const std::vector<std::string>& field,
+                     std::vector<std::string>& notes);
+}  // namespace detail
+
+/// Likewise of a grid and a field on it.
 template <class Grid, class Field>
 std::optional<GridViolation> check_grid(const Grid& grid, const Field& field,
                                         const CheckOptions& options = {}) {
-    static_assert(require_nested_grid<Grid>());
-    static_assert(require_nodal_field<Field, Grid>());
-    static_assert(require_fitting_operations<Grid, Field>());
-    return detail::GridChecker<Grid, Field>(grid, field, options).run();
+    if (options.notes != nullptr) {
+        detail::note_operations(offered_operations(grid), offered_field_operations<Grid>(field),
+                                *options.notes);
+    }
+    return check_hierarchy(erase(grid, field), options);
 }
 
 }  // namespace nestgrid
-
-#include <nestgrid/detail/check_grid_steps.hpp>

@@ -68,6 +68,9 @@ void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& 
     if constexpr (may_offer<Grid>(Feature::own_keys)) {
         if (facts.offers(Feature::own_keys)) {
             member.first_key = static_cast<std::uint32_t>(family.keys.size());
+            // A grid that gives the keys of another rule writes no farther than this, and
+            // check_grid can name the mistake.
+            family.keys.reserve(family.keys.size() + max_new_nodes);
             family.keys.resize(family.keys.size() + member.rule->new_nodes.size());
             call_new_keys(grid, context, e, std::span(family.keys).subspan(member.first_key));
         }
@@ -137,6 +140,7 @@ public:
                                     std::span<Real>(values, rule.new_nodes.size() * components_));
             }
             const std::size_t count = rule.children.size();
+            if (count > child_capacity<Grid>()) throw_too_many_children(rule);
             family.begin(count);
             std::array<Element, fits_handle<Element> ? child_capacity<Grid>() : 1> on_stack;
             std::span<Element> children = places(family, count);
@@ -267,6 +271,12 @@ private:
         }
         if constexpr (may_know_blocks_) facts.knows_blocks = knows_blocks(grid, field, facts);
         return facts;
+    }
+
+    [[noreturn]] static void throw_too_many_children(const Rule& rule) {
+        throw GridError("the rule '" + rule.name + "' has " + std::to_string(rule.children.size()) +
+                        " children, but the grid's max_children is " +
+                        std::to_string(child_capacity<Grid>()));
     }
 
     /// Where the elements of a family are kept that do not fit into handles; else nothing.

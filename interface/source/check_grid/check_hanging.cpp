@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What check_grid asks about hanging nodes; included by check_grid_steps.hpp.
+// check_grid: hanging nodes.
 //
 // A node hangs on a leaf where it lies in it without being a corner. Such nodes are found by
 // reference coordinates: each coarse element hands the nodes that lie in it down to the children
 // that they lie in. So they are found whatever their keys and their parents are.
-#pragma once
+#include <algorithm>
+#include <cmath>
 
-#include <nestgrid/detail/check_grid_steps.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
 
+#include "grid_checker.hpp"
+
 namespace nestgrid::detail {
+
+namespace {
 
 /// An element with flat faces, its boundary included.
 class ClosedRegion {
@@ -46,9 +50,10 @@ private:
     std::vector<Side> sides_;
 };
 
+}  // namespace
+
 /// The nodes that lie in each coarse element, by their weights over ids.
-template <class Grid, class Field>
-void GridChecker<Grid, Field>::find_nodes_inside() {
+void GridChecker::find_nodes_inside() {
     std::map<std::uint64_t, std::vector<std::size_t>> elements_at;
     for (std::size_t i = 0; i < coarse_ids_.size(); ++i) {
         for (const std::uint64_t id : coarse_ids_[i]) elements_at[id].push_back(i);
@@ -72,21 +77,11 @@ void GridChecker<Grid, Field>::find_nodes_inside() {
     }
 }
 
-template <class Grid, class Field>
-void GridChecker<Grid, Field>::walk_regions(std::size_t i) {
-    coarse_ = call_coarse(grid_, context_, i);
-    State s;
-    s.element = coarse_.element;
-    s.shape = coarse_.shape;
-    s.step = steps_.size();
-    steps_.push_back({root_, i});
+void GridChecker::walk_regions(std::size_t i) {
+    State s = coarse_state(i);
+    if (is_masked(coarse_family_, 0)) return;
     const Topology& t = topology(s.shape);
-    for (std::size_t k = 0; k < t.corners; ++k) {
-        Corner& c = s.corner[k];
-        c.weights[k] = 1;
-        c.place = place_of(c.weights);
-        c.position = t.reference[k];
-    }
+    for (std::size_t k = 0; k < t.corners; ++k) s.corner[k].position = t.reference[k];
     std::vector<Inside> inside;
     for (const std::size_t m : inside_[i]) {
         const Made& node = made_[m];
@@ -104,33 +99,27 @@ void GridChecker<Grid, Field>::walk_regions(std::size_t i) {
 }
 
 /// \param inside the nodes that lie in the element, parents first
-template <class Grid, class Field>
-void GridChecker<Grid, Field>::check_region(const State& s, const std::vector<Inside>& inside) {
-    if constexpr (may_offer<Grid>(Feature::masked)) {
-        if (offers(grid_, Feature::masked) && call_masked(grid_, context_, s.element)) return;
+void GridChecker::check_region(const State& s, const std::vector<Inside>& inside) {
+    const Rule* const rule = s.member->rule;
+    if (met_ == rule_of_.size() || rule_of_[met_++] != rule) {
+        fail(Law::split_repeats, "split() gives another rule when asked again in " + name(s.step));
     }
-    const Rule* rule = call_split(grid_, context_, s.element);
     if (rule == nullptr) {
-        if (!is_hidden(grid_, context_, s.element)) check_leaf(s, inside);
+        if (s.member->hidden != Hidden::wholly) check_leaf(s, inside);
         return;
     }
     std::vector<Corner> nodes(s.corner.begin(), s.corner.begin() + topology(s.shape).corners);
     for (std::size_t n = 0; n < rule->new_nodes.size(); ++n) make_node(*rule, n, nodes);
-    std::vector<Element> children(rule->children.size());
-    call_children(grid_, context_, s.element, std::span<Element>(children));
-    for (std::size_t k = 0; k < children.size(); ++k) {
-        const Child& child = rule->children[k];
-        State next;
-        next.element = children[k];
-        next.shape = child.shape;
-        next.step = steps_.size();
-        steps_.push_back({s.step, k});
+    Family& children = frame(s.level).children;
+    hierarchy_->enter(task_.get(), s.member->element, *rule, 0, nullptr, ~NodeMask{0}, children);
+    for (std::size_t k = 0; k < rule->children.size(); ++k) {
+        if (is_masked(children, k)) continue;
+        const State next = child_state(s, k, nodes);
         std::vector<Point> places;
-        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
-            next.corner[i] = nodes[child.corner[i]];
+        for (std::size_t i = 0; i < topology(next.shape).corners; ++i) {
             places.push_back(next.corner[i].position);
         }
-        const ClosedRegion region(child.shape, places);
+        const ClosedRegion region(next.shape, places);
         std::vector<Inside> in_child;
         std::copy_if(inside.begin(), inside.end(), std::back_inserter(in_child),
                      [&](const Inside& x) { return region.contains(x.at); });
@@ -139,8 +128,7 @@ void GridChecker<Grid, Field>::check_region(const State& s, const std::vector<In
 }
 
 /// The weights of a leaf's corners at the nodes in it, as far as these follow from stencils.
-template <class Grid, class Field>
-class GridChecker<Grid, Field>::LeafNodes {
+class GridChecker::LeafNodes {
 public:
     explicit LeafNodes(const State& leaf) : shape_{leaf.shape} {
         for (std::size_t k = 0; k < topology(shape_).corners; ++k) {
@@ -176,8 +164,7 @@ private:
     KeyTable<NodeKey, Weights> known_;  // by place
 };
 
-template <class Grid, class Field>
-void GridChecker<Grid, Field>::check_leaf(const State& s, const std::vector<Inside>& inside) {
+void GridChecker::check_leaf(const State& s, const std::vector<Inside>& inside) {
     const auto* const end = s.corner.begin() + topology(s.shape).corners;
     const auto hangs = [&](const Inside& x) {
         return std::none_of(s.corner.begin(), end,
@@ -193,15 +180,11 @@ void GridChecker<Grid, Field>::check_leaf(const State& s, const std::vector<Insi
 }
 
 /// \param interpolated whether its stencil gives the value that the leaf has there
-template <class Grid, class Field>
-void GridChecker<Grid, Field>::check_hanging_node(const State& leaf, const Made& made,
-                                                  bool interpolated) {
+void GridChecker::check_hanging_node(const State& leaf, const Made& made, bool interpolated) {
     const Node& node = *nodes_.find(made.place);
     const std::string who = "a node made by " + name(node.element) + " hangs on " + name(leaf.step);
-    if constexpr (requires { grid_.conforming(); }) {
-        if (grid_.conforming()) {
-            fail(Law::conforming, who + ", but the grid says that it is conforming");
-        }
+    if (hierarchy_->facts().conforming) {
+        fail(Law::conforming, who + ", but the grid says that it is conforming");
     }
     if (!interpolated) {
         fail(Law::hanging_parents,
@@ -209,7 +192,7 @@ void GridChecker<Grid, Field>::check_hanging_node(const State& leaf, const Made&
                  ", but its parents do not give it the value that it has there: refine both sides "
                  "of a face in the same order, or each in its own direction only");
     }
-    const bool grid_knows = offers(grid_, Feature::constrained);
+    const bool grid_knows = hierarchy_->offers(Feature::constrained);
     if (grid_knows && !node.constrained) {
         fail(Law::hanging_mask, who + ", but is not in the constrained mask");
     }
@@ -218,13 +201,12 @@ void GridChecker<Grid, Field>::check_hanging_node(const State& leaf, const Made&
                                        " at another place than the middle of an edge or face, and "
                                        "the grid does not offer 'constrained'");
     }
-    if (options_.hanging_values && node.deviates) {
+    if (options_->hanging_values && node.deviates) {
         fail(Law::hanging_value, who + ", but its value is not its interpolant");
     }
 }
 
-template <class Grid, class Field>
-void GridChecker<Grid, Field>::check_hanging() {
+void GridChecker::check_hanging() {
     probe_.finish();
     for (const Leaf& leaf : leaves_) probe_.probe_leaf(leaf.shape, leaf.keys);
     hanging_ = probe_.take();
