@@ -20,8 +20,8 @@ protected:
     ~BlockCounts() = default;
     BlockCounts(const BlockCounts&) = default;
     BlockCounts& operator=(const BlockCounts&) = default;
-    BlockCounts(BlockCounts&&) = default;
-    BlockCounts& operator=(BlockCounts&&) = default;
+    BlockCounts(BlockCounts&&) noexcept = default;
+    BlockCounts& operator=(BlockCounts&&) noexcept = default;
 };
 
 /// Draws level sets in the bisections below an element, walked in blocks, as the general walk does

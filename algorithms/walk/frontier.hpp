@@ -35,8 +35,8 @@ protected:
     ~TaskVisitor() = default;
     TaskVisitor(const TaskVisitor&) = default;
     TaskVisitor& operator=(const TaskVisitor&) = default;
-    TaskVisitor(TaskVisitor&&) = default;
-    TaskVisitor& operator=(TaskVisitor&&) = default;
+    TaskVisitor(TaskVisitor&&) noexcept = default;
+    TaskVisitor& operator=(TaskVisitor&&) noexcept = default;
 };
 
 template <class Real>

@@ -70,8 +70,8 @@ protected:
     ~Visitor() = default;
     Visitor(const Visitor&) = default;
     Visitor& operator=(const Visitor&) = default;
-    Visitor(Visitor&&) = default;
-    Visitor& operator=(Visitor&&) = default;
+    Visitor(Visitor&&) noexcept = default;
+    Visitor& operator=(Visitor&&) noexcept = default;
 };
 
 }  // namespace nestgrid::engine

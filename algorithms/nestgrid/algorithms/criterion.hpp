@@ -56,8 +56,8 @@ protected:
     Criterion() = default;
     Criterion(const Criterion&) = default;
     Criterion& operator=(const Criterion&) = default;
-    Criterion(Criterion&&) = default;
-    Criterion& operator=(Criterion&&) = default;
+    Criterion(Criterion&&) noexcept = default;
+    Criterion& operator=(Criterion&&) noexcept = default;
 };
 
 /// A number eta for every node, to be compared with a threshold.
@@ -82,8 +82,8 @@ protected:
     Indicator() = default;
     Indicator(const Indicator&) = default;
     Indicator& operator=(const Indicator&) = default;
-    Indicator(Indicator&&) = default;
-    Indicator& operator=(Indicator&&) = default;
+    Indicator(Indicator&&) noexcept = default;
+    Indicator& operator=(Indicator&&) noexcept = default;
 };
 
 /// S(x) = (eta(x) <= epsilon). The indicator must outlive the criterion.

@@ -30,8 +30,8 @@ protected:
     Executor() = default;
     Executor(const Executor&) = default;
     Executor& operator=(const Executor&) = default;
-    Executor(Executor&&) = default;
-    Executor& operator=(Executor&&) = default;
+    Executor(Executor&&) noexcept = default;
+    Executor& operator=(Executor&&) noexcept = default;
 };
 
 /// The calling thread alone.

@@ -62,8 +62,8 @@ protected:
     Bounds() = default;
     Bounds(const Bounds&) = default;
     Bounds& operator=(const Bounds&) = default;
-    Bounds(Bounds&&) = default;
-    Bounds& operator=(Bounds&&) = default;
+    Bounds(Bounds&&) noexcept = default;
+    Bounds& operator=(Bounds&&) noexcept = default;
 };
 
 /// How `stop` is handed from a node y to the nodes x that y depends on:
