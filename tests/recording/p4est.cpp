@@ -4,8 +4,7 @@
 // Forests of p4est and p8est, balanced and not.
 #include "p4est_samples.hpp"
 
-#include <nestgrid/adapters/p4est_balanced.hpp>
-#include <nestgrid/adapters/p4est_fields.hpp>
+#include <nestgrid/adapters/p4est.hpp>
 
 #include "options.hpp"
 #include "table_in_c.hpp"

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Nodal data on a triangulation of deal.II, read in place; included by dealii.hpp.
+// Nodal data on a triangulation of deal.II, read in place. Included at the end of dealii.hpp.
 #pragma once
-
-#include <nestgrid/adapters/dealii.hpp>
 
 namespace nestgrid {
 

@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Definitions of dealii.hpp.
+// Definitions of DealiiGrid. Included at the end of dealii.hpp.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
-
-#include <nestgrid/adapters/dealii.hpp>
 
 namespace nestgrid {
 

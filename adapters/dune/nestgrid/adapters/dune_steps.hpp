@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of DuneGrid; included by dune.hpp.
+// Definitions of DuneGrid. Included at the end of dune.hpp.
 #pragma once
-
-#include <nestgrid/adapters/dune.hpp>
 
 namespace nestgrid {
 

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The samples of a lattice as a field; included by lattice.hpp.
+// The samples of a lattice as a field. Included at the end of lattice.hpp.
 #pragma once
-
-#include <nestgrid/adapters/lattice.hpp>
 
 namespace nestgrid {
 

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rows of nodes of a lattice; included by lattice.hpp.
+// Rows of nodes of a lattice. Included at the end of lattice.hpp.
 #pragma once
 
 #include <limits>
-
-#include <nestgrid/adapters/lattice.hpp>
 
 namespace nestgrid {
 

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Forests of p4est with their lnodes, which tell what hangs; included by p4est.hpp.
+// Forests of p4est with their lnodes, which tell what hangs. Included at the end of p4est.hpp.
 #pragma once
 
-#include <nestgrid/adapters/p4est.hpp>
 #include <nestgrid/adapters/p4est_face_codes.hpp>
 
 namespace nestgrid {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Data on a forest of p4est, read in place; included by p4est.hpp.
+// Data on a forest of p4est, read in place. Included at the end of p4est.hpp.
 #pragma once
 
 #include <bit>
 
-#include <nestgrid/adapters/p4est.hpp>
 #include <nestgrid/adapters/p4est_face_codes.hpp>
 #include <nestgrid/detail/mean.hpp>
 

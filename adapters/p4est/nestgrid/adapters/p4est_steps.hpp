@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of P4estGrid; included by p4est.hpp.
+// Definitions of P4estGrid. Included at the end of p4est.hpp.
 #pragma once
 
 #include <algorithm>
 #include <span>
-
-#include <nestgrid/adapters/p4est.hpp>
 
 namespace nestgrid {
 

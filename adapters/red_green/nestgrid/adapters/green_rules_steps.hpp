@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of green_rules.hpp, at whose end this is included.
 #pragma once
 
 #include <bit>
 
-#include <nestgrid/adapters/green_rules.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One adaptation: unpack the hierarchy, coarsen, refine, close, write it anew.
+// One adaptation: unpack the hierarchy, coarsen, refine, close, write it anew. Included at the end
+// of stored_grid.hpp.
 #pragma once
 
 #include <deque>
 #include <utility>
 
 #include <nestgrid/adapters/hanging_mask.hpp>
-#include <nestgrid/adapters/stored_grid.hpp>
 
 namespace nestgrid::detail {
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of pattern.hpp, at whose end this is included.
 #pragma once
 
 #include <algorithm>
 #include <map>
 
-#include <nestgrid/adapters/pattern.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a file of a hierarchy must hold before anything is done with it.
+// What a file of a hierarchy must hold before anything is done with it. Included at the end of
+// stored_file_steps.hpp.
 #pragma once
 
 #include <bit>
-
-#include <nestgrid/adapters/stored_file_steps.hpp>
 
 namespace nestgrid::detail {
 

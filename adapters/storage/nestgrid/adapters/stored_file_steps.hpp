@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of stored_file.hpp, at whose end this is included.
 #pragma once
 
 #include <cmath>
@@ -7,8 +9,6 @@
 #include <fstream>
 
 #include <boost/crc.hpp>
-
-#include <nestgrid/adapters/stored_file.hpp>
 
 namespace nestgrid {
 

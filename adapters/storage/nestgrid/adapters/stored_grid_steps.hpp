@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of StoredGrid. Included at the end of stored_grid.hpp.
 #pragma once
 
 #include <bit>
-
-#include <nestgrid/adapters/stored_grid.hpp>
 
 namespace nestgrid {
 

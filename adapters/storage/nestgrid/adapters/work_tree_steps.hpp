@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of WorkTree. Included at the end of work_tree.hpp.
 #pragma once
-
-#include <nestgrid/adapters/work_tree.hpp>
 
 namespace nestgrid {
 

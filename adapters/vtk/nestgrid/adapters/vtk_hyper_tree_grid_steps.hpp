@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of HyperTreeGrid; included by vtk_hyper_tree_grid.hpp.
+// Definitions of HyperTreeGrid. Included at the end of vtk_hyper_tree_grid.hpp.
 #pragma once
-
-#include <nestgrid/adapters/vtk_hyper_tree_grid.hpp>
 
 namespace nestgrid {
 
