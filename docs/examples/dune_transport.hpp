@@ -71,8 +71,8 @@ struct Linear {
 
     Linear(const Grid& grid, const Element& e) {
         gradient[0] = 0;
-        for (unsigned i = 0; i < 4; ++i) {
-            vertex[i] = grid.leafIndexSet().subIndex(e, i, 3);
+        for (std::size_t i = 0; i < 4; ++i) {
+            vertex[i] = grid.leafIndexSet().subIndex(e, static_cast<int>(i), 3);
             if (i == 0) continue;
             Point axis(0);
             axis[i - 1] = 1;
@@ -147,7 +147,7 @@ inline void Transport::fix_boundary(Matrix& matrix, Vector& rhs) const {
             const auto corners = referenceElement(e.geometry());
             for (int k = 0; k < 3; ++k) {
                 const int corner = corners.subEntity(side.indexInInside(), 1, k, 3);
-                const std::size_t row = grid->leafIndexSet().subIndex(e, unsigned(corner), 3);
+                const std::size_t row = grid->leafIndexSet().subIndex(e, corner, 3);
                 matrix[row] = 0;
                 matrix[row][row] = 1;
                 rhs[row] = Exact(e.geometry().corner(corner)).value();
@@ -203,7 +203,7 @@ inline double Transport::curvature(const Element& e, const std::vector<Point>& g
     const Linear shape(*grid, e);
     Dune::FieldMatrix<double, 3, 3> second(0);
     for (std::size_t i = 0; i < 4; ++i) {
-        for (int d = 0; d < 3; ++d) {
+        for (std::size_t d = 0; d < 3; ++d) {
             second[d].axpy(gradients[shape.vertex[i]][d], shape.gradient[i]);
         }
     }

@@ -45,7 +45,7 @@ void set_handle(Handle& handle, const Element& element) {
         std::memcpy(handle.bytes, &element, sizeof(Element));
     } else {
         const Element* const at = &element;
-        std::memcpy(handle.bytes, &at, sizeof(at));
+        std::memcpy(handle.bytes, &at, sizeof(const void*));
     }
 }
 
@@ -57,7 +57,7 @@ const Element& element_of(const Handle& handle) {
         return *std::launder(reinterpret_cast<const Element*>(handle.bytes));
     } else {
         const Element* at;
-        std::memcpy(&at, handle.bytes, sizeof(at));
+        std::memcpy(&at, handle.bytes, sizeof(const void*));
         return *at;
     }
 }

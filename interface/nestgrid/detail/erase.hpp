@@ -132,7 +132,7 @@ public:
     NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                    Real* values, NodeMask wanted, Family& family) const override {
         return with(task, [&](auto& context) {
-            const Element& e = element_of<Element>(element);
+            const auto& e = element_of<Element>(element);
             NodeMask missing = 0;
             if (which != 0) {
                 missing =
@@ -164,7 +164,7 @@ public:
     void corners(Task* task, const Handle& element, std::size_t count, NodeKey* keys,
                  Point* positions, unsigned* boundary) const override {
         with(task, [&](auto& context) {
-            const Element& e = element_of<Element>(element);
+            const auto& e = element_of<Element>(element);
             if constexpr (may_offer<Grid>(Feature::own_keys)) {
                 if (keys != nullptr) {
                     call_corner_keys(*grid_, context, e, std::span<NodeKey>(keys, count));

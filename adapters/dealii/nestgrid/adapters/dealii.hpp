@@ -56,7 +56,7 @@ public:
     }
     void children(const Element& e, std::span<Element> out) const {
         const Cell c = cell(e);
-        for (unsigned k = 0; k < out.size(); ++k) out[k] = {e.level + 1, c->child_index(int(k))};
+        for (unsigned k = 0; k < out.size(); ++k) out[k] = {e.level + 1, c->child_index(k)};
     }
 
     std::size_t node_count() const { return triangulation_->n_vertices(); }

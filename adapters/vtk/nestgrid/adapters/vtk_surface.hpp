@@ -127,7 +127,7 @@ vtkSmartPointer<vtkPolyData> share_poly_data(Surface<dimension>& surface) {
     const auto share = [](double* of, std::size_t tuples, std::size_t components) {
         const vtkNew<vtkDoubleArray> array;
         array->SetNumberOfComponents(static_cast<int>(components));
-        array->SetArray(of, static_cast<vtkIdType>(tuples * components), 1);
+        array->SetArray(of, static_cast<vtkIdType>(tuples) * static_cast<vtkIdType>(components), 1);
         return vtkSmartPointer<vtkDoubleArray>(array);
     };
     const std::size_t vertices = surface.vertices.size();
