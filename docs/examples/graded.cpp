@@ -78,8 +78,9 @@ public:
 
 private:
     static int greatest_cuts(int column) {
+        const int row = column / columns;
         const double x = (column % columns + 0.5) / columns - 0.5;
-        const double y = (column / columns + 0.5) / columns - 0.5;
+        const double y = (row + 0.5) / columns - 0.5;
         return std::hypot(x, y) < 0.3 ? 6 : 4;
     }
     Rule rule_ = cut_near_the_wall();

@@ -191,7 +191,7 @@ public:
 template <std::derived_from<Criterion> S>
 class Unsaturated final : public Criterion {
 public:
-    explicit Unsaturated(const S& criterion) : criterion_{criterion} {}
+    explicit Unsaturated(S criterion) : criterion_{std::move(criterion)} {}
     NodeMask holds(const NewNodes& nodes) const override { return criterion_.holds(nodes); }
     bool blends() const override { return criterion_.blends(); }
     void weights(const NewNodes& nodes, std::span<float> s) const override {

@@ -95,7 +95,7 @@ public:
     bool conforming() const { return Traits::conforming; }
     /// From the number of elements and vertices: it does not notice that as many vanished as came.
     std::uint64_t epoch() const {
-        NodeKey sum = static_cast<NodeKey>(grid_->maxLevel());
+        auto sum = static_cast<NodeKey>(grid_->maxLevel());
         for (const int codimension : {0, dimension}) {
             sum = detail::mix(sum + static_cast<NodeKey>(grid_->leafIndexSet().size(codimension)));
         }
