@@ -72,6 +72,7 @@ struct CheckOptions {
 
 /// The first violation of the contract, or nothing. Elements are named by the number of the coarse
 /// element and those of the children on the way down, as in "element 3/0/1".
+/// \throw GridError where a rule has more children than the grid's max_children
 std::optional<GridViolation> check_hierarchy(const Hierarchy<float>& hierarchy,
                                              const CheckOptions& options = {});
 std::optional<GridViolation> check_hierarchy(const Hierarchy<double>& hierarchy,

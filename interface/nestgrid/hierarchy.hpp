@@ -92,14 +92,13 @@ struct HierarchyFacts {
 
     bool offers(Feature feature) const { return (features & static_cast<unsigned>(feature)) != 0; }
     /// \throw InvalidInput where the dimension is another one
-    void require_dimension(int wanted) const {
-        if (dimension == wanted) return;
-        throw InvalidInput("the hierarchy has dimension " + std::to_string(dimension) + ", not " +
-                           std::to_string(wanted));
-    }
+    void require_dimension(int wanted) const;
 };
 
 namespace detail {
+
+/// \throw GridError that names the rule, which has more children than the grid promises
+[[noreturn]] void throw_too_many_children(const Rule& rule, std::size_t most);
 
 template <int dim, class Real>
 class ErasedBisectionVisitor;

@@ -120,8 +120,8 @@ inline double evaluate_leaves(const std::vector<float>& values, const Samples& n
     }
     std::sort(fraction.rbegin(), fraction.rend());
     const auto value = [&] {
-        const int at = corner[0] + n[0] * (corner[1] + n[1] * corner[2]);
-        return static_cast<double>(values[static_cast<std::size_t>(at)]);
+        const int sample = corner[0] + n[0] * (corner[1] + n[1] * corner[2]);
+        return static_cast<double>(values[static_cast<std::size_t>(sample)]);
     };
     double result = (1 - fraction[0].first) * value();
     for (std::size_t k = 0; k < 3; ++k) {

@@ -358,6 +358,16 @@ TEST(Promises, OfOneShapeAreKept) {
     EXPECT_THROW(engine::count_levels(engine::Walk<float>(hierarchy, {})), GridError);
 }
 
+struct OneChild : Square<Shape::point> {
+    static constexpr int max_children = 1;
+};
+
+TEST(Promises, OfFewChildrenAreKept) {
+    const auto check = [] { return check_grid(OneChild{}, ZeroField<OneChild>{}); };
+    EXPECT_EQ(refusal<GridError>(check),
+              "the rule 'cut' has 2 children, but the grid's max_children is 1");
+}
+
 /// What walks a grid with this field says of its keys; each takes node_count() for a promise.
 void expect_keys_refused(const MutantGrid<3>& grid, const MutantField<3>& field) {
     const char* const sentence = "own keys must lie below";

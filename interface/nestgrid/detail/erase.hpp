@@ -140,9 +140,10 @@ public:
                                     std::span<Real>(values, rule.new_nodes.size() * components_));
             }
             const std::size_t count = rule.children.size();
-            if (count > child_capacity<Grid>()) throw_too_many_children(rule);
+            constexpr std::size_t most = child_capacity<Grid>();
+            if (count > most) throw_too_many_children(rule, most);
             family.begin(count);
-            std::array<Element, fits_handle<Element> ? child_capacity<Grid>() : 1> on_stack;
+            std::array<Element, fits_handle<Element> ? most : 1> on_stack;
             std::span<Element> children = places(family, count);
             if (children.empty()) children = std::span(on_stack).first(count);
             call_children(*grid_, context, e, children);
@@ -271,12 +272,6 @@ private:
         }
         if constexpr (may_know_blocks_) facts.knows_blocks = knows_blocks(grid, field, facts);
         return facts;
-    }
-
-    [[noreturn]] static void throw_too_many_children(const Rule& rule) {
-        throw GridError("the rule '" + rule.name + "' has " + std::to_string(rule.children.size()) +
-                        " children, but the grid's max_children is " +
-                        std::to_string(child_capacity<Grid>()));
     }
 
     /// Where the elements of a family are kept that do not fit into handles; else nothing.

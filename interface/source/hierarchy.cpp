@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/hierarchy.hpp>
+
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
+
+void HierarchyFacts::require_dimension(int wanted) const {
+    if (dimension == wanted) return;
+    throw InvalidInput("the hierarchy has dimension " + std::to_string(dimension) + ", not " +
+                       std::to_string(wanted));
+}
+
+namespace detail {
+
+void throw_too_many_children(const Rule& rule, std::size_t most) {
+    throw GridError("the rule '" + rule.name + "' has " + std::to_string(rule.children.size()) +
+                    " children, but the grid's max_children is " + std::to_string(most));
+}
+
+}  // namespace detail
+
+}  // namespace nestgrid
