@@ -9,7 +9,7 @@
 #include <contours/level.hpp>
 #include <indicators/packed_entries.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
-#include <patches/block_glance.hpp>
+#include <patches/patch_glance.hpp>
 #include <walk/criterion_question.hpp>
 
 namespace nestgrid::engine {
@@ -35,9 +35,9 @@ public:
     /// Whether elements may stop without conforming to their neighbours.
     bool may_stop_apart() const;
 
-    /// Whether the walk in blocks may ask: the criterion looks at keys and levels alone, and
+    /// Whether the walk in patches may ask: the criterion looks at keys and levels alone, and
     /// answers yes or no.
-    bool fits_blocks() const { return asks_for_masks_; }
+    bool fits_patches() const { return asks_for_masks_; }
 
     /// \param caps whether the element is of interest also where it is wholly inside
     Sight look(const View& view, const Split& split, bool caps, CriterionQuestion& question) const;
@@ -54,7 +54,7 @@ public:
                                       : bounds_->offset_bound(node);
     }
 
-    // What the walk in blocks asks.
+    // What the walk in patches asks.
     struct Glance {
         Visit visit;
         Real bound;
@@ -69,7 +69,7 @@ public:
     NESTGRID_INLINE void expect(const NodeKey* nodes, std::size_t rows) const {
         if (entries_ == nullptr) return;
         for (std::size_t row = 0; row < rows; ++row) {
-            prefetch(*entries_, std::span<const NodeKey>(nodes + row * most_blocks, pack));
+            prefetch(*entries_, std::span<const NodeKey>(nodes + row * most_patches, pack));
         }
     }
 

@@ -59,8 +59,8 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     walks_.begin(records ? Pass::record : Pass::only,
                  records ? search.bounds().finest_level() : -1);
     at_hand_.plainly = draws_plainly();
-    bisects_ = at_hand_.plainly && search.fits_blocks() && !records && !surfaces_.empty() &&
-               walk_->hierarchy().facts().knows_blocks;
+    bisects_ = at_hand_.plainly && search.fits_patches() && !records && !surfaces_.empty() &&
+               walk_->hierarchy().facts().knows_patches;
     at_hand_.loads_keys =
         options_->normals || options_->cap || (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
@@ -182,12 +182,12 @@ void LevelSet<dimension, Real>::report_progress(std::uint64_t calls, std::uint64
     if (!options_->progress(counts)) throw Cancelled{};
 }
 
-/// Simplices that conform are walked in blocks, where nothing but triangles is asked for.
+/// Simplices that conform are walked in patches, where nothing but triangles is asked for.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::takes(const View& view) {
     if (!bisects_) return false;
-    const BlockTarget<dimension, Real> target{search_->levels(), surfaces_, &tally_, &deepest_};
-    draw_in_blocks(*walk_, view, *search_, target, *this);
+    const PatchTarget<dimension, Real> target{search_->levels(), surfaces_, &tally_, &deepest_};
+    draw_in_patches(*walk_, view, *search_, target, *this);
     return true;
 }
 

@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include <levels/block_level_set.hpp>
 #include <levels/cap_contour.hpp>
 #include <levels/level_tasks.hpp>
 #include <levels/normals.hpp>
+#include <levels/patch_level_set.hpp>
 #include <levels/transitions.hpp>
 #include <levels/two_walks.hpp>
 #include <walk/frontier.hpp>
@@ -22,7 +22,7 @@ struct Cancelled {};
 
 /// Draws several levels in one traversal; each has a builder of its own.
 template <int dimension, class Real>
-class LevelSet final : public TaskVisitor<Real>, private BlockCounts {
+class LevelSet final : public TaskVisitor<Real>, private PatchCounts {
 public:
     using View = ElementView<Real>;
     using Builder = SurfaceBuilder<dimension>;
@@ -123,7 +123,7 @@ private:
     TraversalCounts counts_;
     TraversalCounts counts_of_first_walk_;
     int deepest_ = 0;
-    bool bisects_ = false;  // bisections are walked in blocks
+    bool bisects_ = false;  // bisections are walked in patches
     LevelTasks<dimension, Real> tasks_;
 };
 

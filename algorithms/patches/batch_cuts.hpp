@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where edges between nodes of a batch of blocks are cut by a level set.
+// Where edges between nodes of a batch of patches are cut by a level set.
 #pragma once
 
 #include <algorithm>

@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The traversal of bisections known at compile time: elements stay in registers, and where the grid
-// says so, whole blocks of them are looked at together (block_walk.hpp).
+// says so, whole patches of them are looked at together (patch_walk.hpp).
 //
 // Invariant: elements are extracted in the order of the plain traversal; a visitor may be shown
-// elements of a block below one that it skips or stops at, and those answers are not used.
+// elements of a patch below one that it skips or stops at, and those answers are not used.
 #pragma once
 
 #include <algorithm>
 #include <utility>
 
-#include <patches/block_walk.hpp>
+#include <patches/patch_walk.hpp>
 
 namespace nestgrid {
 
@@ -19,17 +19,17 @@ namespace nestgrid {
 ///     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside)
 ///             {Visit visit; Real bound;} of an element that is split; lo ... hi: its values
 ///     bool glance_at_leaf(Real lo, Real hi)      whether to extract it
-///     unsigned extract(const BlockBatch&, const BatchSelection&)
-///             elements beside blocks
+///     unsigned extract(const PatchBatch&, const BatchSelection&)
+///             elements beside patches
 ///     void tick(looked_at, visited)              now and then
-/// and, to be shown blocks, what BlockWalk asks for.
+/// and, to be shown patches, what PatchWalk asks for.
 /// \tparam whole  what the grid says
 template <class Grid, class Field, class Visitor, bool whole>
 class BisectionWalk {
 public:
     using Real = typename Field::value_type;
     using Node = typename Grid::Node;
-    using Batch = BlockBatch<Grid, Real>;
+    using Batch = PatchBatch<Grid, Real>;
     static constexpr std::size_t corners = Batch::pattern.corners;
 
     BisectionWalk(const Grid& grid, const Field& field, Visitor& visitor)
@@ -48,11 +48,11 @@ public:
 
 private:
     static constexpr std::size_t last_ = Grid::bisections.size() - 1;
-    static constexpr bool in_blocks_ = [] {
-        if constexpr ((whole || TellsWhereWhole<Grid>)&&KnowsBlocks<Grid> && Packable<Real>) {
+    static constexpr bool in_patches_ = [] {
+        if constexpr ((whole || TellsWhereWhole<Grid>)&&KnowsPatches<Grid> && Packable<Real>) {
             return requires(Visitor & v, const PackedElements<Real>& e) { v.glance(e); }
-            || requires(Visitor & v, const PackedBlocks<Real>& b) {
-                v.template see<BlockParts::ends>(b);
+            || requires(Visitor & v, const PackedPatches<Real>& b) {
+                v.template see<PatchParts::ends>(b);
             };
         }
         return false;
@@ -77,7 +77,7 @@ private:
     template <std::size_t number>
     void extract(const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound);
     void extract_pending();
-    bool may_walk_blocks(const std::array<Node, 4>& n) const {
+    bool may_walk_patches(const std::array<Node, 4>& n) const {
         if constexpr (whole) {
             return true;
         } else {
@@ -120,14 +120,14 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
         if (visitor_->glance_at_leaf(lo, hi)) extract<number>(n, u, path, Real(0));
         return;
     }
-    if constexpr (in_blocks_ && number == last_) {
-        if (may_walk_blocks(n)) {
+    if constexpr (in_patches_ && number == last_) {
+        if (may_walk_patches(n)) {
             extract_pending();
-            BlockWalk<Grid, Field, Visitor> blocks(*grid_, *field_, *visitor_, count_);
-            return blocks.run(n, u, path);
+            PatchWalk<Grid, Field, Visitor> patches(*grid_, *field_, *visitor_, count_);
+            return patches.run(n, u, path);
         }
     }
-    if constexpr (!in_blocks_ || !whole || number != last_) {
+    if constexpr (!in_patches_ || !whole || number != last_) {
         const Node z = grid_->middle(n[rule.parent[0]], n[rule.parent[1]]);
         bool outside = false;
         if constexpr (!whole && may_offer<Grid>(Feature::outside)) {

@@ -91,8 +91,8 @@ private:
         const Node z = known_.middle(a, b);
         check_new_node(e, z);
         if constexpr (!AnswersInRows<Known>) check_packs(a, b, z);
-        if constexpr (KnowsBlocks<Known>) {
-            if (number + 1 == Known::bisections.size()) check_block(e);
+        if constexpr (KnowsPatches<Known>) {
+            if (number + 1 == Known::bisections.size()) check_patch(e);
         }
         check_children(e, *rule, bisection, n, z);
     }
@@ -122,11 +122,11 @@ private:
         demand(values_.template value_at<true>(z, key) == value, "the value at the new node");
     }
 
-    void check_block(const Element& e) {
+    void check_patch(const Element& e) {
         std::size_t split = 0;
-        const std::size_t ends = count_block_ends(e, Known::block_height, split);
-        demand(ends == std::size_t{1} << Known::block_height && (split == 0 || split == ends),
-               "which elements of a block are split");
+        const std::size_t ends = count_patch_ends(e, Known::patch_height, split);
+        demand(ends == std::size_t{1} << Known::patch_height && (split == 0 || split == ends),
+               "which elements of a patch are split");
     }
 
     void check_children(const Element& e, const Rule& rule, const KnownBisection& bisection,
@@ -167,7 +167,7 @@ private:
                 }
             });
         }
-        if constexpr (KnowsBlocks<Known>) {
+        if constexpr (KnowsPatches<Known>) {
             const NodeKey key = known_.key(z);
             demand(known_.middle_key(known_.key(a), known_.key(b)) == key, "the key between two");
             demand(halves_packs(known_.key(a), known_.key(b), key,
@@ -214,7 +214,7 @@ private:
     }
 
     /// How many elements there are so many levels below one, and how many of them are split.
-    std::size_t count_block_ends(const Element& e, std::size_t height, std::size_t& split) {
+    std::size_t count_patch_ends(const Element& e, std::size_t height, std::size_t& split) {
         const Rule* rule = detail::call_split(grid_, context_, e);
         if (height == 0) {
             split += rule != nullptr ? 1U : 0U;
@@ -224,7 +224,7 @@ private:
         std::array<Element, 2> children;
         detail::call_children(grid_, context_, e, std::span<Element>(children));
         std::size_t count = 0;
-        for (const Element& child : children) count += count_block_ends(child, height - 1, split);
+        for (const Element& child : children) count += count_patch_ends(child, height - 1, split);
         return count;
     }
 

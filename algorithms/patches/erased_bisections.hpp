@@ -14,11 +14,11 @@
 
 namespace nestgrid::detail {
 
-/// A BlockBatch of maubach_block.
+/// A PatchBatch of maubach_patch.
 template <int dim, class Real>
-class ErasedBlocks {
+class ErasedPatches {
 public:
-    static constexpr const auto& pattern = maubach_block<dim>;
+    static constexpr const auto& pattern = maubach_patch<dim>;
 
     virtual Point position(std::size_t place) const = 0;
     virtual void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const = 0;
@@ -35,7 +35,7 @@ public:
     struct Rows {
         const T* all;
 
-        const T* operator[](std::size_t row) const { return all + row * most_blocks; }
+        const T* operator[](std::size_t row) const { return all + row * most_patches; }
     };
     const Rows<NodeKey> keys;
     const Rows<Real> values;
@@ -50,7 +50,7 @@ public:
 
 protected:
     template <class Batch>
-    explicit ErasedBlocks(const Batch& batch)
+    explicit ErasedPatches(const Batch& batch)
         : level{batch.level},
           element_count{batch.element_count},
           keys{batch.keys[0]},
@@ -63,7 +63,7 @@ protected:
           stops{batch.stops.data()},
           element_levels{batch.element_levels.data()},
           bounds{batch.bounds[0].data()} {}
-    ~ErasedBlocks() = default;
+    ~ErasedPatches() = default;
 };
 
 template <int dim, class Real>
@@ -79,13 +79,13 @@ public:
     virtual bool glance_at_leaf(Real lo, Real hi) = 0;
     virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
-    // Of blocks of maubach_block.
-    virtual PackedSight<Real> see_within(const PackedBlocks<Real>& blocks) = 0;
-    virtual PackedSight<Real> see_ends(const PackedBlocks<Real>& blocks) = 0;
+    // Of patches of maubach_patch.
+    virtual PackedSight<Real> see_within(const PackedPatches<Real>& patches) = 0;
+    virtual PackedSight<Real> see_ends(const PackedPatches<Real>& patches) = 0;
     virtual void expect(const NodeKey* nodes, std::size_t rows) const = 0;
     virtual bool names_edges() const = 0;
     virtual void begin_subtrees(std::uint32_t numbers) = 0;
-    virtual unsigned extract(const ErasedBlocks<dim, Real>& blocks,
+    virtual unsigned extract(const ErasedPatches<dim, Real>& patches,
                              const BatchSelection& selection) = 0;
 
 protected:
@@ -94,7 +94,7 @@ protected:
 };
 
 /// The grid's side.
-template <HasMaubachBlocks Grid, class Real>
+template <HasMaubachPatches Grid, class Real>
 class BisectionForwarder {
     static constexpr int dim = Grid::dimension;
 
@@ -109,20 +109,20 @@ public:
     void tick(std::uint64_t looked_at, std::uint64_t visited) { to_->tick(looked_at, visited); }
     bool names_edges() const { return to_->names_edges(); }
     void begin_subtrees(std::uint32_t numbers) { to_->begin_subtrees(numbers); }
-    template <BlockParts which>
-    PackedSight<Real> see(const PackedBlocks<Real>& blocks) {
-        return which == BlockParts::ends ? to_->see_ends(blocks) : to_->see_within(blocks);
+    template <PatchParts which>
+    PackedSight<Real> see(const PackedPatches<Real>& patches) {
+        return which == PatchParts::ends ? to_->see_ends(patches) : to_->see_within(patches);
     }
     void expect(const NodeKey* nodes, std::size_t rows) const { to_->expect(nodes, rows); }
     template <class Batch>
     unsigned extract(const Batch& batch, const BatchSelection& selection) {
-        return to_->extract(Blocks<Batch>(batch), selection);
+        return to_->extract(Patches<Batch>(batch), selection);
     }
 
 private:
     template <class Batch>
-    struct Blocks final : ErasedBlocks<dim, Real> {
-        explicit Blocks(const Batch& batch) : ErasedBlocks<dim, Real>(batch), of{&batch} {}
+    struct Patches final : ErasedPatches<dim, Real> {
+        explicit Patches(const Batch& batch) : ErasedPatches<dim, Real>(batch), of{&batch} {}
 
         Point position(std::size_t place) const override { return of->position(place); }
         void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const override {

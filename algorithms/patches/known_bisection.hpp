@@ -26,7 +26,7 @@
 //     template <bool whole> value_type value_at(Node, NodeKey)
 // Nothing hangs in such a grid, and it knows keys, positions and boundary faces by heart. It may
 // also offer
-//     static constexpr std::size_t block_height        2 or 3
+//     static constexpr std::size_t patch_height        2 or 3
 //     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two; likewise
 //     bool whole(const std::array<Node, dimension + 1>& nodes)
 //                                                      of a grid that is not whole(): that nothing
@@ -34,7 +34,7 @@
 //                                                      outside, nor a node of it
 // which says that an element split by the last of the bisections is split that many times over,
 // into elements of the last bisection again, of which either all are split or none; then those are
-// looked at together (block_walk.hpp), where they are whole. Where each question is a call, as
+// looked at together (patch_walk.hpp), where they are whole. Where each question is a call, as
 // through a table, it offers answers in rows instead of middle_key(), and its field values:
 //     void middles(span<const Node> a, span<const Node> b, span<Node> out)
 //     void keys(span<const Node>, span<NodeKey> out)
@@ -97,8 +97,8 @@ concept TellsWhereWhole = requires(
 };
 
 template <class Grid>
-concept KnowsBlocks = requires(const Grid& grid) {
-    requires Grid::block_height == 2 || Grid::block_height == 3;
+concept KnowsPatches = requires(const Grid& grid) {
+    requires Grid::patch_height == 2 || Grid::patch_height == 3;
     requires AnswersInRows<Grid> || requires {
         { grid.middle_key(NodeKey{}, NodeKey{}) } -> std::same_as<NodeKey>;
     };

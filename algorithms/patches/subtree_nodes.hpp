@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a walk of blocks (block_walk.hpp) tells of nodes in the subtrees it passes through: on which
-// of their faces they lie, and a number, such that the sum of two tells one edge from another. So
-// who names edges needs a table of keys only for those that elements outside a subtree may have.
+// What a walk of patches (patch_walk.hpp) tells of nodes in the subtrees it passes through: on
+// which of their faces they lie, and a number, such that the sum of two tells one edge from
+// another. So who names edges needs a table of keys only for those that elements outside a subtree
+// may have.
 //
 // The corners of a subtree have barycentric coordinates, and so has every node: integers, if its
 // edges are measured in the shortest that there can be. Edges of a conforming mesh have different
@@ -16,15 +17,15 @@
 #include <cstdint>
 
 #include <nestgrid/detail/pack.hpp>
-#include <patches/bisection_block.hpp>
+#include <patches/bisection_patch.hpp>
 
 namespace nestgrid {
 
-/// How many blocks are walked side by side, and so how many subtrees.
-inline constexpr std::size_t most_blocks = 32;
+/// How many patches are walked side by side, and so how many subtrees.
+inline constexpr std::size_t most_patches = 32;
 
 /// From bit 0 the faces of the subtree the node lies on, one bit each; from bit 4 those of the
-/// element with which the walk of blocks began; from bit 8 its number.
+/// element with which the walk of patches began; from bit 8 its number.
 using SubtreeNode = std::uint32_t;
 
 inline constexpr SubtreeNode root_faces = 0xF0U;  ///< the latter
@@ -32,7 +33,7 @@ inline constexpr SubtreeNode root_faces = 0xF0U;  ///< the latter
 /// Whether no element outside the root has the edge between two.
 constexpr bool is_within_root(SubtreeNode a, SubtreeNode b) { return (a & b & root_faces) == 0; }
 
-/// \tparam pattern of the blocks
+/// \tparam pattern of the patches
 template <const auto& pattern>
 class SubtreeNodes {
     static constexpr std::size_t dimension_ = pattern.corners - 1;
@@ -42,7 +43,7 @@ class SubtreeNodes {
     static constexpr SubtreeNode faces_at(std::size_t corner) {
         return ((1U << pattern.corners) - 1) & ~(1U << corner);
     }
-    /// Into how many parts a block divides the length of an edge, the shortest one counts.
+    /// Into how many parts a patch divides the length of an edge, the shortest one counts.
     static constexpr std::uint32_t divisions_ = [] {
         constexpr std::uint32_t whole = 1U << pattern.height;
         std::array<std::array<std::uint32_t, pattern.corners>, pattern.most_nodes> coordinates{};
@@ -63,7 +64,7 @@ class SubtreeNodes {
     }();
 
 public:
-    /// How many blocks high a subtree is. Three of tetrahedra have 512 leaves, of whose edges half
+    /// How many patches high a subtree is. Three of tetrahedra have 512 leaves, of whose edges half
     /// lie inside.
     static constexpr int height = divisions_ == 2 ? 3 : 1;
 
@@ -86,13 +87,13 @@ public:
     /// Of an edge with an end that is in no subtree.
     static constexpr std::uint32_t no_number = 0;
     /// Of nodes above or below the subtrees.
-    static constexpr SubtreeNode beyond = edge_numbers(most_blocks) << number_at_;
+    static constexpr SubtreeNode beyond = edge_numbers(most_patches) << number_at_;
     /// What is in no subtree and in no root.
     static constexpr SubtreeNode unknown = beyond | faces_;
 
     static constexpr std::uint32_t edge_number(SubtreeNode a, SubtreeNode b) {
         const std::uint32_t sum = (a >> number_at_) + (b >> number_at_);
-        return sum < edge_numbers(most_blocks) ? sum : no_number;
+        return sum < edge_numbers(most_patches) ? sum : no_number;
     }
     /// Whether it has one, and no element outside the subtree has the edge.
     static constexpr bool is_inside(SubtreeNode a, SubtreeNode b) {

@@ -28,7 +28,7 @@ public:
     static constexpr Node no_node = Rows::no_node;
     static constexpr int dimension = dim;
     static constexpr auto bisections = maubach_bisections<dim>();
-    static constexpr std::size_t block_height = dim;
+    static constexpr std::size_t patch_height = dim;
 
     explicit ToldBisections(const Hierarchy<Real>& hierarchy, Task* task)
         : hierarchy_{&hierarchy}, rows_{hierarchy.bisection_rows()}, task_{task} {
@@ -136,7 +136,7 @@ private:
     const detail::BisectionRows<Real>* rows_;
 };
 
-/// Walks the bisections below an element in blocks, where facts().knows_blocks: by the rows that
+/// Walks the bisections below an element in patches, where facts().knows_patches: by the rows that
 /// the hierarchy tells, or else by its own bisect().
 /// \throw GridError for an element told with a tag that does not exist
 template <int dim, class Real>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A table from edges to vertices, by the numbers that edges have within the subtrees of the current
-// walk in blocks (subtree_nodes.hpp). Lookups are branch-free: no key is compared.
+// walk in patches (subtree_nodes.hpp). Lookups are branch-free: no key is compared.
 //
 // Invariant: entry_[e] is the place of edge e in the lists, or none_, which is greater than any
 // place.

@@ -86,7 +86,7 @@ struct HierarchyFacts {
     bool conforming = false;            ///< no node hangs
     bool knows_stars = false;           ///< star_rows() and row_values() work
     bool knows_star_positions = false;  ///< star_rows() and node_position() work
-    bool knows_blocks = false;          ///< bisection_rows() or bisect() work
+    bool knows_patches = false;         ///< bisection_rows() or bisect() work
     bool fills_rows = false;            ///< every node is in a star row
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
 
@@ -183,8 +183,8 @@ public:
 
     /// The bisections of a grid that tells them in rows; else null.
     virtual const detail::BisectionRows<Real>* bisection_rows() const { return nullptr; }
-    /// Walks the bisections below an element in blocks, where facts().knows_blocks and there are no
-    /// rows.
+    /// Walks the bisections below an element in patches, where facts().knows_patches and there are
+    /// no rows.
     virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
                         int orientation, detail::ErasedBisectionVisitor<2, Real>& visitor) const;
     virtual void bisect(Task* task, const Handle& element, const Real* values, int level,

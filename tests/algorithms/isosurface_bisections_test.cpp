@@ -15,7 +15,7 @@
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
 #include "table_in_c.hpp"
-#include "walked_in_blocks.hpp"
+#include "walked_in_patches.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -33,15 +33,15 @@ struct Unknown : LatticeBisection<dim> {
 static_assert(KnowsBisections<LatticeBisection<3>, LatticeField<LatticeBisection<3>, float>>);
 static_assert(!KnowsBisections<Unknown<3>, LatticeField<Unknown<3>, float>>);
 
-/// The same grid, whose bisections are not known to come in blocks.
+/// The same grid, whose bisections are not known to come in patches.
 template <int dim>
-struct Unblocked : LatticeBisection<dim> {
+struct Unpatched : LatticeBisection<dim> {
     using LatticeBisection<dim>::LatticeBisection;
-    static constexpr Nothing block_height{};
+    static constexpr Nothing patch_height{};
 };
-static_assert(KnowsBisections<Unblocked<3>, LatticeField<Unblocked<3>, float>>);
-static_assert(KnowsBlocks<LatticeBisection<3>> && !KnowsBlocks<Unblocked<3>>);
-static_assert(HasMaubachBlocks<LatticeBisection<2>> && HasMaubachBlocks<LatticeBisection<3>>);
+static_assert(KnowsBisections<Unpatched<3>, LatticeField<Unpatched<3>, float>>);
+static_assert(KnowsPatches<LatticeBisection<3>> && !KnowsPatches<Unpatched<3>>);
+static_assert(HasMaubachPatches<LatticeBisection<2>> && HasMaubachPatches<LatticeBisection<3>>);
 
 template <int dim, class Sample>
 void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vector<Sample>& samples,
@@ -50,11 +50,11 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
     const Unknown<dim> unknown(geometry);
     const LatticeField known_field(known, std::span<const Sample>(samples));
     const LatticeField unknown_field(unknown, std::span<const Sample>(samples));
-    const Unblocked<dim> unblocked(geometry);
-    const LatticeField unblocked_field(unblocked, std::span<const Sample>(samples));
+    const Unpatched<dim> unpatched(geometry);
+    const LatticeField unpatched_field(unpatched, std::span<const Sample>(samples));
     const BehindTables tables(known, known_field);
-    EXPECT_TRUE(erase(known, known_field).facts().knows_blocks);
-    EXPECT_FALSE(erase(unknown, unknown_field).facts().knows_blocks);
+    EXPECT_TRUE(erase(known, known_field).facts().knows_patches);
+    EXPECT_FALSE(erase(unknown, unknown_field).facts().knows_patches);
     const HierarchicalIndicator indicator(known, known_field);
     const HierarchicalIndicator by_sweeps(*tables.hierarchy);
     for (NodeKey node = 0; node < known.node_count(); ++node) {
@@ -71,7 +71,7 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
             const auto a = draw(known, known_field, criterion);
             const auto b = draw(unknown, unknown_field, criterion);
             const auto c = isosurfaces<dim>(*tables.hierarchy, isovalues, criterion, indicator);
-            const auto d = draw(unblocked, unblocked_field, criterion);
+            const auto d = draw(unpatched, unpatched_field, criterion);
             for (std::size_t i = 0; i < a.size(); ++i) {
                 expect_same(a[i], b[i]);
                 expect_same(a[i], c[i]);
@@ -111,7 +111,7 @@ enum class Mistake {
     node,
     position,
     key,
-    block,
+    patch,
     nodes,
     keys,
     positions,
@@ -164,7 +164,7 @@ struct Mistaken : LatticeBisection<3> {
         return mistake == Mistake::whole || LatticeBisection<3>::whole(n);
     }
     const Rule* split(const Element& e) const {
-        return mistake == Mistake::block && e.tag == 2 ? nullptr : LatticeBisection<3>::split(e);
+        return mistake == Mistake::patch && e.tag == 2 ? nullptr : LatticeBisection<3>::split(e);
     }
 };
 
@@ -186,14 +186,14 @@ TEST(KnownBisections, AreCheckedAgainstTheOperationsTheySpeakOf) {
     EXPECT_NE(complaint<Mistake::node>().find("the new node"), std::string::npos);
     EXPECT_NE(complaint<Mistake::position>().find("the position"), std::string::npos);
     EXPECT_NE(complaint<Mistake::key>().find("the key between"), std::string::npos);
-    EXPECT_NE(complaint<Mistake::block>().find("of a block"), std::string::npos);
+    EXPECT_NE(complaint<Mistake::patch>().find("of a patch"), std::string::npos);
     EXPECT_NE(complaint<Mistake::nodes>().find("pack of nodes"), std::string::npos);
     EXPECT_NE(complaint<Mistake::keys>().find("pack of keys"), std::string::npos);
     EXPECT_NE(complaint<Mistake::positions>().find("position of a pack"), std::string::npos);
     EXPECT_NE(complaint<Mistake::whole>().find("what is whole"), std::string::npos);
 }
 
-/// Blocks of the finest level are leaves in half of the domain.
+/// Patches of the finest level are leaves in half of the domain.
 template <bool known>
 struct HalfAsDeep : LatticeBisection<3> {
     using LatticeBisection<3>::LatticeBisection;
@@ -201,7 +201,7 @@ struct HalfAsDeep : LatticeBisection<3> {
         if constexpr (known) return maubach_bisections<3>();
         if constexpr (!known) return Nothing{};
     }();
-    /// The edge of a tetrahedron that begins a block is the diagonal of a cube.
+    /// The edge of a tetrahedron that begins a patch is the diagonal of a cube.
     bool halved(Node a, Node b) const {
         const auto steps = [&](std::size_t d) {
             return at(a, d) < at(b, d) ? at(b, d) - at(a, d) : at(a, d) - at(b, d);
@@ -221,7 +221,7 @@ void expect_same_walks(const Samples& n, const SampledField& data) {
     const Unknown unknown({.samples = n});
     const LatticeField known_field(known, std::span<const float>(data.values));
     const LatticeField unknown_field(unknown, std::span<const float>(data.values));
-    static_assert(KnowsBisections<Known, decltype(known_field)> && KnowsBlocks<Known>);
+    static_assert(KnowsBisections<Known, decltype(known_field)> && KnowsPatches<Known>);
     static_assert(!KnowsBisections<Unknown, decltype(unknown_field)>);
     const HierarchicalIndicator indicator(known, known_field);
     for (const double threshold : {0.0, 0.003, 0.02, 0.1}) {
@@ -242,7 +242,7 @@ TEST(KnownBisections, MayEndOnSeveralLevels) {
     }
 }
 
-/// More blocks on a level, and more that stops, than are walked at once.
+/// More patches on a level, and more that stops, than are walked at once.
 TEST(KnownBisections, FillWhatIsWalkedAtOnce) {
     const Samples n{33, 33, 33};
     for (const SampledField& data : sampled_fields(n)) {

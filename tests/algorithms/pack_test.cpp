@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What is done to many numbers at once is what is done to each of them, to the last bit; what comes
-// next in a block is what a recursion meets; and numbers tell the edges of a subtree apart.
+// next in a patch is what a recursion meets; and numbers tell the edges of a subtree apart.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -12,7 +12,7 @@
 #include <set>
 
 #include <nestgrid/detail/pack.hpp>
-#include <patches/bisection_block.hpp>
+#include <patches/bisection_patch.hpp>
 #include <patches/subtree_nodes.hpp>
 #include <surfaces/wide_point.hpp>
 
@@ -118,7 +118,7 @@ TEST(WidePoints, AreEqualToPoints) {
     }
 }
 
-/// What a recursion meets in a block, into `order`, and which of the bits it looked at.
+/// What a recursion meets in a patch, into `order`, and which of the bits it looked at.
 template <const auto& pattern>
 void descend(std::size_t part, unsigned entered, unsigned stops, std::vector<std::size_t>& order,
              unsigned& seen) {
@@ -145,7 +145,7 @@ void expect_order() {
             descend<pattern>(3, entered, stops, order, seen);
             if ((entered & stops) != 0 || ((entered | stops) & ~seen) != 0) continue;
             ++met;
-            const auto& known = block_orders<pattern>[entered | stops << parts];
+            const auto& known = patch_orders<pattern>[entered | stops << parts];
             EXPECT_EQ(
                 std::vector<std::size_t>(known.part.begin(), known.part.begin() + known.count),
                 order);
@@ -157,7 +157,7 @@ void expect_order() {
 /// Where the ends are split, and which parts a new node is of.
 template <int dim>
 void expect_new_nodes() {
-    static constexpr const auto& pattern = maubach_block<dim>;
+    static constexpr const auto& pattern = maubach_patch<dim>;
     constexpr auto bisections = maubach_bisections<dim>();
     const auto sorted = [](std::size_t a, std::size_t b) {
         return std::array{std::min(a, b), std::max(a, b)};
@@ -193,17 +193,17 @@ void expect_new_nodes() {
     }
 }
 
-TEST(Blocks, KnowTheirNewNodes) {
+TEST(Patches, KnowTheirNewNodes) {
     expect_new_nodes<2>();
     expect_new_nodes<3>();
 }
 
-TEST(Blocks, KnowWhatComesNext) {
-    expect_order<maubach_block<2>>();
-    expect_order<maubach_block<3>>();
+TEST(Patches, KnowWhatComesNext) {
+    expect_order<maubach_patch<2>>();
+    expect_order<maubach_patch<3>>();
 }
 
-/// A subtree of blocks, refined to the same level everywhere.
+/// A subtree of patches, refined to the same level everywhere.
 template <const auto& pattern>
 struct Subtree {
     using InSubtree = SubtreeNodes<pattern>;
@@ -230,7 +230,7 @@ struct Subtree {
     }
 
 private:
-    void walk(const Element& of, std::size_t blocks) {
+    void walk(const Element& of, std::size_t patches) {
         std::array<Node, pattern.most_nodes> node;
         std::copy(of.begin(), of.end(), node.begin());
         for (std::size_t n = corners; n < pattern.nodes; ++n) {
@@ -239,13 +239,13 @@ private:
             for (std::size_t i = 0; i < corners; ++i) node[n].x[i] = (a.x[i] + b.x[i]) / 2;
             node[n].word = InSubtree::middle(a.word, b.word);
         }
-        for (std::size_t p = blocks == 0 ? 1 : 2; p < 2 * pattern.ends; ++p) {
+        for (std::size_t p = patches == 0 ? 1 : 2; p < 2 * pattern.ends; ++p) {
             const auto& part = pattern.part[p];
             Element element;
             for (std::size_t i = 0; i < corners; ++i) element[i] = node[part.corner[i]];
-            add(element, blocks * pattern.height + part.depth);
+            add(element, patches * pattern.height + part.depth);
             const bool is_end = p >= pattern.ends;
-            if (is_end && blocks + 1 < InSubtree::height) walk(element, blocks + 1);
+            if (is_end && patches + 1 < InSubtree::height) walk(element, patches + 1);
         }
     }
     void add(const Element& e, std::size_t level) {
@@ -264,7 +264,7 @@ void expect_numbers_of_edges() {
     EXPECT_EQ(InSubtree::height, 3);
     std::vector<std::map<std::uint32_t, std::pair<std::size_t, typename Subtree<pattern>::Edge>>>
         known;
-    for (const std::size_t number : {std::size_t{0}, std::size_t{1}, most_blocks - 1}) {
+    for (const std::size_t number : {std::size_t{0}, std::size_t{1}, most_patches - 1}) {
         const Subtree<pattern> subtree(number);
         known.resize(subtree.edges.size());
         for (std::size_t level = 0; level < subtree.edges.size(); ++level) {
@@ -287,16 +287,16 @@ void expect_numbers_of_edges() {
 }
 
 TEST(SubtreeEdges, HaveNumbersOfTheirOwn) {
-    expect_numbers_of_edges<maubach_block<2>>();
-    expect_numbers_of_edges<maubach_block<3>>();
+    expect_numbers_of_edges<maubach_patch<2>>();
+    expect_numbers_of_edges<maubach_patch<3>>();
 }
 
 /// Not even two nodes that are in none, or one that is and one that is not.
 TEST(SubtreeEdges, OutsideSubtreesHaveNone) {
-    using InSubtree = SubtreeNodes<maubach_block<3>>;
+    using InSubtree = SubtreeNodes<maubach_patch<3>>;
     const SubtreeNode above = InSubtree::root_corner(0);
     for (std::size_t i = 0; i < 4; ++i) {
-        const SubtreeNode corner = InSubtree::corner(above, most_blocks - 1, i);
+        const SubtreeNode corner = InSubtree::corner(above, most_patches - 1, i);
         const auto below =
             InSubtree::middle_below(Pack<SubtreeNode>::all(corner), Pack<SubtreeNode>::all(corner))
                 .numbers()[0];

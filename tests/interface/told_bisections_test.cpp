@@ -207,7 +207,7 @@ TEST_F(ToldBisections, ThatAreWrongAreFound) {
                       return code;
                   };
               }),
-              "which elements of a block are split");
+              "which elements of a patch are split");
     EXPECT_EQ(found_with([&] { put_tag_elsewhere(); }), "the number of the bisection");
 }
 

@@ -213,10 +213,10 @@ public:
     void bisect(
         Task* task, const Handle& element, const Real* values, int level, int orientation,
         ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) const override {
-        if constexpr (may_know_blocks_) {
+        if constexpr (may_know_patches_) {
             with(task, [&](auto& context) {
-                bisect_blocks(*grid_, *field_, context, element_of<Element>(element), values, level,
-                              orientation, visitor);
+                bisect_patches(*grid_, *field_, context, element_of<Element>(element), values,
+                               level, orientation, visitor);
             });
         }
     }
@@ -230,11 +230,11 @@ private:
     };
     static constexpr bool may_have_gradients_ =
         offers_corner_gradients<Field, Context<Grid>, const Element&, std::span<Point>>;
-    static constexpr bool may_know_blocks_ = requires(
+    static constexpr bool may_know_patches_ = requires(
         const Grid& grid, const Field& field, Context<Grid>& context, const Element& e,
         const Real* values, ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) {
-        { knows_blocks(grid, field, HierarchyFacts{}) } -> std::same_as<bool>;
-        bisect_blocks(grid, field, context, e, values, 0, 1, visitor);
+        { knows_patches(grid, field, HierarchyFacts{}) } -> std::same_as<bool>;
+        bisect_patches(grid, field, context, e, values, 0, 1, visitor);
     };
 
     struct OpenTask final : Task {
@@ -270,7 +270,7 @@ private:
         if constexpr (has_star_rows_ && requires { grid.node_position(NodeKey{}); }) {
             facts.knows_star_positions = nestgrid::knows_stars(grid);
         }
-        if constexpr (may_know_blocks_) facts.knows_blocks = knows_blocks(grid, field, facts);
+        if constexpr (may_know_patches_) facts.knows_patches = knows_patches(grid, field, facts);
         return facts;
     }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bisections as constants, from which grids and the walk in blocks are made.
+// Bisections as constants, from which grids and the walk in patches are made.
 #pragma once
 
 #include <array>

@@ -32,7 +32,7 @@ public:
         }
         if (facts.offers(Feature::dense_keys)) facts.node_count = grid_.node_count();
         facts.conforming = grid_.conforming();
-        facts.knows_blocks = tells_rows();
+        facts.knows_patches = tells_rows();
     }
 
     std::size_t coarse_count() const override { return grid_.coarse_count(); }

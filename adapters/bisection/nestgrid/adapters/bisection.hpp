@@ -79,7 +79,7 @@ public:
 
     // Optional operations.
     static constexpr auto bisections = maubach_bisections<dim>();
-    static constexpr std::size_t block_height = dim;  // then the lattice step is half
+    static constexpr std::size_t patch_height = dim;  // then the lattice step is half
     std::size_t bisection(const Element& e) const { return e.tag - 1U; }
     std::array<Node, corners_> nodes(const Element& e) const { return e.corner; }
     NESTGRID_INLINE Element element(std::size_t number,
@@ -182,27 +182,27 @@ private:
     Place last_ = 0;                             // of the domain
 };
 
-/// Types of samples whose walk in blocks is compiled in the library. Lattices with other samples
+/// Types of samples whose walk in patches is compiled in the library. Lattices with other samples
 /// are walked one bisection at a time.
 template <class Sample>
-concept WalkedInBlocks = std::same_as<Sample, float> || std::same_as<Sample, double> ||
+concept WalkedInPatches = std::same_as<Sample, float> || std::same_as<Sample, double> ||
     std::same_as<Sample, std::int8_t> || std::same_as<Sample, std::uint8_t> ||
     std::same_as<Sample, std::int16_t> || std::same_as<Sample, std::uint16_t> ||
     std::same_as<Sample, std::int32_t> || std::same_as<Sample, std::uint32_t> ||
     std::same_as<Sample, std::int64_t> || std::same_as<Sample, std::uint64_t>;
 
-template <int dim, WalkedInBlocks Sample>
-bool knows_blocks(const LatticeBisection<dim>&, const LatticeField<LatticeBisection<dim>, Sample>&,
-                  const HierarchyFacts&) {
+template <int dim, WalkedInPatches Sample>
+bool knows_patches(const LatticeBisection<dim>&, const LatticeField<LatticeBisection<dim>, Sample>&,
+                   const HierarchyFacts&) {
     return true;
 }
 
 /// Hierarchy::bisect() of a lattice; compiled for the types above.
-template <int dim, WalkedInBlocks Sample, class Real>
-void bisect_blocks(const LatticeBisection<dim>& grid,
-                   const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext& context,
-                   const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
-                   int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
+template <int dim, WalkedInPatches Sample, class Real>
+void bisect_patches(const LatticeBisection<dim>& grid,
+                    const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext& context,
+                    const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
+                    int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
 
 }  // namespace nestgrid
 

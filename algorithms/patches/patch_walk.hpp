@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The traversal of blocks of bisections, many of one level at a time: what memory holds of all of
+// The traversal of patches of bisections, many of one level at a time: what memory holds of all of
 // them is asked for at once, and nothing waits for what is said of another.
 //
 // Invariant: elements are extracted in the order of the plain traversal. A batch is a run of that
 // order, walked to its end before the next one begins; elements that stop travel down with the
-// blocks before them, until all of those are done.
-// Memory: one batch a level of blocks, on the stack: about 25 KB with single precision.
+// patches before them, until all of those are done.
+// Memory: one batch a level of patches, on the stack: about 25 KB with single precision.
 #pragma once
 
 #include <cstring>
 
-#include <patches/block_batch.hpp>
+#include <patches/patch_batch.hpp>
 
 namespace nestgrid {
 
@@ -36,14 +36,14 @@ private:
     std::uint64_t next_tick_ = 0x4000U;
 };
 
-/// Walks down from an element that starts a block and in which all is whole. A visitor has
+/// Walks down from an element that starts a patch and in which all is whole. A visitor has
 ///     PackedGlance glance(const PackedElements&) what to do with each of them; or instead
-///     PackedSight see<BlockParts>(const PackedBlocks&)
+///     PackedSight see<PatchParts>(const PackedPatches&)
 ///                                                of many elements at once
 ///     void expect(const NodeKey* nodes, std::size_t rows)
 ///                                                optional: eight nodes in each of some rows,
-///                                                most_blocks apart, that will be glanced at
-///     unsigned extract(const BlockBatch&, const BatchSelection&)
+///                                                most_patches apart, that will be glanced at
+///     unsigned extract(const PatchBatch&, const BatchSelection&)
 ///             what is selected, and in how many of the leaves there was anything to extract
 ///     bool names_edges() const                   optional, with the next one: whether batches are
 ///                                                to tell of nodes in subtrees (subtree_nodes.hpp)
@@ -51,12 +51,12 @@ private:
 ///                                                subtrees before comes never again
 ///     void tick(looked_at, visited)              now and then
 template <class Grid, class Field, class Visitor>
-class BlockWalk {
+class PatchWalk {
 public:
     using Real = typename Field::value_type;
     using Node = typename Grid::Node;
 
-    BlockWalk(const Grid& grid, const Field& field, Visitor& visitor, WalkCounts& count)
+    PatchWalk(const Grid& grid, const Field& field, Visitor& visitor, WalkCounts& count)
         : grid_{&grid}, field_{&field}, visitor_{&visitor}, count_{&count} {
         for (std::size_t i = 0; i < rules_.size(); ++i) rules_[i] = &grid.rule(i);
     }
@@ -66,7 +66,7 @@ public:
                                int path);
 
 private:
-    static constexpr const auto& pattern_ = block_of<Grid>;
+    static constexpr const auto& pattern_ = patch_of<Grid>;
     static constexpr std::size_t corners_ = pattern_.corners;
     static constexpr std::size_t ends_ = pattern_.ends;
     static constexpr std::size_t last_ = Grid::bisections.size() - 1;
@@ -75,34 +75,34 @@ private:
                                       [](const auto& end) { return end.bisection == last_; }));
     static constexpr bool in_subtrees_ = requires(Visitor & v) { v.begin_subtrees(1); };
     using InSubtree = SubtreeNodes<pattern_>;
-    static constexpr std::size_t room_ = most_blocks;
+    static constexpr std::size_t room_ = most_patches;
     static constexpr std::size_t stopped_room_ = 64;
-    using Batch = BlockBatch<Grid, Real>;
+    using Batch = PatchBatch<Grid, Real>;
     template <class T>
     using Row = typename Batch::template Row<T>;
     static constexpr unsigned interior_ = (1U << (ends_ - 2)) - 1;  // parts that are no ends
 
-    /// An element that is extracted when the blocks before it are done.
+    /// An element that is extracted when the patches before it are done.
     struct Stopped {
         const Batch* of;
-        std::uint8_t block;
+        std::uint8_t patch;
         std::uint8_t part;
-        std::uint8_t before;  // how many blocks
+        std::uint8_t before;  // how many patches
         Real bound;
     };
     /// A run of the order of the traversal.
     struct Queue : Batch {
-        Row<MaskOf<Real>> entered;  // parts of blocks, from bit 0 on part 2
+        Row<MaskOf<Real>> entered;  // parts of patches, from bit 0 on part 2
         std::array<Stopped, stopped_room_ + 1> stopped;
         std::size_t stopped_count = 0;
         std::size_t taken = 0;  // of them
 
-        /// The block that the next of them comes before, if any.
+        /// The patch that the next of them comes before, if any.
         std::size_t stopped_before() const {
             return taken < stopped_count ? stopped[taken].before : ~std::size_t{0};
         }
     };
-    /// What there is to know of the ends of blocks, reached or not.
+    /// What there is to know of the ends of patches, reached or not.
     struct Ends {
         Row<MaskOf<Real>> descend;  // bit i: end i
         Row<MaskOf<Real>> stop;
@@ -110,17 +110,17 @@ private:
         Row<Real> greatest;
     };
 
-    /// The parts of a batch that the blocks of the next one are.
+    /// The parts of a batch that the patches of the next one are.
     struct Origins {
-        std::array<std::uint8_t, room_ + ends_> block;
+        std::array<std::uint8_t, room_ + ends_> patch;
         std::array<std::uint8_t, room_ + ends_> part;
-        std::size_t copied;  // blocks before this one are
+        std::size_t copied;  // patches before this one are
 
-        /// Those of block b. Nothing depends on how many they are.
-        NESTGRID_INLINE void append(const BlockOrder<ends_>& order, std::size_t b,
+        /// Those of patch b. Nothing depends on how many they are.
+        NESTGRID_INLINE void append(const PatchOrder<ends_>& order, std::size_t b,
                                     std::size_t& count) {
             std::memcpy(part.data() + count, order.part.data(), ends_);
-            std::memset(block.data() + count, static_cast<int>(b), ends_);
+            std::memset(patch.data() + count, static_cast<int>(b), ends_);
             count += order.count;
         }
     };
@@ -138,12 +138,12 @@ private:
     NESTGRID_INLINE void expect(const NodeKey* keys, std::size_t rows = 1) const {
         if constexpr (requires { visitor_->expect(keys, rows); }) visitor_->expect(keys, rows);
     }
-    template <BlockParts which>
+    template <PatchParts which>
     void look_at(Batch& batch, std::size_t first, const NodeKey* keys, Row<MaskOf<Real>>& descend,
                  Row<MaskOf<Real>>& stop, Real* greatest) const;
     void look_within(Queue& batch) const;
     void look_whether_split(const Batch& batch, std::array<bool, room_>& ends) const;
-    void extract_blocks(Queue& batch, std::size_t first, std::size_t end, bool are_leaves);
+    void extract_patches(Queue& batch, std::size_t first, std::size_t end, bool are_leaves);
     void enter(Queue& batch, std::size_t first, std::size_t end, Queue& next);
     void look_at_ends(Queue& batch, std::size_t first, std::size_t end, Ends& ends) const;
     void find_new_nodes(const Batch& batch, std::size_t first, std::size_t end, Ends& ends) const;
@@ -151,7 +151,7 @@ private:
                                   const Ends& ends);
     static void copy_corners(const Batch& batch, Origins& which, Queue& next);
     static const auto& order_of(const Queue& batch, std::size_t b) {
-        return block_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |
+        return patch_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |
                                                                batch.stops[b] << (ends_ - 2))];
     }
     /// \return whether there is no room for another
@@ -165,10 +165,10 @@ private:
     }
     void select(Queue& batch, const Stopped& element, BatchSelection& selection);
     void extract_first_stopped(Queue& next);
-    /// Calls function(const Stopped&) for those up to a block that were not taken yet.
+    /// Calls function(const Stopped&) for those up to a patch that were not taken yet.
     template <class Function>
-    static void take_stopped(Queue& batch, std::size_t block, Function&& function) {
-        while (batch.stopped_before() <= block) {
+    static void take_stopped(Queue& batch, std::size_t patch, Function&& function) {
+        while (batch.stopped_before() <= patch) {
             function(batch.stopped[batch.taken++]);
         }
     }
@@ -184,5 +184,5 @@ private:
 
 }  // namespace nestgrid
 
-#include <patches/block_walk_nodes.hpp>
-#include <patches/block_walk_steps.hpp>
+#include <patches/patch_walk_nodes.hpp>
+#include <patches/patch_walk_steps.hpp>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Blocks of bisections (bisection_block.hpp) side by side: a row of numbers for each of their
+// Patches of bisections (bisection_patch.hpp) side by side: a row of numbers for each of their
 // nodes, so that one loop does the same for all of them; and elements beside them.
 #pragma once
 
@@ -13,26 +13,26 @@
 
 #include <nestgrid/detail/pack.hpp>
 #include <patches/batch_cuts.hpp>
-#include <patches/bisection_block.hpp>
-#include <patches/block_glance.hpp>
+#include <patches/bisection_patch.hpp>
+#include <patches/patch_glance.hpp>
 #include <patches/subtree_nodes.hpp>
 #include <surfaces/wide_point.hpp>
 
 namespace nestgrid {
 
-/// Where the nodes of a pattern's blocks, and the corners of the elements beside them, are kept in
-/// the rows of a batch. What is in a batch has a number: blocks have 0 ... most_blocks - 1, and the
-/// elements those that follow.
+/// Where the nodes of a pattern's patches, and the corners of the elements beside them, are kept in
+/// the rows of a batch. What is in a batch has a number: patches have 0 ... most_patches - 1, and
+/// the elements those that follow.
 template <const auto& pattern>
 struct BatchPlaces {
-    static constexpr std::size_t block_rows = pattern.height == 0 ? 0 : pattern.nodes;
-    static constexpr std::size_t rows = block_rows + pattern.corners;
-    static constexpr std::size_t count = rows * most_blocks;
+    static constexpr std::size_t patch_rows = pattern.height == 0 ? 0 : pattern.nodes;
+    static constexpr std::size_t rows = patch_rows + pattern.corners;
+    static constexpr std::size_t count = rows * most_patches;
 
-    static constexpr bool is_block(std::size_t id) { return id < most_blocks; }
-    /// Of a node of a block, or of a corner of an element.
+    static constexpr bool is_patch(std::size_t id) { return id < most_patches; }
+    /// Of a node of a patch, or of a corner of an element.
     static constexpr std::size_t of(std::size_t id, std::size_t node) {
-        return (node + (is_block(id) ? 0 : block_rows)) * most_blocks + id % most_blocks;
+        return (node + (is_patch(id) ? 0 : patch_rows)) * most_patches + id % most_patches;
     }
 };
 
@@ -46,47 +46,47 @@ constexpr Unsigned count_bits(Unsigned bits) {
 }
 
 /// Of a batch, what is to be extracted, by number, in the order of the traversal: elements, and of
-/// blocks the parts that stop and, where these are leaves, the ends that are reached.
+/// patches the parts that stop and, where these are leaves, the ends that are reached.
 struct BatchSelection {
     bool ends_are_leaves = false;
     std::size_t count = 0;
-    std::array<std::uint8_t, 2 * most_blocks> id;
-    // There are no other blocks among them.
-    std::size_t first_block = 0;
-    std::size_t end_of_blocks = 0;
+    std::array<std::uint8_t, 2 * most_patches> id;
+    // There are no other patches among them.
+    std::size_t first_patch = 0;
+    std::size_t end_of_patches = 0;
 
     NESTGRID_INLINE void add(std::size_t number) {
         id[count++] = static_cast<std::uint8_t>(number);
     }
-    NESTGRID_INLINE void add_block(std::size_t b) {
+    NESTGRID_INLINE void add_patch(std::size_t b) {
         add(b);
-        if (end_of_blocks == 0) first_block = b;
-        end_of_blocks = b + 1;
+        if (end_of_patches == 0) first_patch = b;
+        end_of_patches = b + 1;
     }
-    /// Blocks first ... end - 1; nothing else yet.
-    NESTGRID_INLINE void add_blocks(std::size_t first, std::size_t end) {
+    /// Patches first ... end - 1; nothing else yet.
+    NESTGRID_INLINE void add_patches(std::size_t first, std::size_t end) {
         static constexpr auto numbers = [] {
-            std::array<std::uint8_t, 2 * most_blocks> all{};
+            std::array<std::uint8_t, 2 * most_patches> all{};
             for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint8_t>(i);
             return all;
         }();
-        std::memcpy(id.data(), numbers.data() + first, most_blocks);
+        std::memcpy(id.data(), numbers.data() + first, most_patches);
         count = end - first;
-        first_block = first;
-        end_of_blocks = end;
+        first_patch = first;
+        end_of_patches = end;
     }
     void clear() {
         count = 0;
-        end_of_blocks = 0;
+        end_of_patches = 0;
     }
 };
 
-/// Blocks on one level, in the order of the traversal, and elements on any level.
+/// Patches on one level, in the order of the traversal, and elements on any level.
 template <class Grid, class Real>
-struct BlockBatch {
+struct PatchBatch {
     using Node = typename Grid::Node;
-    static constexpr const auto& pattern = block_of<Grid>;
-    static constexpr std::size_t room = most_blocks;
+    static constexpr const auto& pattern = patch_of<Grid>;
+    static constexpr std::size_t room = most_patches;
     using Places = BatchPlaces<pattern>;
     template <class T>
     struct alignas(room * sizeof(T) % 64 == 0 ? 64 : alignof(T)) Row : std::array<T, room> {};
@@ -102,22 +102,22 @@ struct BlockBatch {
     };
 
     const Grid* grid;
-    int level;                      ///< of part 1 of the blocks
-    std::size_t count;              ///< of blocks
+    int level;                      ///< of part 1 of the patches
+    std::size_t count;              ///< of patches
     std::size_t element_count = 0;  ///< beside them
     Rows<Node> nodes;
     Rows<NodeKey> keys;
     Rows<Real> values;                                ///< P_S U
     Rows<SubtreeNode> in_subtree;                     ///< only where they are asked for
-    std::array<std::uint8_t, 2 * room> orientations;  ///< 1 in a mirror; of blocks, part 1
-    /// Of blocks, the ends that are reached, one bit each.
+    std::array<std::uint8_t, 2 * room> orientations;  ///< 1 in a mirror; of patches, part 1
+    /// Of patches, the ends that are reached, one bit each.
     std::array<std::uint8_t, room> ends;
-    /// Of blocks, where any stops, the parts that are not entered, from bit 0 on part 2; else 0.
+    /// Of patches, where any stops, the parts that are not entered, from bit 0 on part 2; else 0.
     std::array<std::uint8_t, room> undivided;
-    /// Of blocks, the parts that stop, from bit 0 on part 2, and what was said of them.
+    /// Of patches, the parts that stop, from bit 0 on part 2, and what was said of them.
     Row<MaskOf<Real>> stops;
     std::array<Row<Real>, 2 * pattern.ends> bounds;
-    /// Of blocks, not below the bound of any part that stops; of elements, the bound.
+    /// Of patches, not below the bound of any part that stops; of elements, the bound.
     std::array<Real, 2 * room> greatest_bounds;
     // Of elements:
     std::array<std::uint16_t, room> element_levels;
@@ -128,7 +128,7 @@ struct BlockBatch {
         level = on_level;
         count = 0;
     }
-    /// The corners of block b, or of element b - room, in no subtree and in no root.
+    /// The corners of patch b, or of element b - room, in no subtree and in no root.
     void put_corners(std::size_t b, const std::array<Node, 4>& n, const std::array<Real, 4>& u,
                      bool mirror) {
         for (std::size_t i = 0; i < pattern.corners; ++i) {
@@ -148,10 +148,10 @@ struct BlockBatch {
         put_corners(room + e, n, u, mirror);
         set_element(e, bisection, on_level, bound);
     }
-    /// A part of a block of any batch of the grid, in the place of the next element.
+    /// A part of a patch of any batch of the grid, in the place of the next element.
     /// \tparam with_keys whether those and what is known of subtrees are wanted
     template <bool with_keys>
-    NESTGRID_INLINE void copy_element(const BlockBatch& from, std::size_t b, std::size_t p,
+    NESTGRID_INLINE void copy_element(const PatchBatch& from, std::size_t b, std::size_t p,
                                       Real bound) {
         const std::size_t e = element_count;
         const auto& part = pattern.part[p];
@@ -170,7 +170,7 @@ struct BlockBatch {
         set_element(e, part.bisection, from.level + part.depth, bound);
     }
 
-    /// Repeats the last block, that rows may be read up to packed(count). There is one.
+    /// Repeats the last patch, that rows may be read up to packed(count). There is one.
     NESTGRID_INLINE void fill_up() {
         const std::size_t last = count - 1;
         for (std::size_t i = 0; i < pattern.corners; ++i) {
@@ -185,7 +185,7 @@ struct BlockBatch {
     /// The same with the values of elements. There is one.
     NESTGRID_INLINE void fill_up_elements() {
         for (std::size_t i = 0; i < pattern.corners; ++i) {
-            Real* const row = values[Places::block_rows + i];
+            Real* const row = values[Places::patch_rows + i];
             for (std::size_t e = element_count; e < packed(element_count); ++e) row[e] = row[0];
         }
     }
@@ -198,14 +198,14 @@ struct BlockBatch {
         cut_edges(*this, edges, isovalue, to);
     }
     Point position(std::size_t place) const { return grid->position(nodes.all[place]); }
-    /// A part of a block, or an element.
+    /// A part of a patch, or an element.
     ElementOf<Grid> element(std::size_t id, std::size_t part) const {
-        const bool is_block = Places::is_block(id);
+        const bool is_patch = Places::is_patch(id);
         std::array<Node, pattern.corners> of;
         for (std::size_t i = 0; i < of.size(); ++i) {
-            of[i] = nodes.all[Places::of(id, is_block ? pattern.part[part].corner[i] : i)];
+            of[i] = nodes.all[Places::of(id, is_patch ? pattern.part[part].corner[i] : i)];
         }
-        return grid->element(is_block ? pattern.part[part].bisection : bisections[id - room], of);
+        return grid->element(is_patch ? pattern.part[part].bisection : bisections[id - room], of);
     }
     /// Faces of it on the boundary of the domain, one bit each.
     unsigned boundary(std::size_t id, std::size_t part) const {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hierarchies of all grids whose bisections are known walk them in blocks, where this comes before
+// Hierarchies of all grids whose bisections are known walk them in patches, where this comes before
 // they are made.
 #pragma once
 
@@ -10,19 +10,20 @@
 
 namespace nestgrid {
 
-/// Whether the bisections of a grid and a field can be walked in blocks (Hierarchy::bisect).
+/// Whether the bisections of a grid and a field can be walked in patches (Hierarchy::bisect).
 template <class Grid, class Field>
     requires(
-        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() ==
+        KnowsBisections<Grid, Field>&& HasMaubachPatches<Grid>&& detail::components_of<Field>() ==
             1 &&
         detail::fits_handle<ElementOf<Grid>>)
-bool knows_blocks(const Grid&, const Field&, const HierarchyFacts&) { return true; }
+bool knows_patches(const Grid&, const Field&, const HierarchyFacts&) { return true; }
 
 /// Walks them below an element.
 template <class Grid, class Field>
     requires(
-        KnowsBisections<Grid, Field>&& HasMaubachBlocks<Grid>&& detail::components_of<Field>() == 1)
-void bisect_blocks(
+        KnowsBisections<Grid, Field>&& HasMaubachPatches<Grid>&& detail::components_of<Field>() ==
+        1)
+void bisect_patches(
     const Grid& grid, const Field& field, Context<Grid>&, const ElementOf<Grid>& e,
     const typename Field::value_type* values, int level, int orientation,
     detail::ErasedBisectionVisitor<Grid::dimension, typename Field::value_type>& visitor) {

@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How BlockDrawing finds and makes vertices; included by block_drawing.hpp.
+// How PatchDrawing finds and makes vertices; included by patch_drawing.hpp.
 #pragma once
 
-#include <patches/block_drawing.hpp>
+#include <patches/patch_drawing.hpp>
 
 namespace nestgrid::engine {
 
 /// Finds the vertices on the cuts, and numbers new ones in the order of the cuts. Each step is a
 /// branch-free loop of its own, because whether a vertex is known is unpredictable.
-template <int dimension, class Real, class Blocks>
-NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
+template <int dimension, class Real, class Patches>
+NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::find_vertices(
     std::span<const BatchEdge> cuts, Number* v) {
     using InSubtree = SubtreeNodes<pattern_>;
     constexpr std::size_t room = Run::most_cuts + 1;
-    const NodeKey* const key = blocks_->keys[0];
-    const SubtreeNode* const in_subtree = blocks_->in_subtree[0];
+    const NodeKey* const key = patches_->keys[0];
+    const SubtreeNode* const in_subtree = patches_->in_subtree[0];
 
     // Step 1: list the cuts that the subtree tables do not know (`fresh`), and among these the cuts
     // that other subtrees may know (`shared`).
@@ -73,8 +73,8 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::find_vertices(
 }
 
 /// Makes a new vertex on every cut.
-template <int dimension, class Real, class Blocks>
-NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::make_vertices(
+template <int dimension, class Real, class Patches>
+NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::make_vertices(
     std::span<const BatchEdge> cuts, Number* v) {
     const Number first_new = surface_->builder().next_vertex();
     for (std::size_t i = 0; i < cuts.size(); ++i) v[i] = first_new + static_cast<Number>(i);
@@ -82,19 +82,19 @@ NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::make_vertices(
 }
 
 /// Adds a vertex on each of these cuts to the builder, in order.
-template <int dimension, class Real, class Blocks>
-NESTGRID_INLINE void BlockDrawing<dimension, Real, Blocks>::add_vertices(
+template <int dimension, class Real, class Patches>
+NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
     std::span<const BatchEdge> cuts) {
     std::array<WidePoint, Run::most_cuts> x;
-    blocks_->cuts(cuts, level_->value, x.data());
+    patches_->cuts(cuts, level_->value, x.data());
     auto& builder = surface_->builder();
     if (!builder.lists_shared()) {
         for (std::size_t i = 0; i < cuts.size(); ++i) builder.add_vertex(Point(x[i]), {});
         return;
     }
-    const NodeKey* const key = blocks_->keys[0];
-    const SubtreeNode* const in_subtree = blocks_->in_subtree[0];
-    constexpr double not_asked_for = 0;  // bisections are not walked in blocks for normals
+    const NodeKey* const key = patches_->keys[0];
+    const SubtreeNode* const in_subtree = patches_->in_subtree[0];
+    constexpr double not_asked_for = 0;  // bisections are not walked in patches for normals
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const auto& [low, high] = cuts[i];
         if (is_within_root(in_subtree[low], in_subtree[high])) {
@@ -105,11 +105,11 @@ NESTGRID_INLINE void BlockDrawing<dimension, Real, Blocks>::add_vertices(
     }
 }
 
-template <int dimension, class Real, class Blocks>
-NESTGRID_NOINLINE void BlockDrawing<dimension, Real, Blocks>::verify_vertices(
+template <int dimension, class Real, class Patches>
+NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::verify_vertices(
     std::span<const BatchEdge> cuts, const Number* v) {
     std::array<WidePoint, Run::most_cuts> x;
-    blocks_->cuts(cuts, level_->value, x.data());
+    patches_->cuts(cuts, level_->value, x.data());
     for (std::size_t i = 0; i < cuts.size(); ++i) surface_->verify(v[i], Point(x[i]));
 }
 

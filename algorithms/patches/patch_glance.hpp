@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a visitor makes of the parts of blocks (bisection_block.hpp), eight blocks at once: those
+// What a visitor makes of the parts of patches (bisection_patch.hpp), eight patches at once: those
 // around one new node together, for what is known of the node is asked for once.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 #include <nestgrid/detail/pack.hpp>
 #include <nestgrid/keys.hpp>
-#include <patches/bisection_block.hpp>
+#include <patches/bisection_patch.hpp>
 #include <patches/subtree_nodes.hpp>
 
 namespace nestgrid {
@@ -53,9 +53,9 @@ struct PackedGlance {
     Pack<Real> bound;                                    ///< where any of them stops
 };
 
-/// Eight blocks of a batch, in rows that are most_blocks apart.
+/// Eight patches of a batch, in rows that are most_patches apart.
 template <class Real>
-struct PackedBlocks {
+struct PackedPatches {
     const Rule* const* rule;  ///< by number of the bisection
     int level;                ///< of part 1
     const Real* values;       ///< of node 0, and so on
@@ -63,7 +63,7 @@ struct PackedBlocks {
     Real* bounds;             ///< of part 0, and so on; set for the parts that are looked at
 };
 
-/// What is seen of some parts of eight blocks: bit i of each for the i-th of them.
+/// What is seen of some parts of eight patches: bit i of each for the i-th of them.
 template <class Real>
 struct PackedSight {
     Pack<MaskOf<Real>> descend;
@@ -71,17 +71,17 @@ struct PackedSight {
     Pack<Real> greatest;  ///< bound where any stops
 };
 
-/// Which parts of blocks.
-enum class BlockParts : std::uint8_t {
+/// Which parts of patches.
+enum class PatchParts : std::uint8_t {
     inner,  ///< from part 2 on, those that are no ends
     ends,
 };
 
-/// What a visitor makes of parts of eight blocks, reached or not.
-template <const auto& pattern, BlockParts which, class Real, class Visitor>
-NESTGRID_INLINE PackedSight<Real> see(const PackedBlocks<Real>& blocks, Visitor& visitor) {
+/// What a visitor makes of parts of eight patches, reached or not.
+template <const auto& pattern, PatchParts which, class Real, class Visitor>
+NESTGRID_INLINE PackedSight<Real> see(const PackedPatches<Real>& patches, Visitor& visitor) {
     using Bits = Pack<MaskOf<Real>>;
-    constexpr bool ends = which == BlockParts::ends;
+    constexpr bool ends = which == PatchParts::ends;
     constexpr std::size_t first_node = ends ? pattern.nodes : pattern.corners + 1;
     constexpr std::size_t nodes = (ends ? pattern.all_nodes : pattern.nodes) - first_node;
     constexpr std::size_t first_part = ends ? pattern.ends : 2;
@@ -89,15 +89,15 @@ NESTGRID_INLINE PackedSight<Real> see(const PackedBlocks<Real>& blocks, Visitor&
     unrolled<nodes>([&](auto n) NESTGRID_INLINE_LAMBDA {
         constexpr const auto& parts = parts_around<pattern, first_node + n>;
         constexpr auto one = pattern.part[parts[0]];
-        PackedElements<Real, parts.size()> elements{*blocks.rule[one.bisection],
-                                                    blocks.level + one.depth,
-                                                    blocks.keys + n * most_blocks,
+        PackedElements<Real, parts.size()> elements{*patches.rule[one.bisection],
+                                                    patches.level + one.depth,
+                                                    patches.keys + n * most_patches,
                                                     {}};
         unrolled<parts.size()>([&](auto i) NESTGRID_INLINE_LAMBDA {
             constexpr auto part = pattern.part[parts[i]];
             static_assert(part.depth == one.depth && part.bisection == one.bisection);
             const auto value = [&](std::size_t corner) NESTGRID_INLINE_LAMBDA {
-                return Pack<Real>::load(blocks.values + part.corner[corner] * most_blocks);
+                return Pack<Real>::load(patches.values + part.corner[corner] * most_patches);
             };
             elements.range[i] = range_of(value(0), value(1), value(2), value(3));
         });
@@ -109,7 +109,7 @@ NESTGRID_INLINE PackedSight<Real> see(const PackedBlocks<Real>& blocks, Visitor&
             seen.greatest = max(
                 seen.greatest,
                 (glance.bound.template as<MaskOf<Real>>() & glance.stop[i]).template as<Real>());
-            glance.bound.store(blocks.bounds + parts[i] * most_blocks);
+            glance.bound.store(patches.bounds + parts[i] * most_patches);
         });
     });
     return seen;

@@ -1,24 +1,24 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of BlockWalk; included by block_walk.hpp.
+// The steps of PatchWalk; included by patch_walk.hpp.
 #pragma once
 
-#include <patches/block_walk.hpp>
+#include <patches/patch_walk.hpp>
 
 namespace nestgrid {
 
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
+void PatchWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
                                           const std::array<Real, 4>& u, int path) {
     constexpr KnownBisection rule = Grid::bisections[last_];
-    // The deepest a block can be that is as deep everywhere.
-    int blocks = 0;
-    for (Node a = n[rule.parent[0]], b = n[rule.parent[1]]; grid_->halved(a, b); ++blocks) {
+    // The deepest a patch can be that is as deep everywhere.
+    int patches = 0;
+    for (Node a = n[rule.parent[0]], b = n[rule.parent[1]]; grid_->halved(a, b); ++patches) {
         b = grid_->middle(a, b);
     }
-    const int above_subtree = std::max(0, blocks - InSubtree::height);
-    subtree_level_ = path / 2 + static_cast<int>(Grid::block_height) * above_subtree;
+    const int above_subtree = std::max(0, patches - InSubtree::height);
+    subtree_level_ = path / 2 + static_cast<int>(Grid::patch_height) * above_subtree;
 
     Queue first;
     first.begin(*grid_, path / 2);
@@ -39,9 +39,9 @@ void BlockWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     if (visit == Visit::descend) walk(first);
 }
 
-/// The blocks of a batch, of which there are the corners, and all below them.
+/// The patches of a batch, of which there are the corners, and all below them.
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
+void PatchWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     batch.fill_up();
     if constexpr (in_subtrees_) {
         if (visitor_->names_edges()) {
@@ -81,7 +81,7 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
             enter(batch, first, end, next);
         } else {
             finish(next);
-            extract_blocks(batch, first, end, true);
+            extract_patches(batch, first, end, true);
         }
     }
     take_stopped(batch, batch.count, [&](const Stopped& element) {
@@ -91,7 +91,7 @@ void BlockWalk<Grid, Field, Visitor>::walk(Queue& batch) {
 }
 
 template <class Grid, class Field, class Visitor>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& batch) {
+NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::begin_subtrees(Batch& batch) {
     for (std::size_t i = 0; i < corners_; ++i) {
         SubtreeNode* const nodes = batch.in_subtree[i];
         for (std::size_t b = 0; b < batch.count; ++b) nodes[b] = InSubtree::corner(nodes[b], b, i);
@@ -101,19 +101,19 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::begin_subtrees(Batch& ba
 
 /// \param keys of the nodes that are new in these parts
 template <class Grid, class Field, class Visitor>
-template <BlockParts which>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at(Batch& batch, std::size_t first,
+template <PatchParts which>
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_at(Batch& batch, std::size_t first,
                                                               const NodeKey* keys,
                                                               Row<MaskOf<Real>>& descend,
                                                               Row<MaskOf<Real>>& stop,
                                                               Real* greatest) const {
-    const PackedBlocks<Real> blocks{rules_.data(), batch.level, batch.values[0] + first,
-                                    keys + first, batch.bounds[0].data() + first};
+    const PackedPatches<Real> patches{rules_.data(), batch.level, batch.values[0] + first,
+                                      keys + first, batch.bounds[0].data() + first};
     const PackedSight<Real> seen = [&]() NESTGRID_INLINE_LAMBDA {
-        if constexpr (requires { visitor_->template see<which>(blocks); }) {
-            return visitor_->template see<which>(blocks);
+        if constexpr (requires { visitor_->template see<which>(patches); }) {
+            return visitor_->template see<which>(patches);
         } else {
-            return nestgrid::see<pattern_, which>(blocks, *visitor_);
+            return nestgrid::see<pattern_, which>(patches, *visitor_);
         }
     }();
     seen.descend.store(descend.data() + first);
@@ -122,29 +122,29 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at(Batch& batch, std:
 }
 
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
     for (std::size_t first = 0; first < batch.count; first += pack) {
-        look_at<BlockParts::inner>(batch, first, batch.keys[corners_ + 1], batch.entered,
+        look_at<PatchParts::inner>(batch, first, batch.keys[corners_ + 1], batch.entered,
                                    batch.stops, batch.greatest_bounds.data());
     }
 }
 
-/// Blocks in which nothing is entered beyond the ends.
+/// Patches in which nothing is entered beyond the ends.
 /// \param are_leaves the ends
 template <class Grid, class Field, class Visitor>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_blocks(Queue& batch,
-                                                                       std::size_t first,
-                                                                       std::size_t end,
-                                                                       bool are_leaves) {
+NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::extract_patches(Queue& batch,
+                                                                        std::size_t first,
+                                                                        std::size_t end,
+                                                                        bool are_leaves) {
     BatchSelection selection;
     selection.ends_are_leaves = are_leaves;
     if (batch.stopped_before() >= end) {
-        selection.add_blocks(first, end);
+        selection.add_patches(first, end);
     } else {
         for (std::size_t b = first; b < end; ++b) {
             take_stopped(batch, b,
                          [&](const Stopped& element) { select(batch, element, selection); });
-            selection.add_block(b);
+            selection.add_patch(b);
         }
     }
     MaskOf<Real> stopped = 0;
@@ -155,26 +155,26 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_blocks(Queue& ba
 
 /// To be extracted next.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::select(Queue& batch, const Stopped& element,
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::select(Queue& batch, const Stopped& element,
                                                              BatchSelection& selection) {
-    batch.template copy_element<in_subtrees_>(*element.of, element.block, element.part,
+    batch.template copy_element<in_subtrees_>(*element.of, element.patch, element.part,
                                               element.bound);
     selection.add(room_ + batch.element_count++);
     ++count_->extracted;
     if (batch.element_count == room_) extract(batch, selection);
 }
 
-/// Those that stopped before the first block.
+/// Those that stopped before the first patch.
 template <class Grid, class Field, class Visitor>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::extract_first_stopped(Queue& next) {
+NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::extract_first_stopped(Queue& next) {
     BatchSelection selection;
     take_stopped(next, 0, [&](const Stopped& element) { select(next, element, selection); });
     if (selection.count > 0) extract(next, selection);
 }
 
-/// Blocks whose ends are split.
+/// Patches whose ends are split.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::size_t first,
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::enter(Queue& batch, std::size_t first,
                                                             std::size_t end, Queue& next) {
     Ends ends;
     look_at_ends(batch, first, end, ends);
@@ -187,7 +187,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
     if (any_descends == 0) {
         finish(next);
         note_stopped_ends(batch, first, end, ends);
-        return extract_blocks(batch, first, end, false);
+        return extract_patches(batch, first, end, false);
     }
     Origins which;
     which.copied = next.count;
@@ -196,7 +196,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
         next.count -= more;
         copy_corners(batch, which, next);
         finish(next);
-        std::copy_n(which.block.begin() + room_, more, which.block.begin());
+        std::copy_n(which.patch.begin() + room_, more, which.patch.begin());
         std::copy_n(which.part.begin() + room_, more, which.part.begin());
         next.count = more;
     };
@@ -217,11 +217,11 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
         const std::size_t descend_by_part = descends << ends_;
         const std::size_t stop_by_part = static_cast<std::size_t>(ends.stop[b]) << ends_ |
                                          static_cast<std::size_t>(batch.stops[b]) << 2U;
-        const BlockOrder<ends_>& order = order_of(batch, b);
+        const PatchOrder<ends_>& order = order_of(batch, b);
         for (std::size_t i = 0; i < order.count; ++i) {
             const std::size_t part = order.part[i];
             if (next.count == room_) finish_next();
-            which.block[next.count] = static_cast<std::uint8_t>(b);
+            which.patch[next.count] = static_cast<std::uint8_t>(b);
             which.part[next.count] = static_cast<std::uint8_t>(part);
             next.stopped[next.stopped_count] = {
                 &batch, static_cast<std::uint8_t>(b), static_cast<std::uint8_t>(part),
@@ -235,9 +235,9 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
     copy_corners(batch, which, next);
 }
 
-/// Of eight blocks of which no end is reached nothing is asked.
+/// Of eight patches of which no end is reached nothing is asked.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch, std::size_t first,
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch, std::size_t first,
                                                                    std::size_t end,
                                                                    Ends& ends) const {
     const auto reached = [&](std::size_t b) {
@@ -256,15 +256,15 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch,
         while (reached(next)) next += pack;
         find_new_nodes(batch, std::max(b, first), std::min(next, end), ends);
         for (; b < next; b += pack) {
-            look_at<BlockParts::ends>(batch, b, ends.keys[0].data(), ends.descend, ends.stop,
+            look_at<PatchParts::ends>(batch, b, ends.keys[0].data(), ends.descend, ends.stop,
                                       ends.greatest.data());
         }
     }
 }
 
-/// Of blocks whose ends all stop or are skipped.
+/// Of patches whose ends all stop or are skipped.
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, std::size_t first,
+void PatchWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, std::size_t first,
                                                         std::size_t end, const Ends& ends) {
     for (std::size_t b = first; b < end; ++b) {
         if (ends.stop[b] == 0) continue;
@@ -274,10 +274,10 @@ void BlockWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, std::size_
 }
 
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::copy_corners(const Batch& batch,
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::copy_corners(const Batch& batch,
                                                                    Origins& which, Queue& next) {
     for (std::size_t n = which.copied; n < next.count; ++n) {
-        const std::size_t b = which.block[n];
+        const std::size_t b = which.patch[n];
         const auto& part = pattern_.part[which.part[n]];
         unrolled<corners_>([&](auto i) NESTGRID_INLINE_LAMBDA {
             const std::size_t from = Batch::Places::of(0, part.corner[i]) + b;
@@ -293,7 +293,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::copy_corners(const Batch& 
 }
 
 template <class Grid, class Field, class Visitor>
-bool BlockWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
+bool PatchWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
     Stopped& last = next.stopped[next.stopped_count++];
     last = element;
     last.before = static_cast<std::uint8_t>(next.count);
@@ -302,7 +302,7 @@ bool BlockWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
 
 /// Walks what was gathered.
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::finish(Queue& next) {
+void PatchWalk<Grid, Field, Visitor>::finish(Queue& next) {
     if (next.stopped_before() == 0) extract_first_stopped(next);
     if (next.count > 0) walk(next);
     next.count = 0;

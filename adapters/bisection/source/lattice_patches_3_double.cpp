@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lattice_blocks.hpp"
+#include "lattice_patches.hpp"
 
 namespace nestgrid {
 

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What BlockWalk asks of grid and field: new nodes, their keys and values, eight at once or in
-// rows; included by block_walk.hpp.
+// What PatchWalk asks of grid and field: new nodes, their keys and values, eight at once or in
+// rows; included by patch_walk.hpp.
 #pragma once
 
-#include <patches/block_walk.hpp>
+#include <patches/patch_walk.hpp>
 
 namespace nestgrid {
 
-/// One end of a block says it for all of them.
+/// One end of a patch says it for all of them.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_whether_split(
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_whether_split(
     const Batch& batch, std::array<bool, room_>& ends) const {
     const auto& [from, to] = pattern_.parent[pattern_.part[ends_].middle];
     if constexpr (AnswersInRows<Grid>) {
@@ -31,7 +31,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::look_whether_split(
 /// \param end in packs of eight, up to the next one
 template <class Grid, class Field, class Visitor>
 template <class T, class Middle>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve(const T* from, const T* to, T* middles,
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve(const T* from, const T* to, T* middles,
                                                             std::size_t first, std::size_t end,
                                                             const Middle& middle) {
     if constexpr (Packable<T>) {
@@ -46,7 +46,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve(const T* from, const
 }
 
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve_keys(const Batch& batch,
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve_keys(const Batch& batch,
                                                                  std::size_t node,
                                                                  std::size_t first, std::size_t end,
                                                                  NodeKey* middles) const {
@@ -59,7 +59,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::halve_keys(const Batch& ba
 }
 
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) const {
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) const {
     const auto each_new_node = [&](auto&& function) NESTGRID_INLINE_LAMBDA {
         for (std::size_t first = 0; first < batch.count; first += pack) {
             unrolled<pattern_.nodes - corners_>([&](auto i) NESTGRID_INLINE_LAMBDA {
@@ -90,7 +90,7 @@ NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
 
 /// The same in rows.
 template <class Grid, class Field, class Visitor>
-void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
+void PatchWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
     const auto row = [&](auto* of) { return std::span(of, packed(batch.count)); };
     for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
         const auto& [from, to] = pattern_.parent[at];
@@ -107,7 +107,7 @@ void BlockWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
 
 /// What is known of them in subtrees.
 template <class Grid, class Field, class Visitor>
-NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::number_nodes(Batch& batch) const {
+NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::number_nodes(Batch& batch) const {
     constexpr int height = InSubtree::height * static_cast<int>(pattern_.height);
     const bool below = batch.level >= subtree_level_ + height;
     for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
@@ -124,7 +124,7 @@ NESTGRID_NOINLINE void BlockWalk<Grid, Field, Visitor>::number_nodes(Batch& batc
 
 /// Of ends.
 template <class Grid, class Field, class Visitor>
-NESTGRID_INLINE void BlockWalk<Grid, Field, Visitor>::find_new_nodes(const Batch& batch,
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::find_new_nodes(const Batch& batch,
                                                                      std::size_t first,
                                                                      std::size_t end,
                                                                      Ends& ends) const {

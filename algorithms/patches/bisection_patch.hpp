@@ -15,12 +15,12 @@
 
 namespace nestgrid {
 
-/// The elements of a block, numbered like a heap: part 1 is the whole, parts 2i and 2i + 1 are the
+/// The elements of a patch, numbered like a heap: part 1 is the whole, parts 2i and 2i + 1 are the
 /// halves of part i, and the last 2^height parts are its ends.
-template <std::size_t corner_count, std::size_t block_height>
-struct BisectionBlock {
+template <std::size_t corner_count, std::size_t patch_height>
+struct BisectionPatch {
     static constexpr std::size_t corners = corner_count;
-    static constexpr std::size_t height = block_height;
+    static constexpr std::size_t height = patch_height;
     static_assert(height == 0 || height == 2 || height == 3);
     static constexpr std::size_t ends = std::size_t{1} << height;
     static constexpr std::size_t most_nodes = corners + ends - 1;
@@ -59,7 +59,7 @@ struct BisectionBlock {
 
     /// \param of part 1
     template <std::size_t count>
-    constexpr BisectionBlock(const std::array<KnownBisection, count>& bisections, std::size_t of) {
+    constexpr BisectionPatch(const std::array<KnownBisection, count>& bisections, std::size_t of) {
         for (std::size_t i = 0; i < 4; ++i) {
             part[1].corner[i] = static_cast<std::uint8_t>(std::min(i, corners - 1));
         }
@@ -101,7 +101,7 @@ struct BisectionBlock {
         }
     }
 
-    friend constexpr bool operator==(const BisectionBlock&, const BisectionBlock&) = default;
+    friend constexpr bool operator==(const BisectionPatch&, const BisectionPatch&) = default;
 
     /// The largest part in which an end lies that is one of some, or else the end.
     /// \param stops of parts 2 ... ends - 1, one bit each from bit 0
@@ -129,21 +129,21 @@ private:
     }
 };
 
-/// The blocks of a grid (known_bisection.hpp): their ends are of the bisection they start with. Of
+/// The patches of a grid (known_bisection.hpp): their ends are of the bisection they start with. Of
 /// height 0 where it does not say how high they are.
 template <class Grid>
-inline constexpr auto block_of = [] {
+inline constexpr auto patch_of = [] {
     constexpr std::size_t height = [] {
-        if constexpr (KnowsBlocks<Grid>) return std::size_t{Grid::block_height};
+        if constexpr (KnowsPatches<Grid>) return std::size_t{Grid::patch_height};
         return std::size_t{0};
     }();
-    return BisectionBlock<static_cast<std::size_t>(Grid::dimension) + 1, height>(
+    return BisectionPatch<static_cast<std::size_t>(Grid::dimension) + 1, height>(
         Grid::bisections, Grid::bisections.size() - 1);
 }();
 
-/// Parts of a block in the order of the traversal: what stops, and the ends that are entered.
+/// Parts of a patch in the order of the traversal: what stops, and the ends that are entered.
 template <std::size_t ends>
-struct BlockOrder {
+struct PatchOrder {
     std::array<std::uint8_t, ends> part{};
     std::uint8_t count = 0;
 };
@@ -151,10 +151,10 @@ struct BlockOrder {
 /// By the parts 2 ... ends - 1 that are entered, one bit each from bit 0, and, in the bits above,
 /// those that stop. Only such as are reached.
 template <const auto& pattern>
-inline constexpr auto block_orders = [] {
+inline constexpr auto patch_orders = [] {
     constexpr std::size_t ends = pattern.ends;
     constexpr std::size_t bits = ends - 2;
-    std::array<BlockOrder<ends>, std::size_t{1} << 2 * bits> result{};
+    std::array<PatchOrder<ends>, std::size_t{1} << 2 * bits> result{};
     for (std::size_t i = 0; i < result.size(); ++i) {
         const auto is_set = [&](std::size_t part, std::size_t from) {
             return part < ends && (i >> (part - 2 + from) & 1U) != 0;
@@ -174,7 +174,7 @@ inline constexpr auto block_orders = [] {
 template <const auto& pattern>
 inline constexpr auto end_orders = [] {
     constexpr std::size_t ends = pattern.ends;
-    std::array<BlockOrder<ends>, std::size_t{1} << ends> result{};
+    std::array<PatchOrder<ends>, std::size_t{1} << ends> result{};
     for (std::size_t i = 0; i < result.size(); ++i) {
         for (std::size_t end = 0; end < ends; ++end) {
             if ((i >> end & 1U) == 0) continue;
@@ -199,8 +199,8 @@ inline constexpr auto parts_around = [] {
 
 /// Those of Maubach's bisections.
 template <int dim>
-inline constexpr auto maubach_block =
-    BisectionBlock<static_cast<std::size_t>(dim) + 1, static_cast<std::size_t>(dim)>(
+inline constexpr auto maubach_patch =
+    BisectionPatch<static_cast<std::size_t>(dim) + 1, static_cast<std::size_t>(dim)>(
         maubach_bisections<dim>(), static_cast<std::size_t>(dim) - 1);
 
 namespace detail {
@@ -212,7 +212,7 @@ constexpr bool is_same(const A& a, const B& b) {
 }  // namespace detail
 
 template <class Grid>
-concept HasMaubachBlocks = KnowsBlocks<Grid> &&
-    detail::is_same(block_of<Grid>, maubach_block<Grid::dimension>);
+concept HasMaubachPatches = KnowsPatches<Grid> &&
+    detail::is_same(patch_of<Grid>, maubach_patch<Grid::dimension>);
 
 }  // namespace nestgrid

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The walk in blocks over lattices, for the sources that instantiate it.
+// The walk in patches over lattices, for the sources that instantiate it.
 #pragma once
 
 #include <nestgrid/adapters/bisection.hpp>
@@ -9,18 +9,18 @@
 
 namespace nestgrid {
 
-template <int dim, WalkedInBlocks Sample, class Real>
-void bisect_blocks(const LatticeBisection<dim>& grid,
-                   const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext&,
-                   const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
-                   int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) {
+template <int dim, WalkedInPatches Sample, class Real>
+void bisect_patches(const LatticeBisection<dim>& grid,
+                    const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext&,
+                    const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
+                    int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) {
     detail::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
 }  // namespace nestgrid
 
 #define NESTGRID_INSTANTIATE(dim, Sample, Real)                                           \
-    template void nestgrid::bisect_blocks(                                                \
+    template void nestgrid::bisect_patches(                                               \
         const LatticeBisection<dim>&, const LatticeField<LatticeBisection<dim>, Sample>&, \
         NoContext&, const LatticeBisection<dim>::Element&, const Real*, int, int,         \
         detail::ErasedBisectionVisitor<dim, Real>&);

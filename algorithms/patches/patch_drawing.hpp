@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Draws the selected blocks of a batch, level by level: lists the contours of all blocks, finds or
-// makes the vertices of all cuts, and appends the simplices. The surface has the order and the bits
-// of the general walk.
+// Draws the selected patches of a batch, level by level: lists the contours of all patches, finds
+// or makes the vertices of all cuts, and appends the simplices. The surface has the order and the
+// bits of the general walk.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 #include <contours/contour_filling.hpp>
 #include <contours/level.hpp>
-#include <patches/block_contour_run.hpp>
+#include <patches/patch_contour_run.hpp>
 #include <surfaces/level_surface.hpp>
 #include <surfaces/simplex_tally.hpp>
 
@@ -21,34 +21,34 @@ namespace nestgrid::engine {
 
 /// What batches are drawn into: a surface for each level. All is borrowed.
 template <int dimension, class Real>
-struct BlockTarget {
+struct PatchTarget {
     std::span<const Level<Real>> levels;
     std::span<LevelSurface<dimension>> surfaces;
     SimplexTally* tally;
     int* deepest;  ///< depth of the deepest element drawn so far
 };
 
-/// \tparam Blocks a batch of blocks
-template <int dimension, class Real, class Blocks>
-class BlockDrawing {
-    static constexpr const auto& pattern_ = Blocks::pattern;
+/// \tparam Patches a batch of patches
+template <int dimension, class Real, class Patches>
+class PatchDrawing {
+    static constexpr const auto& pattern_ = Patches::pattern;
     static constexpr Shape shape_ = dimension == 2 ? Shape::triangle : Shape::tetrahedron;
     using Places = BatchPlaces<pattern_>;
-    using Run = BlockContourRun<pattern_>;
-    using Target = BlockTarget<dimension, Real>;
+    using Run = PatchContourRun<pattern_>;
+    using Target = PatchTarget<dimension, Real>;
     using Surface = LevelSurface<dimension>;
     using Number = typename Surface::Number;
 
 public:
-    BlockDrawing(const Target& target, const Blocks& blocks, const BatchSelection& selection)
+    PatchDrawing(const Target& target, const Patches& patches, const BatchSelection& selection)
         : target_{&target},
-          blocks_{&blocks},
+          patches_{&patches},
           selection_{&selection},
-          contours_{&BlockContours::of<pattern_>()} {}
+          contours_{&PatchContours::of<pattern_>()} {}
 
-    /// Draws the selection. \return the number of leaves in blocks that a level passes through
+    /// Draws the selection. \return the number of leaves in patches that a level passes through
     unsigned draw() {
-        std::array<std::uint8_t, 2 * most_blocks> parts{};  // drawn parts, by id
+        std::array<std::uint8_t, 2 * most_patches> parts{};  // drawn parts, by id
         for (std::size_t l = 0; l < target_->levels.size(); ++l) {
             level_ = &target_->levels[l];
             surface_ = &target_->surfaces[l];
@@ -62,41 +62,41 @@ public:
                     entry_[count_] = {&front, &contour, 0, static_cast<std::uint16_t>(id)};
                     count_ += contour.parts == 0 ? 0 : 1;
                 };
-                if (!Places::is_block(id)) {
+                if (!Places::is_patch(id)) {
                     see(contours_->alone());
-                } else if (const auto* block = contours_->block(blocks_->undivided[id])) {
-                    see(*block);
+                } else if (const auto* patch = contours_->patch(patches_->undivided[id])) {
+                    see(*patch);
                 } else {
-                    see(contours_->half(2, blocks_->undivided[id]));
-                    see(contours_->half(3, blocks_->undivided[id]));
+                    see(contours_->half(2, patches_->undivided[id]));
+                    see(contours_->half(3, patches_->undivided[id]));
                 }
             }
             if (count_ > 0) draw_entries();
         }
         if (!selection_->ends_are_leaves) return 0;
         unsigned leaves = 0;
-        for (std::size_t b = selection_->first_block; b < selection_->end_of_blocks; ++b) {
-            leaves += count_bits(unsigned{parts[b]} & blocks_->ends[b]);
+        for (std::size_t b = selection_->first_patch; b < selection_->end_of_patches; ++b) {
+            leaves += count_bits(unsigned{parts[b]} & patches_->ends[b]);
         }
         return leaves;
     }
 
 private:
-    using Front = BlockContours::Front;
-    struct Entry {  // a block, half a block or simplex that the level passes through
+    using Front = PatchContours::Front;
+    struct Entry {  // a patch, half a patch or simplex that the level passes through
         const Front* front;
-        const BlockContours::Contour* contour;
+        const PatchContours::Contour* contour;
         std::uint16_t first_cut;
         std::uint16_t id;  // in the batch
     };
 
     std::span<const Entry> entries() const { return {entry_.data(), count_}; }
     int level_of(std::size_t id, int depth) const {
-        return Places::is_block(id) ? blocks_->level + depth
-                                    : int{blocks_->element_levels[id % most_blocks]};
+        return Places::is_patch(id) ? patches_->level + depth
+                                    : int{patches_->element_levels[id % most_patches]};
     }
 
-    /// Sets signs_: the nodes of each block and simplex with U >= C, one bit each.
+    /// Sets signs_: the nodes of each patch and simplex with U >= C, one bit each.
     NESTGRID_INLINE void set_signs() {
         using Bits = Pack<MaskOf<Real>>;
         const auto least_inside = Pack<Real>::all(level_->least_inside);
@@ -105,24 +105,24 @@ private:
             for (std::size_t b = first / pack * pack; b < end; b += pack) {
                 auto signs = Bits::all(0);
                 unrolled<rows>([&](auto i) NESTGRID_INLINE_LAMBDA {
-                    const auto value = Pack<Real>::load(blocks_->values[first_row + i] + b);
+                    const auto value = Pack<Real>::load(patches_->values[first_row + i] + b);
                     signs =
                         signs | (at_most(least_inside, value) & Bits::all(MaskOf<Real>{1} << i));
                 });
                 signs.store(signs_.data() + to + b);
             }
         };
-        set(std::integral_constant<std::size_t, Places::block_rows>{}, 0, selection_->first_block,
-            selection_->end_of_blocks, 0);
-        set(std::integral_constant<std::size_t, pattern_.corners>{}, Places::block_rows, 0,
-            blocks_->element_count, most_blocks);
+        set(std::integral_constant<std::size_t, Places::patch_rows>{}, 0, selection_->first_patch,
+            selection_->end_of_patches, 0);
+        set(std::integral_constant<std::size_t, pattern_.corners>{}, Places::patch_rows, 0,
+            patches_->element_count, most_patches);
     }
 
-    /// The parts of a block that are selected, one bit at the first end of each.
+    /// The parts of a patch that are selected, one bit at the first end of each.
     NESTGRID_INLINE unsigned parts_meant(std::size_t id) const {
-        if (!Places::is_block(id)) return 1;
-        const auto stops = static_cast<std::size_t>(blocks_->stops[id]);
-        return (selection_->ends_are_leaves ? unsigned{blocks_->ends[id]} : 0U) |
+        if (!Places::is_patch(id)) return 1;
+        const auto stops = static_cast<std::size_t>(patches_->stops[id]);
+        return (selection_->ends_are_leaves ? unsigned{patches_->ends[id]} : 0U) |
                pattern_.first_ends[stops % pattern_.part_sets] |
                static_cast<unsigned>(stops / pattern_.part_sets);
     }
@@ -132,13 +132,13 @@ private:
     template <class Function>
     void for_each_part(const Entry& entry, Function&& function) const {
         const auto signs = static_cast<unsigned>(signs_[entry.id]);
-        if (!Places::is_block(entry.id)) return function(std::size_t{1}, signs);
+        if (!Places::is_patch(entry.id)) return function(std::size_t{1}, signs);
         const unsigned meant = parts_meant(entry.id);
-        const unsigned undivided = blocks_->undivided[entry.id];
+        const unsigned undivided = patches_->undivided[entry.id];
         for (std::size_t end = 0; end < pattern_.ends; ++end) {
             if ((entry.contour->parts & meant & 1U << end) == 0) continue;
             const std::size_t part = pattern_.part_above(end, undivided);
-            function(part, BlockContours::signs_of(pattern_.part[part], pattern_.corners, signs));
+            function(part, PatchContours::signs_of(pattern_.part[part], pattern_.corners, signs));
         }
     }
 
@@ -175,7 +175,7 @@ private:
         std::size_t count = 0;
         for (const Entry& entry : entries()) {
             for_each_part(entry, [&](std::size_t part, unsigned bits) {
-                elements[count++] = {blocks_->element(entry.id, part), shape_,
+                elements[count++] = {patches_->element(entry.id, part), shape_,
                                      level_of(entry.id, pattern_.part[part].depth),
                                      contours_->piece(bits).count == 4 ? 2U : 1U};
             });
@@ -189,12 +189,12 @@ private:
             const std::size_t id = entry.id;
             const unsigned meant = parts_meant(id);
             *target_->deepest = std::max(*target_->deepest, level_of(id, entry.contour->depth));
-            if (static_cast<double>(blocks_->greatest_bounds[id]) > surface_->error_bound()) {
+            if (static_cast<double>(patches_->greatest_bounds[id]) > surface_->error_bound()) {
                 raise_error_bound(id, entry.contour->parts & meant);
             }
             entry.first_cut = static_cast<std::uint16_t>(run.cut_count);
             if ((entry.contour->parts & ~meant) == 0) {
-                run.append(*entry.front, *entry.contour, id, blocks_->mirrored(id));
+                run.append(*entry.front, *entry.contour, id, patches_->mirrored(id));
                 continue;
             }
             for_each_part(entry, [&](std::size_t part, unsigned bits) {
@@ -204,7 +204,7 @@ private:
                         static_cast<std::uint16_t>(Places::of(id, pattern_.part[part].corner[i]));
                 }
                 run.append_alone(*contours_, bits, places,
-                                 blocks_->mirrored(id) != pattern_.part[part].mirrored);
+                                 patches_->mirrored(id) != pattern_.part[part].mirrored);
             });
         }
     }
@@ -215,21 +215,21 @@ private:
         const auto raise = [&](Real bound) {
             surface_->raise_error_bound(static_cast<double>(bound));
         };
-        if (!Places::is_block(id)) return raise(blocks_->greatest_bounds[id]);
+        if (!Places::is_patch(id)) return raise(patches_->greatest_bounds[id]);
         for (std::size_t part = 2; part < 2 * pattern_.ends; ++part) {
-            if ((blocks_->stops[id] >> (part - 2) & 1U) == 0) continue;
-            if ((parts >> pattern_.first_end(part) & 1U) != 0) raise(blocks_->bounds[part][id]);
+            if ((patches_->stops[id] >> (part - 2) & 1U) == 0) continue;
+            if ((parts >> pattern_.first_end(part) & 1U) != 0) raise(patches_->bounds[part][id]);
         }
     }
 
-    /// Whether a face of a block or simplex lies on a face of the element with which the walk in
-    /// blocks began. Faces on the boundary of the domain do.
+    /// Whether a face of a patch or simplex lies on a face of the element with which the walk in
+    /// patches began. Faces on the boundary of the domain do.
     NESTGRID_INLINE bool is_on_root_face(std::size_t id) const {
         SubtreeNode faces = 0;
         for (std::size_t across = 0; across < pattern_.corners; ++across) {
             SubtreeNode of_all = root_faces;
             for (std::size_t i = 0; i < pattern_.corners; ++i) {
-                if (i != across) of_all &= blocks_->in_subtree[0][Places::of(id, i)];
+                if (i != across) of_all &= patches_->in_subtree[0][Places::of(id, i)];
             }
             faces |= of_all;
         }
@@ -240,7 +240,7 @@ private:
     NESTGRID_INLINE void put_boundaries(std::span<const BatchEdge> cuts, const Number* v) {
         for (const Entry& entry : entries()) {
             const std::size_t id = entry.id;
-            if (!is_on_root_face(id) || blocks_->boundary(id, 1) == 0) continue;
+            if (!is_on_root_face(id) || patches_->boundary(id, 1) == 0) continue;
             for_each_part(entry, [&](std::size_t part, unsigned bits) {
                 const auto& piece = contours_->piece(bits);
                 const auto place = [&](std::size_t corner) {
@@ -255,11 +255,11 @@ private:
                     }
                     corners[i] = v[cut];
                 }
-                put_boundary(corners, piece, blocks_->boundary(id, part));
+                put_boundary(corners, piece, patches_->boundary(id, part));
             });
         }
     }
-    void put_boundary(const std::array<Number, 4>& corners, const BlockContours::Piece& piece,
+    void put_boundary(const std::array<Number, 4>& corners, const PatchContours::Piece& piece,
                       unsigned boundary) {
         for (std::size_t i = 0; i < piece.count; ++i) {
             if ((boundary >> piece.face[i] & 1U) == 0) continue;
@@ -271,23 +271,23 @@ private:
         }
     }
 
-    // block_vertices.hpp
+    // patch_vertices.hpp
     void find_vertices(std::span<const BatchEdge> cuts, Number* v);
     void make_vertices(std::span<const BatchEdge> cuts, Number* v);
     void add_vertices(std::span<const BatchEdge> cuts);
     void verify_vertices(std::span<const BatchEdge> cuts, const Number* v);
 
     const Target* target_;
-    const Blocks* blocks_;
+    const Patches* patches_;
     const BatchSelection* selection_;
-    const BlockContours* contours_;
+    const PatchContours* contours_;
     const Level<Real>* level_ = nullptr;
     Surface* surface_ = nullptr;
-    std::array<MaskOf<Real>, 2 * most_blocks> signs_;  // nodes with U >= C, by id
+    std::array<MaskOf<Real>, 2 * most_patches> signs_;  // nodes with U >= C, by id
     std::size_t count_ = 0;
-    std::array<Entry, 3 * most_blocks + 1> entry_;  // a block may need two
+    std::array<Entry, 3 * most_patches + 1> entry_;  // a patch may need two
 };
 
 }  // namespace nestgrid::engine
 
-#include <patches/block_vertices.hpp>
+#include <patches/patch_vertices.hpp>

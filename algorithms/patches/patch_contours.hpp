@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables of contours, by the signs at the nodes of a block of simplices.
+// Tables of contours, by the signs at the nodes of a patch of simplices.
 //
-// A contour holds the loops of all parts of the block that are drawn: its ends, or larger parts
-// that are not divided. It lists every cut edge once. A block whose drawn parts have more than
+// A contour holds the loops of all parts of the patch that are drawn: its ends, or larger parts
+// that are not divided. It lists every cut edge once. A patch whose drawn parts have more than
 // seven nodes is drawn as two halves, which keeps the tables an eighth of the size.
 #pragma once
 
@@ -15,13 +15,13 @@
 #include <vector>
 
 #include <contours/contour_table.hpp>
-#include <patches/block_batch.hpp>
+#include <patches/patch_batch.hpp>
 
 namespace nestgrid::engine {
 
-/// The contours of blocks, of halves of blocks and of single simplices. Simplices refer to cuts by
-/// their number within the contour.
-class BlockContours {
+/// The contours of patches, of halves of patches and of single simplices. Simplices refer to cuts
+/// by their number within the contour.
+class PatchContours {
 public:
     struct Cut {
         std::uint8_t low;   ///< the node with U < C, or its row in a batch
@@ -41,7 +41,7 @@ public:
         std::uint8_t cut_count = 0;
         std::uint8_t simplex_count = 0;
         std::uint8_t parts = 0;      ///< parts that have a loop, one bit at the first end of each
-        std::uint8_t depth : 4 = 0;  ///< depth in the block of the deepest of these parts
+        std::uint8_t depth : 4 = 0;  ///< depth in the patch of the deepest of these parts
         std::uint8_t four_count : 4 = 0;
     };
     /// The three cuts that are the corners of a triangle; in two dimensions the first two.
@@ -50,14 +50,14 @@ public:
     struct Four {
         std::uint8_t first_simplex;  ///< the first of the two triangles in the contour
         std::array<std::uint8_t, 4> cut;
-        std::uint8_t mirrored;  ///< whether its simplex is mirrored relative to the block
+        std::uint8_t mirrored;  ///< whether its simplex is mirrored relative to the patch
         std::array<std::uint8_t, 2> unused;
     };
 
-    /// The contours of a set of parts that fill a block, a half of one, or are one simplex.
+    /// The contours of a set of parts that fill a patch, a half of one, or are one simplex.
     class Front {
     public:
-        /// \param signs bit i says that node i of the block (corner i of a simplex) has U >= C
+        /// \param signs bit i says that node i of the patch (corner i of a simplex) has U >= C
         NESTGRID_INLINE const Contour& at(std::size_t signs) const {
             return contours_[number_[signs & nodes_]];
         }
@@ -66,8 +66,8 @@ public:
         NESTGRID_INLINE const Cut* cuts(const Contour& c) const {
             return cuts_.data() + c.first_cut;
         }
-        /// The simplices of a contour, in the order of its parts. Those of mirrored blocks lie
-        /// behind those of blocks that are not mirrored.
+        /// The simplices of a contour, in the order of its parts. Those of mirrored patches lie
+        /// behind those of patches that are not mirrored.
         NESTGRID_INLINE const Corners* simplices(const Contour& c, bool mirrored) const {
             // Branch-free: mirroring is unpredictable.
             return simplices_.data() + c.first_simplex + (c.simplex_count & (mirrored ? ~0U : 0U));
@@ -77,7 +77,7 @@ public:
         }
 
     private:
-        friend class BlockContours;
+        friend class PatchContours;
 
         std::size_t nodes_ = 0;  // of the parts, one bit each
         std::vector<std::uint16_t> number_;
@@ -89,18 +89,18 @@ public:
 
     /// The table of a pattern of bisections, made when it is first asked for.
     template <const auto& pattern>
-    static const BlockContours& of() {
-        static const BlockContours table{Of<pattern>{}};
+    static const PatchContours& of() {
+        static const PatchContours table{Of<pattern>{}};
         return table;
     }
 
     /// The contours of a single simplex.
     const Front& alone() const { return alone_; }
-    /// The contours of a block.
+    /// The contours of a patch.
     /// \param undivided the parts 2 ... ends - 1 that are not divided, one bit each
-    /// \return null where the block must be drawn as two halves
-    NESTGRID_INLINE const Front* block(std::size_t undivided) const { return block_[undivided]; }
-    /// The contours of one half of a block.
+    /// \return null where the patch must be drawn as two halves
+    NESTGRID_INLINE const Front* patch(std::size_t undivided) const { return patch_[undivided]; }
+    /// The contours of one half of a patch.
     /// \param part 2 or 3
     NESTGRID_INLINE const Front& half(std::size_t part, unsigned undivided) const {
         return half_[part - 2][number_of_half(part, undivided)];
@@ -108,7 +108,7 @@ public:
     /// The loop of a single simplex.
     /// \param signs bit i says that corner i has U >= C
     const Piece& piece(unsigned signs) const { return pieces_[signs]; }
-    /// The signs at the corners of a part of a block.
+    /// The signs at the corners of a part of a patch.
     template <class Part>
     static unsigned signs_of(const Part& part, std::size_t corners, unsigned signs) {
         unsigned bits = 0;
@@ -120,12 +120,12 @@ private:
     template <const auto& pattern>
     struct Of {};
     template <const auto& pattern>
-    explicit BlockContours(Of<pattern>);
+    explicit PatchContours(Of<pattern>);
 
     template <const auto& pattern>
     struct Maker;
 
-    /// Limit of the nodes of a block that is not drawn as two halves.
+    /// Limit of the nodes of a patch that is not drawn as two halves.
     static constexpr std::size_t most_nodes_ = 7;
 
     /// The index of the table of a half: its number, and which of the two parts in it are divided.
@@ -136,17 +136,17 @@ private:
 
     std::array<Piece, 16> pieces_;
     Front alone_;
-    std::vector<std::unique_ptr<const Front>> blocks_;
-    std::array<const Front*, 64> block_{};
+    std::vector<std::unique_ptr<const Front>> patches_;
+    std::array<const Front*, 64> patch_{};
     std::array<std::array<Front, 8>, 2> half_;
 };
 
 template <const auto& pattern>
-struct BlockContours::Maker {
-    using Block = std::remove_cvref_t<decltype(pattern)>;
+struct PatchContours::Maker {
+    using Patch = std::remove_cvref_t<decltype(pattern)>;
     static constexpr unsigned all = (1U << pattern.corners) - 1;
 
-    const BlockContours& table;
+    const PatchContours& table;
     Front front{};
     Contour contour{};
     std::array<std::array<std::uint8_t, 16>, 16> number{};  // 1 + the number of a cut; 0: none
@@ -170,7 +170,7 @@ struct BlockContours::Maker {
         contour.first_four = static_cast<std::uint32_t>(front.fours_.size());
     }
     /// \param first_row the row of node 0 in a batch
-    void add(unsigned signs, const typename Block::Part& part, std::size_t end,
+    void add(unsigned signs, const typename Patch::Part& part, std::size_t end,
              std::size_t first_row) {
         const unsigned bits = signs_of(part, pattern.corners, signs);
         if (bits == 0 || bits == all) return;
@@ -236,13 +236,13 @@ struct BlockContours::Maker {
 };
 
 template <const auto& pattern>
-BlockContours::BlockContours(Of<pattern>) {
+PatchContours::PatchContours(Of<pattern>) {
     using Made = Maker<pattern>;
     const Shape shape = pattern.corners == 3 ? Shape::triangle : Shape::tetrahedron;
     for (unsigned bits = 1; bits < Made::all; ++bits) pieces_[bits] = make_piece(shape, bits);
 
     using Parts = std::vector<std::pair<std::size_t, std::size_t>>;  // a part and its first end
-    alone_ = Made{*this}.make(Parts{{1, 0}}, BatchPlaces<pattern>::block_rows);
+    alone_ = Made{*this}.make(Parts{{1, 0}}, BatchPlaces<pattern>::patch_rows);
 
     if constexpr (pattern.height > 0) {
         static_assert(pattern.part_sets <= 64);
@@ -271,15 +271,15 @@ BlockContours::BlockContours(Of<pattern>) {
             }
             const Front*& front = known[parts];
             if (front == nullptr) {
-                blocks_.push_back(std::make_unique<const Front>(Made{*this}.make(parts, 0)));
-                front = blocks_.back().get();
+                patches_.push_back(std::make_unique<const Front>(Made{*this}.make(parts, 0)));
+                front = patches_.back().get();
             }
-            block_[undivided] = front;
+            patch_[undivided] = front;
         }
     }
 }
 
-inline BlockContours::Piece BlockContours::make_piece(Shape shape, unsigned signs) {
+inline PatchContours::Piece PatchContours::make_piece(Shape shape, unsigned signs) {
     Piece piece;
     const ContourLoop& from = ContourTable::of(shape).plain(signs)->loop[0];
     piece.count = from.count;

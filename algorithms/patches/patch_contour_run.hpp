@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contours of all selected blocks of a batch in three dense lists: cuts, simplices and
+// The contours of all selected patches of a batch in three dense lists: cuts, simplices and
 // quadrilaterals. Loops over dense lists have predictable ends; loops over the cuts of a single
-// block do not.
+// patch do not.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 #include <cstring>
 #include <span>
 
-#include <patches/block_contours.hpp>
+#include <patches/patch_contours.hpp>
 
 namespace nestgrid::engine {
 
-/// \tparam pattern the pattern of bisections of the blocks
+/// \tparam pattern the pattern of bisections of the patches
 template <const auto& pattern>
-class BlockContourRun {
-    using Contour = BlockContours::Contour;
-    using Front = BlockContours::Front;
+class PatchContourRun {
+    using Contour = PatchContours::Contour;
+    using Front = PatchContours::Front;
 
 public:
     using Cut = BatchEdge;
@@ -31,16 +31,16 @@ public:
         std::array<std::uint16_t, 2> unused;
     };
 
-    // Limits for a full batch of blocks and as many single simplices.
-    static constexpr std::size_t most_fours = most_blocks * (pattern.ends + 1);
+    // Limits for a full batch of patches and as many single simplices.
+    static constexpr std::size_t most_fours = most_patches * (pattern.ends + 1);
     static constexpr std::size_t most_cuts = 4 * most_fours;
     static constexpr std::size_t most_simplices = 2 * most_fours;
 
-    /// Appends the contour of a block or a single simplex.
+    /// Appends the contour of a patch or a single simplex.
     /// \param id of it in the batch
     NESTGRID_INLINE void append(const Front& front, const Contour& contour, std::size_t id,
                                 bool mirrored) {
-        const auto slot = static_cast<std::uint16_t>(id % most_blocks);
+        const auto slot = static_cast<std::uint16_t>(id % most_patches);
         const auto first = static_cast<std::uint16_t>(cut_count);
         const auto simplex = static_cast<std::uint16_t>(simplex_count);
         const auto turned = static_cast<std::uint16_t>(mirrored ? 1 : 0);
@@ -54,8 +54,8 @@ public:
         constexpr std::size_t simplices_at_once = 8;
         constexpr std::size_t fours_at_once = 2;
         const auto put_cuts = [&](std::size_t from) NESTGRID_INLINE_LAMBDA {
-            widen<2 * cuts_at_once, most_blocks>(cuts + from, cut_.data() + cut_count + from,
-                                                 by_slot);
+            widen<2 * cuts_at_once, most_patches>(cuts + from, cut_.data() + cut_count + from,
+                                                  by_slot);
         };
         const auto put_simplices = [&](std::size_t from) NESTGRID_INLINE_LAMBDA {
             widen<3 * simplices_at_once, 1>(simplices + from,
@@ -76,8 +76,8 @@ public:
         simplex_count += contour.simplex_count;
         four_count += contour.four_count;
     }
-    /// Appends the contour of one part of a block of which not all drawn parts are selected.
-    NESTGRID_NOINLINE void append_alone(const BlockContours& contours, unsigned bits,
+    /// Appends the contour of one part of a patch of which not all drawn parts are selected.
+    NESTGRID_NOINLINE void append_alone(const PatchContours& contours, unsigned bits,
                                         const std::array<std::uint16_t, 4>& places, bool mirrored);
 
     std::size_t cut_count = 0;
@@ -138,10 +138,10 @@ private:
 };
 
 template <const auto& pattern>
-void BlockContourRun<pattern>::append_alone(const BlockContours& contours, unsigned bits,
+void PatchContourRun<pattern>::append_alone(const PatchContours& contours, unsigned bits,
                                             const std::array<std::uint16_t, 4>& places,
                                             bool mirrored) {
-    const BlockContours::Piece& piece = contours.piece(bits);
+    const PatchContours::Piece& piece = contours.piece(bits);
     std::array<std::uint16_t, 4> cut{};
     for (std::size_t i = 0; i < piece.count; ++i) {
         cut[i] = static_cast<std::uint16_t>(cut_count);
