@@ -29,7 +29,8 @@ struct Bisection {
     static constexpr int max_corners = dim + 1;
     static constexpr int max_new_nodes = 1;
     static constexpr int max_children = 2;
-    static constexpr int block_height = dim;  // after as many bisections the tag is the same again
+    static constexpr int pattern_height =
+        dim;  // after as many bisections the tag is the same again
     static constexpr bool conforming = true;
     static constexpr const char* name = "bisection";
     static constexpr Shape shape = dim == 2 ? Shape::triangle : Shape::tetrahedron;

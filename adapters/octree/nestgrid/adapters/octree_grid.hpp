@@ -17,7 +17,7 @@ struct Octree {
     static constexpr int max_corners = 1 << dim;
     static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
     static constexpr int max_children = 1 << dim;
-    static constexpr int block_height = 1;
+    static constexpr int pattern_height = 1;
     static constexpr bool conforming = false;
     static constexpr const char* name = "octree";
     static constexpr Shape only_shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;

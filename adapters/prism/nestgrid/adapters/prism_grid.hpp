@@ -21,7 +21,7 @@ struct Prism {
     static constexpr int max_new_nodes = 12;
     static constexpr int max_children = 8;
     static constexpr Shape only_shape = Shape::prism;
-    static constexpr int block_height = 1;
+    static constexpr int pattern_height = 1;
     static constexpr bool conforming = false;
     static constexpr const char* name = "prism";
 

@@ -29,7 +29,7 @@ struct RedGreen {
     static constexpr int max_corners = corners;
     static constexpr int max_new_nodes = dim == 2 ? 5 : corners == 4 ? 6 : 19;
     static constexpr int max_children = dim == 2 ? 4 : corners == 4 ? 8 : 30;
-    static constexpr int block_height = 1;
+    static constexpr int pattern_height = 1;
     static constexpr bool conforming = true;
     static constexpr const char* name = "red-green";
 

@@ -94,7 +94,7 @@ public:
     }
 
 private:
-    static constexpr int max_exits_ = std::max(Family::max_children, 1 << Family::block_height);
+    static constexpr int max_exits_ = std::max(Family::max_children, 1 << Family::pattern_height);
 
     // Unpacking.
     template <class Marker>
@@ -110,7 +110,7 @@ private:
     bool all_children_want_it(const typename Tree::Element& e) const;
 
     // Packing.
-    struct Block {
+    struct Subtree {
         std::vector<std::uint16_t> tree;   // rules in preorder
         std::vector<std::uint32_t> inner;  // elements that have them
         std::vector<std::uint32_t> exits;
@@ -122,10 +122,10 @@ private:
         }
     };
     struct Level {  // room for one record, used again
-        std::array<Block, static_cast<std::size_t>(max_exits_)> block;
+        std::array<Subtree, static_cast<std::size_t>(max_exits_)> subtree;
         std::array<std::uint16_t, static_cast<std::size_t>(max_exits_)> code;
     };
-    void collect(std::uint32_t e, int height, Block& block);
+    void collect(std::uint32_t e, int height, Subtree& subtree);
     std::uint16_t written(std::uint16_t rule);
     std::uint32_t numbered(std::uint32_t node) {
         if (new_number_.empty()) return node;
@@ -262,17 +262,17 @@ std::uint16_t Rewrite<Family>::written(std::uint16_t rule) {
 }
 
 template <class Family>
-void Rewrite<Family>::collect(std::uint32_t e, int height, Block& block) {
+void Rewrite<Family>::collect(std::uint32_t e, int height, Subtree& subtree) {
     const auto& element = tree_.elements[e];
     if (height == 0 || element.rule == 0) {
-        block.tree.push_back(0);
-        block.exits.push_back(e);
+        subtree.tree.push_back(0);
+        subtree.exits.push_back(e);
         return;
     }
-    block.tree.push_back(written(element.rule));
-    block.inner.push_back(e);
+    subtree.tree.push_back(written(element.rule));
+    subtree.inner.push_back(e);
     const auto n = static_cast<std::uint32_t>(tree_.rule(element).children.size());
-    for (std::uint32_t k = 0; k < n; ++k) collect(element.child + k, height - 1, block);
+    for (std::uint32_t k = 0; k < n; ++k) collect(element.child + k, height - 1, subtree);
 }
 
 template <class Family>
@@ -297,7 +297,7 @@ template <class Family>
 std::uint32_t Rewrite<Family>::pack(std::uint16_t pattern, std::span<const std::uint32_t> exits,
                                     std::size_t depth) {
     if (levels_.size() <= depth) levels_.emplace_back();
-    auto& blocks = levels_[depth].block;
+    auto& subtrees = levels_[depth].subtree;
     const std::span<std::uint16_t> codes(levels_[depth].code.data(), exits.size());
     std::array<std::uint32_t, max_entities> reference;
     std::array<std::uint32_t, max_entities / 32> mask{};
@@ -307,13 +307,13 @@ std::uint32_t Rewrite<Family>::pack(std::uint16_t pattern, std::span<const std::
             ++leaves_;
             continue;
         }
-        blocks[j].clear();
-        collect(exits[j], Family::block_height, blocks[j]);
-        codes[j] = written_.pattern(blocks[j].tree);
+        subtrees[j].clear();
+        collect(exits[j], Family::pattern_height, subtrees[j]);
+        codes[j] = written_.pattern(subtrees[j].tree);
         const Pattern& refined = written_[codes[j]];
         const auto& entity_of_exit = written_[pattern].exits[j].entity;
         for (std::size_t i = 0; i < refined.inner.size(); ++i) {
-            const auto nodes = tree_.nodes(tree_.elements[blocks[j].inner[i]]);
+            const auto nodes = tree_.nodes(tree_.elements[subtrees[j].inner[i]]);
             for (std::size_t k = 0; k < nodes.size(); ++k) {
                 const unsigned entity = entity_of_exit[refined.inner[i].entity[k]];
                 mask[entity / 32] |= 1U << entity % 32;
@@ -321,7 +321,7 @@ std::uint32_t Rewrite<Family>::pack(std::uint16_t pattern, std::span<const std::
                 used_[reference[entity]] = true;
             }
         }
-        for (const std::uint32_t e : blocks[j].exits) {
+        for (const std::uint32_t e : subtrees[j].exits) {
             if (is_refined(e)) codes[j] |= Grid::has_record_;
         }
     }
@@ -345,10 +345,10 @@ std::uint32_t Rewrite<Family>::pack(std::uint16_t pattern, std::span<const std::
     for (std::size_t j = 0; j < codes.size(); ++j) {
         if ((codes[j] & Grid::has_record_) != 0) {
             const auto number = static_cast<std::uint16_t>(codes[j] & ~Grid::has_record_);
-            const std::uint32_t below = pack(number, blocks[j].exits, depth + 1);
+            const std::uint32_t below = pack(number, subtrees[j].exits, depth + 1);
             words_[link++] = below;
         } else if (codes[j] != 0) {
-            leaves_ += blocks[j].exits.size();
+            leaves_ += subtrees[j].exits.size();
         }
     }
     return at;

@@ -3,7 +3,7 @@
 //
 // What a family of stored hierarchies must answer. It is a class with
 //     static constexpr int dimension, max_corners, max_new_nodes, max_children;
-//     static constexpr int block_height;     levels of the tree that one pattern spans
+//     static constexpr int pattern_height;   levels of the tree that one pattern spans
 //     static constexpr bool conforming;      whether no node hangs after close()
 //     static constexpr const char* name;     of at most 15 characters
 //     static bool refines(Shape);            whether a coarse element may have the shape

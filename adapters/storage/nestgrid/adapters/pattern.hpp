@@ -3,7 +3,7 @@
 //
 // Patterns: how an element is refined, as the economical store sees it.
 //
-// A pattern is a rule, or a tree of rules that span several levels (a block of bisections). Its
+// A pattern is a rule, or a tree of rules that span several levels (a patch of bisections). Its
 // leaves are its exits.
 // Invariants:
 //   - every new node lies in one entity of the refined element: inside an edge, a quadrilateral
