@@ -9,7 +9,7 @@ namespace nestgrid::engine {
 
 namespace {
 
-/// Answers the questions of a walk in patches.
+/// Answers the questions of a walk in patches and draws its batches.
 template <int dimension, class Real>
 class PatchLevelSet final : public detail::ErasedBisectionVisitor<dimension, Real> {
     using Base = detail::ErasedBisectionVisitor<dimension, Real>;

@@ -7,7 +7,7 @@
 
 namespace nestgrid::engine {
 
-/// Takes the counts of a walk in patches: calls, and elements that are of interest.
+/// Takes the counts of a walk in patches: elements that it decided about, and those of interest.
 class PatchCounts {
 public:
     /// Called now and then with the counts so far.
@@ -24,8 +24,8 @@ protected:
     PatchCounts& operator=(PatchCounts&&) noexcept = default;
 };
 
-/// Draws level sets in the bisections below an element, walked in patches, as the general walk does
-/// to the last bit.
+/// Draws level sets in the bisections below an element, which it walks in patches. Each bit is that
+/// of the general walk. Requires LevelSearch::fits_patches() and facts().knows_patches.
 template <int dimension, class Real>
 void draw_in_patches(const Walk<Real>& walk, const ElementView<Real>& view,
                      const LevelSearch<Real>& search, const PatchTarget<dimension, Real>& target,

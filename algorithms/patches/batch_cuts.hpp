@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where edges between nodes of a batch of patches are cut by a level set.
+// Where a level set cuts edges between nodes of a batch of patches (patch_batch.hpp).
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,16 @@
 
 namespace nestgrid {
 
-/// Between two places of a batch: U < isovalue at one, U >= isovalue at the other.
+/// An edge between two places of a batch.
 struct BatchEdge {
-    std::uint16_t low;
-    std::uint16_t high;
+    std::uint16_t low;   ///< the place where U < isovalue
+    std::uint16_t high;  ///< the place where U >= isovalue
 };
 
 namespace detail {
 
+/// The cut of an edge.
+/// \param low, high positions of its ends
 template <class Batch>
 NESTGRID_INLINE WidePoint cut_between(const Batch& batch, const BatchEdge& edge, const Point& low,
                                       const Point& high, double isovalue) {
@@ -34,8 +36,9 @@ NESTGRID_INLINE WidePoint cut_between(const Batch& batch, const BatchEdge& edge,
     return a + cut_fraction(isovalue, value(edge.low), value(edge.high)) * (WidePoint(high) - a);
 }
 
-/// \param positions of packs of nodes
-/// \param edges a multiple of doubles_at_once
+/// Cuts edges in packs.
+/// \param positions positions(pack of nodes) gives their positions
+/// \param edges their number is a multiple of doubles_at_once
 template <class Batch, class Positions>
 NESTGRID_INLINE void cut_in_packs(const Batch& batch, const Positions& positions,
                                   std::span<const BatchEdge> edges, double isovalue,
@@ -69,6 +72,7 @@ NESTGRID_INLINE void cut_in_packs(const Batch& batch, const Positions& positions
     }
 }
 
+/// Cuts edges, and asks the grid for rows of positions.
 template <class Batch>
 void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, double isovalue,
                  WidePoint* to) {
@@ -91,8 +95,9 @@ void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, double is
 
 }  // namespace detail
 
-/// Where edges are cut; the same bits however the grid is asked.
-/// \param to as many
+/// Sets to[i] to the point at which a level set cuts edges[i]. The points have the same bits
+/// whether the grid gives positions one by one, in packs or in rows.
+/// \param to has room for edges.size() points
 template <class Batch>
 void cut_edges(const Batch& batch, std::span<const BatchEdge> edges, double isovalue,
                WidePoint* to) {

@@ -1,9 +1,18 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several bisections in a row as one pattern: which nodes there are, and which of them are the
-// corners of which element. Three of Maubach's bisections of a tetrahedron make 8 tetrahedra with
-// 10 nodes, two of a triangle 4 triangles with 6.
+// A *patch*: several bisections in a row as one pattern of nodes and elements. Three of Maubach's
+// bisections of a tetrahedron make 8 tetrahedra with 10 nodes, two of a triangle make 4 triangles
+// with 6 nodes.
+//
+// Words:
+//   - a *part* is an element of a patch. Part 1 is the element that the patch begins with, parts 2i
+//     and 2i + 1 are the children of part i;
+//   - an *end* is a part on the last level: end i is part 2^height + i. Each end begins a patch of
+//     the next level, or is a leaf;
+//   - *inner parts* are parts 2 ... 2^height - 1, neither part 1 nor ends;
+//   - a *set of inner parts* is a number whose bit i stands for part 2 + i, a *set of ends* one
+//     whose bit i stands for end i.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +24,8 @@
 
 namespace nestgrid {
 
-/// The elements of a patch, numbered like a heap: part 1 is the whole, parts 2i and 2i + 1 are the
-/// halves of part i, and the last 2^height parts are its ends.
+/// The parts and the nodes of a patch. Nodes are numbered: first the corners of part 1, then the
+/// new nodes of parts 1 ... ends - 1, then the new nodes of the ends.
 template <std::size_t corner_count, std::size_t patch_height>
 struct BisectionPatch {
     static constexpr std::size_t corners = corner_count;
@@ -26,38 +35,37 @@ struct BisectionPatch {
     static constexpr std::size_t most_nodes = corners + ends - 1;
 
     struct Part {
-        std::array<std::uint8_t, 4> corner{};  ///< nodes; of a triangle the last is there twice
-        std::uint8_t bisection = 0;
-        std::uint8_t middle = 0;  ///< the new node when it is split
-        std::uint8_t depth = 0;
-        bool mirrored = false;  ///< against part 1
+        std::array<std::uint8_t, 4> corner{};  ///< nodes; a triangle repeats its last one
+        std::uint8_t bisection = 0;            ///< number of the bisection that splits the part
+        std::uint8_t middle = 0;               ///< the new node of this bisection
+        std::uint8_t depth = 0;                ///< levels below part 1
+        bool mirrored = false;                 ///< whether it is a mirror image relative to part 1
 
         friend constexpr bool operator==(const Part&, const Part&) = default;
     };
 
-    /// What is reached when some of parts 2 ... ends - 1 are entered, one bit each from bit 0.
+    /// What a traversal reaches that enters part 1 and a set of inner parts.
     struct Reached {
-        std::uint8_t interior = 0;   ///< of those parts
-        std::uint8_t ends = 0;       ///< bit i: end i
-        std::uint8_t descended = 0;  ///< how many of the former are reached and entered
+        std::uint8_t interior = 0;   ///< the set of inner parts that it reaches
+        std::uint8_t ends = 0;       ///< the set of ends that it reaches
+        std::uint8_t descended = 0;  ///< number of inner parts that it reaches and enters
 
         friend constexpr bool operator==(const Reached&, const Reached&) = default;
     };
 
-    /// Sets of parts 2 ... ends - 1.
+    /// Number of sets of inner parts.
     static constexpr std::size_t part_sets = std::size_t{1} << (height == 0 ? 0 : ends - 2);
 
     std::array<Part, 2 * ends> part{};
-    std::array<Reached, part_sets> reached{};
-    /// The first end in each part of such a set, one bit each.
+    std::array<Reached, part_sets> reached{};  ///< by the set of inner parts that are entered
+    /// By set of inner parts: the set that holds the first end in each of these parts.
     std::array<std::uint8_t, part_sets> first_ends{};
-    std::size_t nodes = corners;
-    /// With the new nodes of the ends, which come last.
-    std::size_t all_nodes = corners;
-    /// Of every node but the corners of part 1, which come first.
+    std::size_t nodes = corners;      ///< number of nodes without the new nodes of the ends
+    std::size_t all_nodes = corners;  ///< number of all nodes
+    /// The two nodes in whose middle a node lies; not set for the corners of part 1.
     std::array<std::array<std::uint8_t, 2>, most_nodes + ends> parent{};
 
-    /// \param of part 1
+    /// \param of number of the bisection that splits part 1
     template <std::size_t count>
     constexpr BisectionPatch(const std::array<KnownBisection, count>& bisections, std::size_t of) {
         for (std::size_t i = 0; i < 4; ++i) {
@@ -85,7 +93,7 @@ struct BisectionPatch {
         nodes = all_nodes;
         for (std::size_t p = ends; height > 0 && p < part.size(); ++p) split(part[p]);
         for (unsigned entered = 0; height > 0 && entered < reached.size(); ++entered) {
-            unsigned parts = 4U | 8U;  // by number
+            unsigned parts = 4U | 8U;  // bit p stands for part p
             for (std::size_t p = 2; p < ends; ++p) {
                 if ((parts >> p & entered >> (p - 2) & 1U) == 0) continue;
                 parts |= 3U << (2 * p);
@@ -103,20 +111,23 @@ struct BisectionPatch {
 
     friend constexpr bool operator==(const BisectionPatch&, const BisectionPatch&) = default;
 
-    /// The largest part in which an end lies that is one of some, or else the end.
-    /// \param stops of parts 2 ... ends - 1, one bit each from bit 0
-    static constexpr std::size_t part_above(std::size_t end, unsigned stops) {
+    /// The largest part of a set in which an end lies, or the part that is the end where there is
+    /// none.
+    /// \param set a set of inner parts
+    static constexpr std::size_t part_above(std::size_t end, unsigned set) {
         for (std::size_t depth = height - 1; depth > 0; --depth) {
             const std::size_t p = (ends + end) >> depth;
-            if ((stops >> (p - 2) & 1U) != 0) return p;
+            if ((set >> (p - 2) & 1U) != 0) return p;
         }
         return ends + end;
     }
+    /// The first end that lies in part p.
     constexpr std::size_t first_end(std::size_t p) const {
         return (p << (height - part[p].depth)) - ends;
     }
 
 private:
+    /// The node in the middle of nodes a and b; adds it where it is new.
     constexpr std::uint8_t node_between(std::uint8_t a, std::uint8_t b) {
         for (std::size_t n = corners; n < all_nodes; ++n) {
             if ((parent[n][0] == a && parent[n][1] == b) ||
@@ -129,8 +140,8 @@ private:
     }
 };
 
-/// The patches of a grid (known_bisection.hpp): their ends are of the bisection they start with. Of
-/// height 0 where it does not say how high they are.
+/// The patch that a grid declares (known_bisection.hpp): the bisection of its ends is that of part
+/// 1. A patch of height 0, which is a single element, where the grid declares none.
 template <class Grid>
 inline constexpr auto patch_of = [] {
     constexpr std::size_t height = [] {
@@ -141,15 +152,16 @@ inline constexpr auto patch_of = [] {
         Grid::bisections, Grid::bisections.size() - 1);
 }();
 
-/// Parts of a patch in the order of the traversal: what stops, and the ends that are entered.
+/// Some parts of a patch in the order of the traversal.
 template <std::size_t ends>
 struct PatchOrder {
     std::array<std::uint8_t, ends> part{};
     std::uint8_t count = 0;
 };
 
-/// By the parts 2 ... ends - 1 that are entered, one bit each from bit 0, and, in the bits above,
-/// those that stop. Only such as are reached.
+/// The inner parts that stop and the ends that are reached, in order. The index holds the set of
+/// the inner parts that are entered and, shifted by ends - 2, the set of those that stop. Requires
+/// that the traversal reaches all parts of both sets.
 template <const auto& pattern>
 inline constexpr auto patch_orders = [] {
     constexpr std::size_t ends = pattern.ends;
@@ -160,7 +172,7 @@ inline constexpr auto patch_orders = [] {
             return part < ends && (i >> (part - 2 + from) & 1U) != 0;
         };
         for (std::size_t end = 0; end < ends; ++end) {
-            // A part is listed at the first end in it.
+            // Lists a part at the first end in it.
             const auto entered = static_cast<unsigned>(i % (std::size_t{1} << bits));
             const std::size_t part = pattern.part_above(end, ~entered);
             if (part < ends && (!is_set(part, bits) || end != pattern.first_end(part))) continue;
@@ -170,7 +182,7 @@ inline constexpr auto patch_orders = [] {
     return result;
 }();
 
-/// Some of the ends, by the set of them, one bit each.
+/// The ends of a set, in order; the index is the set.
 template <const auto& pattern>
 inline constexpr auto end_orders = [] {
     constexpr std::size_t ends = pattern.ends;
@@ -184,7 +196,7 @@ inline constexpr auto end_orders = [] {
     return result;
 }();
 
-/// The parts that have a node for their new one.
+/// The parts whose new node is `node`, ascending.
 template <const auto& pattern, std::size_t node>
 inline constexpr auto parts_around = [] {
     constexpr auto is_around = [](const auto& part) { return part.middle == node; };
@@ -197,7 +209,7 @@ inline constexpr auto parts_around = [] {
     return result;
 }();
 
-/// Those of Maubach's bisections.
+/// The patch of Maubach's bisections that begins with an element of tag `dim`.
 template <int dim>
 inline constexpr auto maubach_patch =
     BisectionPatch<static_cast<std::size_t>(dim) + 1, static_cast<std::size_t>(dim)>(
@@ -211,6 +223,7 @@ constexpr bool is_same(const A& a, const B& b) {
 }
 }  // namespace detail
 
+/// A grid whose patches are those of Maubach's bisections.
 template <class Grid>
 concept HasMaubachPatches = KnowsPatches<Grid> &&
     detail::is_same(patch_of<Grid>, maubach_patch<Grid::dimension>);

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The traversal of bisections known at compile time: elements stay in registers, and where the grid
-// says so, whole patches of them are looked at together (patch_walk.hpp).
+// Traverses bisections known at compile time (known_bisection.hpp). Elements stay in registers;
+// where the grid offers patches, PatchWalk takes over and looks at whole patches (patch_walk.hpp).
 //
-// Invariant: elements are extracted in the order of the plain traversal; a visitor may be shown
-// elements of a patch below one that it skips or stops at, and those answers are not used.
+// Invariant: the walk extracts elements in the order of the plain traversal. It may show a visitor
+// elements of a patch below one that the visitor skips or stops at; it does not use these answers.
 #pragma once
 
 #include <algorithm>
@@ -17,13 +17,14 @@ namespace nestgrid {
 
 /// Walks down from one element. A visitor has
 ///     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside)
-///             {Visit visit; Real bound;} of an element that is split; lo ... hi: its values
-///     bool glance_at_leaf(Real lo, Real hi)      whether to extract it
+///             decides about an element that `rule` splits and whose corner values lie in
+///             lo ... hi; `node` is its new node; returns {Visit visit; Real bound;}
+///     bool glance_at_leaf(Real lo, Real hi)   whether to extract a leaf
 ///     unsigned extract(const PatchBatch&, const BatchSelection&)
-///             elements beside patches
-///     void tick(looked_at, visited)              now and then
+///             extracts the selection
+///     void tick(looked_at, visited)           called now and then with the counts so far
 /// and, to be shown patches, what PatchWalk asks for.
-/// \tparam whole  what the grid says
+/// \tparam whole Grid::whole()
 template <class Grid, class Field, class Visitor, bool whole>
 class BisectionWalk {
 public:
@@ -37,13 +38,16 @@ public:
         pending_.begin(grid, 0);
     }
 
+    /// Walks e and all below it.
+    /// \param value the values at the corners of e
     void run(const ElementOf<Grid>& e, const Real* value, int level, int orientation) {
         start<0>(e, value, level, orientation);
         extract_pending();
     }
 
-    std::uint64_t looked_at() const { return count_.looked_at(); }  ///< elements
-    /// Of interest to the visitor.
+    /// Number of elements that the visitor decided about.
+    std::uint64_t looked_at() const { return count_.looked_at(); }
+    /// Number of elements that the walk entered or extracted.
     std::uint64_t visited() const { return count_.visited(); }
 
 private:
@@ -66,17 +70,20 @@ private:
             }
         }
         const std::array<Node, corners> n = grid_->nodes(e);
-        // Triangles take their last corner twice.
+        // A triangle passes its last corner twice.
         bisect<number>(n[0], n[1], n[2], n[corners - 1], u[0], u[1], u[2], u[corners - 1],
                        2 * level + (orientation < 0 ? 1 : 0));
     }
 
+    /// Decides about an element and walks below it.
+    /// \tparam number the bisection that splits it
     /// \param path twice the level, plus 1 where the orientation is negative
     template <std::size_t number>
     void bisect(Node n0, Node n1, Node n2, Node n3, Real u0, Real u1, Real u2, Real u3, int path);
     template <std::size_t number>
     void extract(const std::array<Node, 4>& n, const std::array<Real, 4>& u, int path, Real bound);
     void extract_pending();
+    /// Whether PatchWalk may take the element with corners n: whether it is whole.
     bool may_walk_patches(const std::array<Node, 4>& n) const {
         if constexpr (whole) {
             return true;
@@ -95,7 +102,8 @@ private:
     BatchSelection selection_;
 };
 
-/// Walks down from an element with these values; `end` is told the walk's counts.
+/// Walks down from e with `value` at its corners, and calls end(walk) afterwards, which may read
+/// the counts.
 template <class Grid, class Field, class Visitor, class End>
 void walk_bisections(const Grid& grid, const Field& field, Visitor& visitor,
                      const ElementOf<Grid>& e, const typename Field::value_type* value, int level,

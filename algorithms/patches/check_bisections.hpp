@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Checks that what is known of bisections (known_bisection.hpp) is what the grid itself says.
+// Checks that the bisections a grid tells (known_bisection.hpp) are those of split(), children()
+// and its other operations.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +16,10 @@
 
 namespace nestgrid::engine {
 
-/// Walks a grid that keeps the contract (check_grid.hpp), and has own keys and positions.
-/// \tparam Known the grid itself, or what it tells; Values likewise of the field
+/// Walks a grid and compares. Requires that the grid keeps the contract (check_grid.hpp) and has
+/// own keys and own positions.
+/// \tparam Known the grid itself, or its ToldBisections
+/// \tparam Values the field itself, or its ToldValues
 template <class Grid, class Field, class Known, class Values>
 class BisectionCheck {
 public:
@@ -27,7 +30,7 @@ public:
                    Context<Grid>& context)
         : grid_{grid}, field_{field}, known_{known}, values_{values}, context_{context} {}
 
-    /// The first difference as a sentence.
+    /// Compares all elements. \return the first difference as a sentence
     std::optional<std::string> run() {
         try {
             for (std::size_t i = 0; i < grid_.coarse_count(); ++i) {
@@ -147,8 +150,8 @@ private:
         }
     }
 
-    /// Whether several at once are what they are one by one: middles of nodes and of keys,
-    /// positions.
+    /// Demands that a pack of questions gets the answers of single ones: middles of nodes and of
+    /// keys, and positions.
     void check_packs(Node a, Node b, Node z) {
         demand(halves_packs(
                    a, b, z,
@@ -178,6 +181,8 @@ private:
                    "the middle of a pack of keys");
         }
     }
+    /// Whether middle(), of packs of `from` and `to`, gives `between` in all places; true where it
+    /// takes no packs.
     template <class T, class Middle>
     static bool halves_packs(T from, T to, T between, const Middle& middle) {
         if constexpr (Packable<T>) {
@@ -189,8 +194,9 @@ private:
         return true;
     }
 
-    /// Whether a row of nodes is answered as they are one by one.
-    /// \param n at the corners, \param a, \param b those of them that are halved where one is
+    /// Demands that a row of questions gets the answers of single ones.
+    /// \param n corners of an element
+    /// \param a, b ends of the edge at which its bisection splits it
     void check_rows(const Nodes& n, Node a, Node b) const {
         std::array<NodeKey, corners_> keys;
         std::array<Point, corners_> x;
@@ -200,12 +206,12 @@ private:
             demand(keys[i] == known_.key(n[i]), "a key in a row");
         }
         known_.positions(n, x);
-        values_.values_at(n, keys, u);  // of keys that were found right
+        values_.values_at(n, keys, u);  // the keys passed the loop above
         for (std::size_t i = 0; i < n.size(); ++i) {
             demand(x[i] == known_.position(n[i]), "a position in a row");
             demand(u[i] == values_.template value_at<true>(n[i], keys[i]), "a value in a row");
         }
-        // In either direction, and the answers in the place of the question.
+        // The edge in both directions; the answers overwrite the first argument.
         std::array<Node, 3> between{a, b, a};
         const std::array<Node, 3> to{b, a, b};
         known_.perhaps_middles(between, to, between);
@@ -213,7 +219,7 @@ private:
         demand(std::ranges::count(between, z) == std::ssize(between), "a middle in a row");
     }
 
-    /// How many elements there are so many levels below one, and how many of them are split.
+    /// Number of elements `height` levels below e. Adds to `split` how many of these are split.
     std::size_t count_patch_ends(const Element& e, std::size_t height, std::size_t& split) {
         const Rule* rule = detail::call_split(grid_, context_, e);
         if (height == 0) {
@@ -246,7 +252,7 @@ private:
     const Known& known_;
     const Values& values_;
     Context<Grid>& context_;
-    std::string name_;  // of the element
+    std::string name_;  // path from the coarse grid to the element at hand
 };
 
 }  // namespace nestgrid::engine

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Walks over bisections known at compile time (bisection_walk.hpp) with grid and visitor on either
-// side of a table: one call for an element that is looked at, or for eight, and one that
-// hands over all there is to know of what is to be extracted.
+// The walk over bisections known at compile time (bisection_walk.hpp) with virtual functions
+// between grid and visitor: one call decides about an element or about parts of eight patches, and
+// one call hands over a batch with all that the visitor needs to extract from it.
 #pragma once
 
 #include <cstring>
@@ -14,7 +14,8 @@
 
 namespace nestgrid::detail {
 
-/// A PatchBatch of maubach_patch.
+/// A PatchBatch of any grid whose patches are maubach_patch<dim>. Members have the names and
+/// meanings that they have there.
 template <int dim, class Real>
 class ErasedPatches {
 public:
@@ -30,7 +31,7 @@ public:
     const int level;
     const std::size_t element_count;
 
-    /// Rows of a batch.
+    /// Rows of one kind of numbers.
     template <class T>
     struct Rows {
         const T* all;
@@ -66,6 +67,7 @@ protected:
     ~ErasedPatches() = default;
 };
 
+/// What BisectionWalk and PatchWalk ask of a visitor, as virtual functions.
 template <int dim, class Real>
 class ErasedBisectionVisitor {
 public:
@@ -78,8 +80,9 @@ public:
                           bool outside) = 0;
     virtual bool glance_at_leaf(Real lo, Real hi) = 0;
     virtual void tick(std::uint64_t looked_at, std::uint64_t visited) = 0;
+    /// Takes the counts of the whole walk, at its end.
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
-    // Of patches of maubach_patch.
+    // The parts of maubach_patch<dim>: inner ones, and ends.
     virtual PackedSight<Real> see_within(const PackedPatches<Real>& patches) = 0;
     virtual PackedSight<Real> see_ends(const PackedPatches<Real>& patches) = 0;
     virtual void expect(const NodeKey* nodes, std::size_t rows) const = 0;
@@ -93,7 +96,7 @@ protected:
     ~ErasedBisectionVisitor() = default;
 };
 
-/// The grid's side.
+/// A visitor for BisectionWalk that forwards all calls to an ErasedBisectionVisitor.
 template <HasMaubachPatches Grid, class Real>
 class BisectionForwarder {
     static constexpr int dim = Grid::dimension;

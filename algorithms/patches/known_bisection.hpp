@@ -1,47 +1,57 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bisections known at compile time, of elements that are nothing but their corners: what lets the
+// Bisections known at compile time, of elements that are nothing but their corners. They let the
 // traversal keep an element in registers.
 //
-// A grid may offer, beside what it must:
-//     using Node                                       a handle of a node, a small value
+// A grid may offer, beside its required operations:
+//     using Node                                    a small value that identifies a node
 //     static constexpr std::array<KnownBisection, k> bisections;
-//     std::size_t bisection(e)                         which one splits e, where it is split
-//     std::array<Node, dimension + 1> nodes(e)
-//     Element element(std::size_t number, const std::array<Node, dimension + 1>&)
-//     const Rule& rule(std::size_t number)
-//     bool halved(Node a, Node b)                      whether an edge to be bisected is
-//     Node middle(Node a, Node b)                      its new node; where nodes are numbers, best
-//                                                      of a Pack of them as well
+//     std::size_t bisection(e)                      number in `bisections` of the one that splits
+//                                                   e, or would split the leaf e
+//     std::array<Node, dimension + 1> nodes(e)      the corners of e
+//     Element element(std::size_t number, const std::array<Node, dimension + 1>& nodes)
+//                                                   the element with these corners that bisection
+//                                                   `number` splits
+//     const Rule& rule(std::size_t number)          bisection `number` as a rule
+//     bool halved(Node a, Node b)                   whether the grid splits the elements whose
+//                                                   bisection would halve the edge from a to b
+//     Node middle(Node a, Node b)                   the new node on that edge; where nodes are
+//                                                   numbers, preferably of Packs of nodes, too
 //     NodeKey key(Node)
 //     Point position(Node)
-//     bool whole()                                     that nothing is masked or outside
-// and, best,
-//     void with_packed_positions<count>(function)      calls function(positions), once, where
-//                                                      positions(Pack<Node, count>) is a
-//                                                      PackedPoint<count> of the same positions
-// They must agree with split(), children(), new_keys(), corner_keys() and corner_positions(); its
+//     bool whole()                                  whether nothing is masked or outside
+// and, preferably,
+//     void with_packed_positions<count>(function)   calls function(positions), once, where
+//                                                   positions(Pack<Node, count>) is a
+//                                                   PackedPoint<count> of the same positions
+// They must agree with split(), children(), new_keys(), corner_keys() and corner_positions(). The
+// grid must have no hanging nodes, and must offer own keys, own positions and boundary faces. Its
 // field offers
 //     template <bool whole> value_type value_at(Node, NodeKey)
-// Nothing hangs in such a grid, and it knows keys, positions and boundary faces by heart. It may
-// also offer
-//     static constexpr std::size_t patch_height        2 or 3
-//     NodeKey middle_key(NodeKey a, NodeKey b)         key of the new node between two; likewise
+//                                                   the value at a node; `whole` is true only
+//                                                   where whole() is
+//
+// The grid may also offer patches (bisection_patch.hpp), which the engine walks side by side
+// (patch_walk.hpp):
+//     static constexpr std::size_t patch_height     2 or 3
+//     NodeKey middle_key(NodeKey a, NodeKey b)      key of the new node between nodes with keys a
+//                                                   and b; preferably of Packs of keys, too
 //     bool whole(const std::array<Node, dimension + 1>& nodes)
-//                                                      of a grid that is not whole(): that nothing
-//                                                      in the element with these nodes is masked or
-//                                                      outside, nor a node of it
-// which says that an element split by the last of the bisections is split that many times over,
-// into elements of the last bisection again, of which either all are split or none; then those are
-// looked at together (patch_walk.hpp), where they are whole. Where each question is a call, as
-// through a table, it offers answers in rows instead of middle_key(), and its field values:
+//                                                   where whole() may be false: whether the
+//                                                   element with these corners is whole, that is,
+//                                                   neither it nor anything in it is masked or
+//                                                   outside
+// By this it promises: an element that the last one of `bisections` splits is split patch_height
+// times over, into elements of the last bisection again, and the grid splits all of these or none.
+// Where each question is a call, as through a table, the grid answers rows of questions instead of
+// middle_key(), and the field, too:
 //     void middles(span<const Node> a, span<const Node> b, span<Node> out)
 //     void keys(span<const Node>, span<NodeKey> out)
 //     void positions(span<const Node>, span<Point> out)
 //     static constexpr Node no_node
 //     void perhaps_middles(span<const Node> a, span<const Node> b, span<Node> out)
-//                                                      no_node where an edge is not halved
+//                                                   no_node where the grid does not halve an edge
 //     void values_at(span<const Node>, span<const NodeKey>, span<value_type> out)
 #pragma once
 
@@ -88,7 +98,7 @@ concept AnswersInRows = requires(const Grid& grid, std::span<const typename Grid
     { Grid::no_node } -> std::convertible_to<typename Grid::Node>;
 };
 
-/// Of a grid that is not whole.
+/// A grid that tells which of its elements are whole.
 template <class Grid>
 concept TellsWhereWhole = requires(
     const Grid& grid,

@@ -1,8 +1,18 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Patches of bisections (bisection_patch.hpp) side by side: a row of numbers for each of their
-// nodes, so that one loop does the same for all of them; and elements beside them.
+// Patches (bisection_patch.hpp) side by side, so that one loop does the same for all of them, and
+// single elements beside them.
+//
+// Words:
+//   - a *batch* holds up to most_patches patches of one level, in the order of the traversal, and
+//     up to as many single elements of any levels;
+//   - a *row* holds one number for each patch of a batch, such as the keys of node 4 of all
+//     patches, or one for each single element, such as the keys of corner 0 of all elements. A
+//     row is most_patches numbers long, a whole number of packs (pack.hpp);
+//   - an *id* names what is in a batch: patch b has id b, single element e has id most_patches + e;
+//   - a *place* is the index of a node of a patch, or of a corner of a single element, in rows that
+//     lie one behind the other.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +30,7 @@
 
 namespace nestgrid {
 
-/// Where the nodes of a pattern's patches, and the corners of the elements beside them, are kept in
-/// the rows of a batch. What is in a batch has a number: patches have 0 ... most_patches - 1, and
-/// the elements those that follow.
+/// The places of a batch: first all nodes of patches, then the corners of single elements.
 template <const auto& pattern>
 struct BatchPlaces {
     static constexpr std::size_t patch_rows = pattern.height == 0 ? 0 : pattern.nodes;
@@ -30,13 +38,13 @@ struct BatchPlaces {
     static constexpr std::size_t count = rows * most_patches;
 
     static constexpr bool is_patch(std::size_t id) { return id < most_patches; }
-    /// Of a node of a patch, or of a corner of an element.
+    /// The place of a node of a patch, or of a corner of a single element.
     static constexpr std::size_t of(std::size_t id, std::size_t node) {
         return (node + (is_patch(id) ? 0 : patch_rows)) * most_patches + id % most_patches;
     }
 };
 
-/// How many of the lowest sixteen bits are set; there are no others.
+/// How many bits are set. Requires that all but the lowest sixteen are 0.
 template <class Unsigned>
 constexpr Unsigned count_bits(Unsigned bits) {
     bits = (bits & 0x5555U) + (bits >> 1U & 0x5555U);
@@ -45,25 +53,27 @@ constexpr Unsigned count_bits(Unsigned bits) {
     return (bits & 0x1FU) + (bits >> 8U);
 }
 
-/// Of a batch, what is to be extracted, by number, in the order of the traversal: elements, and of
-/// patches the parts that stop and, where these are leaves, the ends that are reached.
+/// What a visitor shall extract from a batch, in the order of the traversal: single elements, and
+/// of each patch the parts that stop and, where ends are leaves, the ends that are reached.
 struct BatchSelection {
     bool ends_are_leaves = false;
     std::size_t count = 0;
     std::array<std::uint8_t, 2 * most_patches> id;
-    // There are no other patches among them.
+    // The selected patches are first_patch ... end_of_patches - 1.
     std::size_t first_patch = 0;
     std::size_t end_of_patches = 0;
 
+    /// Selects the single element with this id.
     NESTGRID_INLINE void add(std::size_t number) {
         id[count++] = static_cast<std::uint8_t>(number);
     }
+    /// Selects patch b. Requires that it follows the patch selected last.
     NESTGRID_INLINE void add_patch(std::size_t b) {
         add(b);
         if (end_of_patches == 0) first_patch = b;
         end_of_patches = b + 1;
     }
-    /// Patches first ... end - 1; nothing else yet.
+    /// Selects patches first ... end - 1. Requires an empty selection.
     NESTGRID_INLINE void add_patches(std::size_t first, std::size_t end) {
         static constexpr auto numbers = [] {
             std::array<std::uint8_t, 2 * most_patches> all{};
@@ -81,7 +91,7 @@ struct BatchSelection {
     }
 };
 
-/// Patches on one level, in the order of the traversal, and elements on any level.
+/// A batch of the patches of a grid.
 template <class Grid, class Real>
 struct PatchBatch {
     using Node = typename Grid::Node;
@@ -90,7 +100,7 @@ struct PatchBatch {
     using Places = BatchPlaces<pattern>;
     template <class T>
     struct alignas(room * sizeof(T) % 64 == 0 ? 64 : alignof(T)) Row : std::array<T, room> {};
-    /// Numbers of all places, row by row.
+    /// Numbers at all places, row by row.
     template <class T>
     struct alignas(64) Rows {
         std::array<T, Places::count> all;
@@ -102,33 +112,37 @@ struct PatchBatch {
     };
 
     const Grid* grid;
-    int level;                      ///< of part 1 of the patches
-    std::size_t count;              ///< of patches
-    std::size_t element_count = 0;  ///< beside them
+    int level;                      ///< of part 1 of each patch
+    std::size_t count;              ///< number of patches
+    std::size_t element_count = 0;  ///< number of single elements
     Rows<Node> nodes;
     Rows<NodeKey> keys;
-    Rows<Real> values;                                ///< P_S U
-    Rows<SubtreeNode> in_subtree;                     ///< only where they are asked for
-    std::array<std::uint8_t, 2 * room> orientations;  ///< 1 in a mirror; of patches, part 1
-    /// Of patches, the ends that are reached, one bit each.
+    Rows<Real> values;             ///< P_S U
+    Rows<SubtreeNode> in_subtree;  ///< set where the visitor names edges
+    /// By id: whether the single element, or part 1 of the patch, is mirrored.
+    std::array<std::uint8_t, 2 * room> orientations;
+    /// By patch: the set of ends that the walk reaches.
     std::array<std::uint8_t, room> ends;
-    /// Of patches, where any stops, the parts that are not entered, from bit 0 on part 2; else 0.
+    /// By patch: the set of inner parts that the walk does not enter; 0 where no inner part stops.
     std::array<std::uint8_t, room> undivided;
-    /// Of patches, the parts that stop, from bit 0 on part 2, and what was said of them.
+    /// By patch: the parts that stop, inner parts and ends; bit i stands for part 2 + i.
     Row<MaskOf<Real>> stops;
+    /// By part, for each patch: how far U may leave the range of its corner values in the part.
     std::array<Row<Real>, 2 * pattern.ends> bounds;
-    /// Of patches, not below the bound of any part that stops; of elements, the bound.
+    /// By id: at least the bound of each part of the patch that stops; the bound of the element.
     std::array<Real, 2 * room> greatest_bounds;
-    // Of elements:
+    // By single element: its level, and the number of the bisection that splits it.
     std::array<std::uint16_t, room> element_levels;
     std::array<std::uint8_t, room> bisections;
 
+    /// Sets grid and level, and empties the list of patches, but not that of single elements.
     void begin(const Grid& of, int on_level) {
         grid = &of;
         level = on_level;
         count = 0;
     }
-    /// The corners of patch b, or of element b - room, in no subtree and in no root.
+    /// Sets nodes, keys and values at the corners of the patch or single element with id b. Marks
+    /// them as nodes of unknown place in subtree and root.
     void put_corners(std::size_t b, const std::array<Node, 4>& n, const std::array<Real, 4>& u,
                      bool mirror) {
         for (std::size_t i = 0; i < pattern.corners; ++i) {
@@ -140,16 +154,16 @@ struct PatchBatch {
         }
         orientations[b] = mirror ? 1 : 0;
     }
-    /// An element behind the others.
-    /// \param bound what is known of U in it beside the values at its corners
+    /// Appends a single element. Requires room for it.
+    /// \param bound how far U may leave the range of its corner values in the element
     void put_element(std::size_t bisection, const std::array<Node, 4>& n,
                      const std::array<Real, 4>& u, int on_level, bool mirror, Real bound) {
         const std::size_t e = element_count++;
         put_corners(room + e, n, u, mirror);
         set_element(e, bisection, on_level, bound);
     }
-    /// A part of a patch of any batch of the grid, in the place of the next element.
-    /// \tparam with_keys whether those and what is known of subtrees are wanted
+    /// Copies part p of patch b of a batch behind the single elements, without counting it.
+    /// \tparam with_keys whether to copy keys and in_subtree, too
     template <bool with_keys>
     NESTGRID_INLINE void copy_element(const PatchBatch& from, std::size_t b, std::size_t p,
                                       Real bound) {
@@ -170,7 +184,7 @@ struct PatchBatch {
         set_element(e, part.bisection, from.level + part.depth, bound);
     }
 
-    /// Repeats the last patch, that rows may be read up to packed(count). There is one.
+    /// Repeats the last patch, so that packs may read rows up to packed(count). Requires a patch.
     NESTGRID_INLINE void fill_up() {
         const std::size_t last = count - 1;
         for (std::size_t i = 0; i < pattern.corners; ++i) {
@@ -182,7 +196,7 @@ struct PatchBatch {
             }
         }
     }
-    /// The same with the values of elements. There is one.
+    /// Repeats the values of the first single element up to packed(element_count). Requires one.
     NESTGRID_INLINE void fill_up_elements() {
         for (std::size_t i = 0; i < pattern.corners; ++i) {
             Real* const row = values[Places::patch_rows + i];
@@ -190,15 +204,15 @@ struct PatchBatch {
         }
     }
 
-    /// Of what has a number.
+    /// Whether the single element with this id, or part 1 of the patch, is mirrored.
     NESTGRID_INLINE bool mirrored(std::size_t id) const { return orientations[id] != 0; }
-    /// Where edges are cut.
-    /// \param to as many
+    /// Sets to[i] to the point at which a level set cuts edges[i].
+    /// \param to has room for edges.size() points
     void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const {
         cut_edges(*this, edges, isovalue, to);
     }
     Point position(std::size_t place) const { return grid->position(nodes.all[place]); }
-    /// A part of a patch, or an element.
+    /// A part of the patch with this id, or the single element with it, whatever `part` is.
     ElementOf<Grid> element(std::size_t id, std::size_t part) const {
         const bool is_patch = Places::is_patch(id);
         std::array<Node, pattern.corners> of;
@@ -207,7 +221,7 @@ struct PatchBatch {
         }
         return grid->element(is_patch ? pattern.part[part].bisection : bisections[id - room], of);
     }
-    /// Faces of it on the boundary of the domain, one bit each.
+    /// The faces of element(id, part) on the boundary of the domain, one bit each.
     unsigned boundary(std::size_t id, std::size_t part) const {
         return grid->boundary_faces(element(id, part));
     }

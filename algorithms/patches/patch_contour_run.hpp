@@ -37,7 +37,7 @@ public:
     static constexpr std::size_t most_simplices = 2 * most_fours;
 
     /// Appends the contour of a patch or a single simplex.
-    /// \param id of it in the batch
+    /// \param id its id in the batch
     NESTGRID_INLINE void append(const Front& front, const Contour& contour, std::size_t id,
                                 bool mirrored) {
         const auto slot = static_cast<std::uint16_t>(id % most_patches);
@@ -90,7 +90,7 @@ public:
         return {simplex_.data(), simplex_count};
     }
     /// Divides a quadrilateral into two triangles.
-    /// \param other whether along the diagonal from its second cut, not from its first
+    /// \param other whether to divide it along the diagonal from its second cut, not from its first
     NESTGRID_INLINE void divide(const Four& four, bool other) {
         // The corners of both triangles; a mirrored simplex swaps the first two of each.
         static constexpr std::array<std::array<std::uint8_t, 6>, 4> order{

@@ -25,14 +25,14 @@ class PatchContours {
 public:
     struct Cut {
         std::uint8_t low;   ///< the node with U < C, or its row in a batch
-        std::uint8_t high;  ///< the node with U >= C, likewise
+        std::uint8_t high;  ///< the node with U >= C, or its row in a batch
     };
     /// The loop of one simplex: a segment, a triangle, or a quadrilateral that may be divided along
     /// either diagonal. Cuts name corners of the simplex in the place of nodes.
     struct Piece {
         std::uint8_t count = 0;
         std::array<Cut, 4> cut{};
-        std::array<std::uint8_t, 4> face{};  ///< of the simplex, that follows each cut in the loop
+        std::array<std::uint8_t, 4> face{};  ///< that of the side from cut i to i + 1
     };
     struct Contour {
         std::uint32_t first_cut = 0;
@@ -54,7 +54,7 @@ public:
         std::array<std::uint8_t, 2> unused;
     };
 
-    /// The contours of a set of parts that fill a patch, a half of one, or are one simplex.
+    /// The contours of parts that together fill a patch or a half of one, or of a single simplex.
     class Front {
     public:
         /// \param signs bit i says that node i of the patch (corner i of a simplex) has U >= C
@@ -79,7 +79,7 @@ public:
     private:
         friend class PatchContours;
 
-        std::size_t nodes_ = 0;  // of the parts, one bit each
+        std::size_t nodes_ = 0;  // nodes of the parts, one bit each
         std::vector<std::uint16_t> number_;
         std::vector<Contour> contours_;
         std::vector<Cut> cuts_;
@@ -87,7 +87,7 @@ public:
         std::vector<Four> fours_;
     };
 
-    /// The table of a pattern of bisections, made when it is first asked for.
+    /// The tables of a pattern of bisections. The first call makes them.
     template <const auto& pattern>
     static const PatchContours& of() {
         static const PatchContours table{Of<pattern>{}};
@@ -97,7 +97,7 @@ public:
     /// The contours of a single simplex.
     const Front& alone() const { return alone_; }
     /// The contours of a patch.
-    /// \param undivided the parts 2 ... ends - 1 that are not divided, one bit each
+    /// \param undivided the set of inner parts that are not divided
     /// \return null where the patch must be drawn as two halves
     NESTGRID_INLINE const Front* patch(std::size_t undivided) const { return patch_[undivided]; }
     /// The contours of one half of a patch.
@@ -125,10 +125,11 @@ private:
     template <const auto& pattern>
     struct Maker;
 
-    /// Limit of the nodes of a patch that is not drawn as two halves.
+    /// A patch whose drawn parts have more nodes is drawn as two halves.
     static constexpr std::size_t most_nodes_ = 7;
 
-    /// The index of the table of a half: its number, and which of the two parts in it are divided.
+    /// The index of the contours of a half: bit 0 says that the half is not divided, bits 1 and 2
+    /// that its children are not.
     static constexpr std::size_t number_of_half(std::size_t part, unsigned undivided) {
         return (undivided >> (part - 2) & 1U) | (undivided >> (2 * part - 2) & 3U) << 1U;
     }
@@ -141,6 +142,7 @@ private:
     std::array<std::array<Front, 8>, 2> half_;
 };
 
+/// Makes the contours of one front.
 template <const auto& pattern>
 struct PatchContours::Maker {
     using Patch = std::remove_cvref_t<decltype(pattern)>;
@@ -169,6 +171,7 @@ struct PatchContours::Maker {
         contour.first_simplex = static_cast<std::uint32_t>(front.simplices_.size());
         contour.first_four = static_cast<std::uint32_t>(front.fours_.size());
     }
+    /// Adds the loop of a part to the contour.
     /// \param first_row the row of node 0 in a batch
     void add(unsigned signs, const typename Patch::Part& part, std::size_t end,
              std::size_t first_row) {
@@ -201,6 +204,7 @@ struct PatchContours::Maker {
         front.simplices_.push_back(corners);
         ++contour.simplex_count;
     }
+    /// Adds the mirrored simplices, and files the contour under its signs.
     void finish(std::size_t signs) {
         front.number_[signs] = static_cast<std::uint16_t>(front.contours_.size());
         for (std::size_t i = 0; i < contour.simplex_count; ++i) {
@@ -210,6 +214,7 @@ struct PatchContours::Maker {
         }
         front.contours_.push_back(contour);
     }
+    /// Makes the contours of some parts, for all signs at their nodes.
     /// \param parts pairs of a part and its first end
     /// \param first_row the row of node 0 in a batch
     template <class Parts>

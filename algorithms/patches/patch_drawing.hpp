@@ -19,7 +19,7 @@
 
 namespace nestgrid::engine {
 
-/// What batches are drawn into: a surface for each level. All is borrowed.
+/// The surfaces that batches are drawn into, one for each level. Borrows everything.
 template <int dimension, class Real>
 struct PatchTarget {
     std::span<const Level<Real>> levels;
@@ -28,6 +28,7 @@ struct PatchTarget {
     int* deepest;  ///< depth of the deepest element drawn so far
 };
 
+/// Draws one selection from a batch.
 /// \tparam Patches a batch of patches
 template <int dimension, class Real, class Patches>
 class PatchDrawing {
@@ -142,6 +143,7 @@ private:
         }
     }
 
+    /// Draws the parts that the level passes through.
     NESTGRID_NOINLINE void draw_entries() {
         Run run;
         append_contours(run);
@@ -183,6 +185,7 @@ private:
         return count;
     }
 
+    /// Lists the contours of all entries, and raises the depth and the error bound of the surface.
     NESTGRID_INLINE void append_contours(Run& run) {
         for (std::size_t k = 0; k < count_; ++k) {
             Entry& entry = entry_[k];
@@ -222,8 +225,8 @@ private:
         }
     }
 
-    /// Whether a face of a patch or simplex lies on a face of the element with which the walk in
-    /// patches began. Faces on the boundary of the domain do.
+    /// Whether a face of a patch or simplex lies on a face of the root (subtree_nodes.hpp), as all
+    /// faces on the boundary of the domain do.
     NESTGRID_INLINE bool is_on_root_face(std::size_t id) const {
         SubtreeNode faces = 0;
         for (std::size_t across = 0; across < pattern_.corners; ++across) {
@@ -271,7 +274,7 @@ private:
         }
     }
 
-    // patch_vertices.hpp
+    // Defined in patch_vertices.hpp.
     void find_vertices(std::span<const BatchEdge> cuts, Number* v);
     void make_vertices(std::span<const BatchEdge> cuts, Number* v);
     void add_vertices(std::span<const BatchEdge> cuts);
@@ -285,7 +288,7 @@ private:
     Surface* surface_ = nullptr;
     std::array<MaskOf<Real>, 2 * most_patches> signs_;  // nodes with U >= C, by id
     std::size_t count_ = 0;
-    std::array<Entry, 3 * most_patches + 1> entry_;  // a patch may need two
+    std::array<Entry, 3 * most_patches + 1> entry_;  // a patch drawn as two halves takes two
 };
 
 }  // namespace nestgrid::engine

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a visitor makes of the parts of patches (bisection_patch.hpp), eight patches at once: those
-// around one new node together, for what is known of the node is asked for once.
+// How a visitor decides about parts of patches (bisection_patch.hpp), eight patches at once. It
+// gets all parts around one new node together, because it looks up the node only once then.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 
 namespace nestgrid {
 
-/// The least and the greatest of an element's values.
-/// \tparam Number Real, or several at once
+/// The least and the greatest of an element's corner values.
+/// \tparam Number Real or a Pack
 template <class Number>
 NESTGRID_INLINE std::pair<Number, Number> range_of(const Number& a, const Number& b,
                                                    const Number& c, const Number& d) {
@@ -31,53 +31,55 @@ NESTGRID_INLINE std::pair<Real, Real> range_of(const std::array<Real, 4>& u) {
     return range_of(u[0], u[1], u[2], u[3]);
 }
 
-/// The least and the greatest value at the corners of elements.
+/// The least and the greatest corner value of eight elements.
 template <class Real>
 using PackedRange = std::pair<Pack<Real>, Pack<Real>>;
 
-/// Elements that one rule splits, on one level, eight at once; some may be there several times.
-/// \tparam around how many lie around each new node
+/// Elements on one level that one rule splits, around eight new nodes. An element may be among them
+/// several times.
+/// \tparam around number of elements around each new node
 template <class Real, std::size_t around = 1>
 struct PackedElements {
     const Rule& rule;
     int level;
-    const NodeKey* node;  ///< new nodes
-    std::array<PackedRange<Real>, around> range;
+    const NodeKey* node;                          ///< the eight new nodes
+    std::array<PackedRange<Real>, around> range;  ///< range[i]: of element i around each node
 };
 
-/// What a visitor makes of them.
+/// The decision about PackedElements. Elements in neither mask are skipped.
 template <class Real, std::size_t around = 1>
 struct PackedGlance {
     std::array<typename Pack<Real>::Mask, around> descend;
-    std::array<typename Pack<Real>::Mask, around> stop;  ///< not both
-    Pack<Real> bound;                                    ///< where any of them stops
+    std::array<typename Pack<Real>::Mask, around> stop;  ///< disjoint from `descend`
+    /// By node, where an element around it stops: how far U may leave its range in the element.
+    Pack<Real> bound;
 };
 
-/// Eight patches of a batch, in rows that are most_patches apart.
+/// Eight patches of a batch. Pointers point into rows, and rows lie most_patches numbers apart.
 template <class Real>
 struct PackedPatches {
-    const Rule* const* rule;  ///< by number of the bisection
+    const Rule* const* rule;  ///< the rules, by number of the bisection
     int level;                ///< of part 1
-    const Real* values;       ///< of node 0, and so on
-    const NodeKey* keys;      ///< of the first one of the nodes that are new in the parts
-    Real* bounds;             ///< of part 0, and so on; set for the parts that are looked at
+    const Real* values;       ///< row of node 0; those of the other nodes follow
+    const NodeKey* keys;      ///< row of the first new node of the parts asked about
+    Real* bounds;             ///< row of part 0; see() sets those of the parts asked about
 };
 
-/// What is seen of some parts of eight patches: bit i of each for the i-th of them.
+/// The decision about some parts of eight patches: bit i of a mask stands for the i-th of them.
 template <class Real>
 struct PackedSight {
     Pack<MaskOf<Real>> descend;
     Pack<MaskOf<Real>> stop;
-    Pack<Real> greatest;  ///< bound where any stops
+    Pack<Real> greatest;  ///< at least the bound of each of these parts that stops
 };
 
-/// Which parts of patches.
+/// The parts of a patch that a visitor is asked about.
 enum class PatchParts : std::uint8_t {
-    inner,  ///< from part 2 on, those that are no ends
+    inner,  ///< parts 2 ... ends - 1
     ends,
 };
 
-/// What a visitor makes of parts of eight patches, reached or not.
+/// Asks visitor.glance() about parts of eight patches, whether the walk reaches them or not.
 template <const auto& pattern, PatchParts which, class Real, class Visitor>
 NESTGRID_INLINE PackedSight<Real> see(const PackedPatches<Real>& patches, Visitor& visitor) {
     using Bits = Pack<MaskOf<Real>>;

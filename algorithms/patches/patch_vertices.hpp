@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How PatchDrawing finds and makes vertices; included by patch_drawing.hpp.
+// How PatchDrawing finds and makes vertices. patch_drawing.hpp includes this header.
 #pragma once
 
 #include <patches/patch_drawing.hpp>
@@ -94,7 +94,7 @@ NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
     }
     const NodeKey* const key = patches_->keys[0];
     const SubtreeNode* const in_subtree = patches_->in_subtree[0];
-    constexpr double not_asked_for = 0;  // bisections are not walked in patches for normals
+    constexpr double not_asked_for = 0;  // only normals need it, which patches do not draw
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const auto& [low, high] = cuts[i];
         if (is_within_root(in_subtree[low], in_subtree[high])) {
@@ -105,6 +105,7 @@ NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
     }
 }
 
+/// Verifies that the vertex on every cut lies there.
 template <int dimension, class Real, class Patches>
 NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::verify_vertices(
     std::span<const BatchEdge> cuts, const Number* v) {

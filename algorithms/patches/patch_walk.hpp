@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The traversal of patches of bisections, many of one level at a time: what memory holds of all of
-// them is asked for at once, and nothing waits for what is said of another.
+// Traverses patches of bisections, a batch of one level at a time (patch_batch.hpp): the walk
+// fetches what it needs of all patches of a batch at once, so that no patch waits for the answer
+// about another one.
 //
-// Invariant: elements are extracted in the order of the plain traversal. A batch is a run of that
-// order, walked to its end before the next one begins; elements that stop travel down with the
-// patches before them, until all of those are done.
-// Memory: one batch a level of patches, on the stack: about 25 KB with single precision.
+// Invariant: the walk extracts elements in the order of the plain traversal. A batch is a run of
+// that order, and the walk finishes what is below a batch before it begins the next one. An element
+// that stops travels down with the patches before it, until the walk has finished these.
+// Memory: one batch for each level of patches, on the stack: about 25 KB in single precision.
 #pragma once
 
 #include <cstring>
@@ -16,14 +17,18 @@
 
 namespace nestgrid {
 
+/// Counts the elements of a walk.
 struct WalkCounts {
-    std::uint64_t bisected = 0;
-    std::uint64_t extracted = 0;
-    std::uint64_t masked = 0;
+    std::uint64_t bisected = 0;   ///< elements that the walk entered
+    std::uint64_t extracted = 0;  ///< elements that it extracted
+    std::uint64_t masked = 0;     ///< masked children, which it left out
 
-    std::uint64_t looked_at() const { return 1 + 2 * bisected - masked; }  ///< elements
-    std::uint64_t visited() const { return bisected + extracted; }         ///< of interest
+    /// Elements that a visitor decided about.
+    std::uint64_t looked_at() const { return 1 + 2 * bisected - masked; }
+    /// Elements of interest to it.
+    std::uint64_t visited() const { return bisected + extracted; }
 
+    /// Counts elements that the walk enters, and reports the counts now and then.
     template <class Visitor>
     void bisect(std::uint64_t more, Visitor& visitor) {
         bisected += more;
@@ -36,20 +41,23 @@ private:
     std::uint64_t next_tick_ = 0x4000U;
 };
 
-/// Walks down from an element that starts a patch and in which all is whole. A visitor has
-///     PackedGlance glance(const PackedElements&) what to do with each of them; or instead
+/// Walks down from an element that begins a patch. Requires that the element is whole
+/// (known_bisection.hpp). Beside glance() for single elements (BisectionWalk), a visitor has
+///     PackedGlance glance(const PackedElements&) decides about eight elements at once; or instead
 ///     PackedSight see<PatchParts>(const PackedPatches&)
-///                                                of many elements at once
+///                                             decides about parts of eight patches at once
 ///     void expect(const NodeKey* nodes, std::size_t rows)
-///                                                optional: eight nodes in each of some rows,
-///                                                most_patches apart, that will be glanced at
+///                                             optional: the walk will ask about eight nodes in
+///                                             each of these rows, most_patches apart
 ///     unsigned extract(const PatchBatch&, const BatchSelection&)
-///             what is selected, and in how many of the leaves there was anything to extract
-///     bool names_edges() const                   optional, with the next one: whether batches are
-///                                                to tell of nodes in subtrees (subtree_nodes.hpp)
-///     void begin_subtrees(std::uint32_t numbers) edges will have numbers below; what was inside
-///                                                subtrees before comes never again
-///     void tick(looked_at, visited)              now and then
+///                                             extracts the selection; returns the number of ends
+///                                             among it with anything to extract
+///     bool names_edges() const                optional, with begin_subtrees(): whether the walk
+///                                             shall set PatchBatch::in_subtree
+///     void begin_subtrees(std::uint32_t numbers) new subtrees begin (subtree_nodes.hpp): all edges
+///                                             have smaller numbers from now on, and edges inside
+///                                             earlier subtrees do not come again
+///     void tick(looked_at, visited)           called now and then with the counts so far
 template <class Grid, class Field, class Visitor>
 class PatchWalk {
 public:
@@ -61,6 +69,8 @@ public:
         for (std::size_t i = 0; i < rules_.size(); ++i) rules_[i] = &grid.rule(i);
     }
 
+    /// Walks an element and all below it.
+    /// \param n, u corners, and values at them
     /// \param path twice the level, plus 1 where the orientation is negative
     NESTGRID_NOINLINE void run(const std::array<Node, 4>& n, const std::array<Real, 4>& u,
                                int path);
@@ -80,43 +90,45 @@ private:
     using Batch = PatchBatch<Grid, Real>;
     template <class T>
     using Row = typename Batch::template Row<T>;
-    static constexpr unsigned interior_ = (1U << (ends_ - 2)) - 1;  // parts that are no ends
+    static constexpr unsigned interior_ = (1U << (ends_ - 2)) - 1;  // the set of all inner parts
 
-    /// An element that is extracted when the patches before it are done.
+    /// A part of a patch that stopped. The walk extracts it after the patches before it.
     struct Stopped {
-        const Batch* of;
+        const Batch* of;  // the batch of its patch
         std::uint8_t patch;
         std::uint8_t part;
-        std::uint8_t before;  // how many patches
+        std::uint8_t before;  // number of patches before it in the queue that holds it
         Real bound;
     };
-    /// A run of the order of the traversal.
+    /// A run of the order of the traversal: a batch, and stopped elements between its patches.
     struct Queue : Batch {
-        Row<MaskOf<Real>> entered;  // parts of patches, from bit 0 on part 2
+        Row<MaskOf<Real>> entered;  // by patch: set of inner parts to enter
         std::array<Stopped, stopped_room_ + 1> stopped;
         std::size_t stopped_count = 0;
-        std::size_t taken = 0;  // of them
+        std::size_t taken = 0;  // number of stopped elements that were taken out
 
-        /// The patch that the next of them comes before, if any.
+        /// The patch before which the next stopped element comes; if there is none, a greater
+        /// number than any patch has.
         std::size_t stopped_before() const {
             return taken < stopped_count ? stopped[taken].before : ~std::size_t{0};
         }
     };
-    /// What there is to know of the ends of patches, reached or not.
+    /// The visitor's decisions about the ends of patches, reached or not.
     struct Ends {
-        Row<MaskOf<Real>> descend;  // bit i: end i
+        Row<MaskOf<Real>> descend;  // by patch, a set of ends
         Row<MaskOf<Real>> stop;
-        std::array<Row<NodeKey>, pattern_.all_nodes - pattern_.nodes> keys;  // of new nodes
-        Row<Real> greatest;
+        // Keys of the new nodes of ends.
+        std::array<Row<NodeKey>, pattern_.all_nodes - pattern_.nodes> keys;
+        Row<Real> greatest;  // by patch: at least the bound of each end that stops
     };
 
-    /// The parts of a batch that the patches of the next one are.
+    /// By patch of the next batch: the patch and the part of this batch that it begins with.
     struct Origins {
         std::array<std::uint8_t, room_ + ends_> patch;
         std::array<std::uint8_t, room_ + ends_> part;
-        std::size_t copied;  // patches before this one are
+        std::size_t copied;  // patches before this one have their corners
 
-        /// Those of patch b. Nothing depends on how many they are.
+        /// Appends parts of patch b. Writes as many bytes however many parts there are.
         NESTGRID_INLINE void append(const PatchOrder<ends_>& order, std::size_t b,
                                     std::size_t& count) {
             std::memcpy(part.data() + count, order.part.data(), ends_);
@@ -150,12 +162,14 @@ private:
     static void note_stopped_ends(Queue& batch, std::size_t first, std::size_t end,
                                   const Ends& ends);
     static void copy_corners(const Batch& batch, Origins& which, Queue& next);
+    /// The parts of patch b that stop and the ends that are reached, in order.
     static const auto& order_of(const Queue& batch, std::size_t b) {
         return patch_orders<pattern_>[static_cast<std::size_t>(batch.entered[b] |
                                                                batch.stops[b] << (ends_ - 2))];
     }
-    /// \return whether there is no room for another
+    /// Appends a stopped element to a queue. \return whether the queue is full then
     static bool put(const Stopped& element, Queue& next);
+    /// Lets the visitor extract a selection, and empties it and the list of single elements.
     void extract(Queue& batch, BatchSelection& selection) {
         if (batch.element_count > 0) batch.fill_up_elements();
         count_->extracted +=
@@ -165,7 +179,8 @@ private:
     }
     void select(Queue& batch, const Stopped& element, BatchSelection& selection);
     void extract_first_stopped(Queue& next);
-    /// Calls function(const Stopped&) for those up to a patch that were not taken yet.
+    /// Takes the stopped elements before a patch out of a queue, and calls function(const Stopped&)
+    /// for each.
     template <class Function>
     static void take_stopped(Queue& batch, std::size_t patch, Function&& function) {
         while (batch.stopped_before() <= patch) {
@@ -179,7 +194,7 @@ private:
     Visitor* visitor_;
     WalkCounts* count_;
     std::array<const Rule*, last_ + 1> rules_;
-    int subtree_level_ = 0;  // on which subtrees start
+    int subtree_level_ = 0;  // the level on which subtrees begin
 };
 
 }  // namespace nestgrid

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What PatchWalk asks of grid and field: new nodes, their keys and values, eight at once or in
-// rows; included by patch_walk.hpp.
+// How PatchWalk asks grid and field for new nodes, their keys and values: eight at once, or in
+// rows. patch_walk.hpp includes this header.
 #pragma once
 
 #include <patches/patch_walk.hpp>
 
 namespace nestgrid {
 
-/// One end of a patch says it for all of them.
+/// Sets ends[b] to whether the ends of patch b are split. Asks about one end of a patch, because
+/// the grid splits all of them or none.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_whether_split(
     const Batch& batch, std::array<bool, room_>& ends) const {
@@ -27,8 +28,8 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_whether_split(
     }
 }
 
-/// Some of a row: what lies in the middle of two others.
-/// \param end in packs of eight, up to the next one
+/// Sets middles[b] = middle(from[b], to[b]) for b in first ... end - 1.
+/// Where middle() takes packs, sets all numbers of the packs in which these b lie.
 template <class Grid, class Field, class Visitor>
 template <class T, class Middle>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve(const T* from, const T* to, T* middles,
@@ -45,6 +46,7 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve(const T* from, const
     for (std::size_t b = first; b < end; ++b) middles[b] = middle(from[b], to[b]);
 }
 
+/// Sets middles[b] to the key of `node` of patch b, from the keys of its parents, as halve() does.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve_keys(const Batch& batch,
                                                                  std::size_t node,
@@ -58,6 +60,8 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve_keys(const Batch& ba
               });
 }
 
+/// Makes the new nodes of all patches but those of the ends, with keys and values, eight patches
+/// at once.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) const {
     const auto each_new_node = [&](auto&& function) NESTGRID_INLINE_LAMBDA {
@@ -88,7 +92,7 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
     });
 }
 
-/// The same in rows.
+/// Does the work of make_nodes(), and asks grid and field for whole rows.
 template <class Grid, class Field, class Visitor>
 void PatchWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
     const auto row = [&](auto* of) { return std::span(of, packed(batch.count)); };
@@ -105,7 +109,7 @@ void PatchWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
     }
 }
 
-/// What is known of them in subtrees.
+/// Sets in_subtree of the nodes that make_nodes() makes. Requires in_subtree of the corners.
 template <class Grid, class Field, class Visitor>
 NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::number_nodes(Batch& batch) const {
     constexpr int height = InSubtree::height * static_cast<int>(pattern_.height);
@@ -122,7 +126,8 @@ NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::number_nodes(Batch& batc
     }
 }
 
-/// Of ends.
+/// Finds the keys of the new nodes of the ends of patches first ... end - 1. Requires that these
+/// ends are split.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::find_new_nodes(const Batch& batch,
                                                                      std::size_t first,
@@ -142,7 +147,7 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::find_new_nodes(const Batch
         } else {
             halve_keys(batch, node, first, end, keys.data());
         }
-        // Others are not split.
+        // The ends of other patches in these packs may be leaves: repeats a key for such patches.
         std::fill(keys.begin() + from, keys.begin() + first, keys[first]);
         std::fill(keys.begin() + end, keys.begin() + to, keys[first]);
     }

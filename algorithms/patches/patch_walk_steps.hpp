@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of PatchWalk; included by patch_walk.hpp.
+// The steps of PatchWalk. patch_walk.hpp includes this header.
 #pragma once
 
 #include <patches/patch_walk.hpp>
@@ -12,7 +12,8 @@ template <class Grid, class Field, class Visitor>
 void PatchWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
                                           const std::array<Real, 4>& u, int path) {
     constexpr KnownBisection rule = Grid::bisections[last_];
-    // The deepest a patch can be that is as deep everywhere.
+    // The number of levels of patches below the element, counted at its corner a. Subtrees begin so
+    // far above the leaves that they end with these where all branches are as deep.
     int patches = 0;
     for (Node a = n[rule.parent[0]], b = n[rule.parent[1]]; grid_->halved(a, b); ++patches) {
         b = grid_->middle(a, b);
@@ -39,7 +40,8 @@ void PatchWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
     if (visit == Visit::descend) walk(first);
 }
 
-/// The patches of a batch, of which there are the corners, and all below them.
+/// Traverses the batch and all below it. Requires corner nodes, keys and values, and in_subtree
+/// where the visitor names edges.
 template <class Grid, class Field, class Visitor>
 void PatchWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     batch.fill_up();
@@ -56,7 +58,7 @@ void PatchWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     }
     look_within(batch);
     std::uint64_t descended = batch.count;
-    std::array<bool, room_> split;  // the ends of each
+    std::array<bool, room_> split;  // by patch: whether the grid splits its ends
     look_whether_split(batch, split);
     const std::size_t count = batch.count;
     for (std::size_t b = 0; b < count; ++b) {
@@ -90,6 +92,7 @@ void PatchWalk<Grid, Field, Visitor>::walk(Queue& batch) {
     finish(next);
 }
 
+/// Begins a subtree with each patch of the batch.
 template <class Grid, class Field, class Visitor>
 NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::begin_subtrees(Batch& batch) {
     for (std::size_t i = 0; i < corners_; ++i) {
@@ -99,7 +102,9 @@ NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::begin_subtrees(Batch& ba
     visitor_->begin_subtrees(InSubtree::edge_numbers(batch.count));
 }
 
-/// \param keys of the nodes that are new in these parts
+/// Asks the visitor about parts of the eight patches from `first` on. Sets their masks, bounds and
+/// greatest bounds.
+/// \param keys row of the first new node of these parts
 template <class Grid, class Field, class Visitor>
 template <PatchParts which>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_at(Batch& batch, std::size_t first,
@@ -121,6 +126,7 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_at(Batch& batch, std:
     seen.greatest.store(greatest + first);
 }
 
+/// Asks the visitor about the inner parts of all patches.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_within(Queue& batch) const {
     for (std::size_t first = 0; first < batch.count; first += pack) {
@@ -129,8 +135,9 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_within(Queue& batch) 
     }
 }
 
-/// Patches in which nothing is entered beyond the ends.
-/// \param are_leaves the ends
+/// Extracts patches first ... end - 1, with the stopped elements before them. Requires that the
+/// walk enters none of their ends.
+/// \param are_leaves whether the ends are leaves
 template <class Grid, class Field, class Visitor>
 NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::extract_patches(Queue& batch,
                                                                         std::size_t first,
@@ -153,7 +160,8 @@ NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::extract_patches(Queue& b
     extract(batch, selection);
 }
 
-/// To be extracted next.
+/// Copies a stopped element behind the single elements of the batch and selects it. Extracts the
+/// selection where the batch has no room for another.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::select(Queue& batch, const Stopped& element,
                                                              BatchSelection& selection) {
@@ -164,7 +172,7 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::select(Queue& batch, const
     if (batch.element_count == room_) extract(batch, selection);
 }
 
-/// Those that stopped before the first patch.
+/// Extracts the elements that stopped before the first patch.
 template <class Grid, class Field, class Visitor>
 NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::extract_first_stopped(Queue& next) {
     BatchSelection selection;
@@ -172,7 +180,8 @@ NESTGRID_NOINLINE void PatchWalk<Grid, Field, Visitor>::extract_first_stopped(Qu
     if (selection.count > 0) extract(next, selection);
 }
 
-/// Patches whose ends are split.
+/// Goes on below patches first ... end - 1: appends the ends that the walk enters, and the elements
+/// that stop, to `next`, and finishes `next` whenever it is full. Requires that the ends are split.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::enter(Queue& batch, std::size_t first,
                                                             std::size_t end, Queue& next) {
@@ -213,7 +222,8 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
         }
         take_stopped(batch, b, put_stopped);
         due = batch.stopped_before();
-        // No branch here depends on what was seen: both are written, and counted where they are so.
+        // No branch depends on the decisions: writes a part to both lists, and counts it in the one
+        // to which it belongs.
         const std::size_t descend_by_part = descends << ends_;
         const std::size_t stop_by_part = static_cast<std::size_t>(ends.stop[b]) << ends_ |
                                          static_cast<std::size_t>(batch.stops[b]) << 2U;
@@ -235,7 +245,8 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::enter(Queue& batch, std::s
     copy_corners(batch, which, next);
 }
 
-/// Of eight patches of which no end is reached nothing is asked.
+/// Asks the visitor about the ends of patches first ... end - 1. Does not ask about eight patches
+/// of which the walk reaches no end.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch, std::size_t first,
                                                                    std::size_t end,
@@ -262,7 +273,8 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_at_ends(Queue& batch,
     }
 }
 
-/// Of patches whose ends all stop or are skipped.
+/// Adds the ends that stop to the parts that stop. Requires that the walk enters no end of patches
+/// first ... end - 1.
 template <class Grid, class Field, class Visitor>
 void PatchWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, std::size_t first,
                                                         std::size_t end, const Ends& ends) {
@@ -273,6 +285,7 @@ void PatchWalk<Grid, Field, Visitor>::note_stopped_ends(Queue& batch, std::size_
     }
 }
 
+/// Copies the corners of the next patches from the batch.
 template <class Grid, class Field, class Visitor>
 NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::copy_corners(const Batch& batch,
                                                                    Origins& which, Queue& next) {
@@ -300,7 +313,7 @@ bool PatchWalk<Grid, Field, Visitor>::put(const Stopped& element, Queue& next) {
     return next.stopped_count == stopped_room_;
 }
 
-/// Walks what was gathered.
+/// Walks the queue and all below it, and empties it.
 template <class Grid, class Field, class Visitor>
 void PatchWalk<Grid, Field, Visitor>::finish(Queue& next) {
     if (next.stopped_before() == 0) extract_first_stopped(next);

@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a walk of patches (patch_walk.hpp) tells of nodes in the subtrees it passes through: on
-// which of their faces they lie, and a number, such that the sum of two tells one edge from
-// another. So who names edges needs a table of keys only for those that elements outside a subtree
-// may have.
+// What the walk in patches (patch_walk.hpp) tells about nodes, so that a visitor can name edges
+// without keys.
 //
-// The corners of a subtree have barycentric coordinates, and so has every node: integers, if its
-// edges are measured in the shortest that there can be. Edges of a conforming mesh have different
-// midpoints, and twice the midpoint is the sum of the ends. It is 0 for no edge: the node 0 is a
-// corner.
+// The *root* is the element with which a walk in patches began. A *subtree* is an element that
+// begins a patch, and all below it for some levels of patches; subtrees lie in the root. The walk
+// tells on which faces of subtree and root a node lies, and gives it a number, such that the sum of
+// two numbers tells one edge from another. So a visitor needs a table of keys only for edges that
+// elements outside a subtree may have.
+//
+// Why sums do this: nodes have barycentric coordinates in the subtree, which are integers in units
+// of the shortest edge. Edges of a conforming mesh have different midpoints, and the sum of the
+// ends of an edge is twice its midpoint. No edge has the sum 0, because the node with the number 0
+// is a corner.
 #pragma once
 
 #include <algorithm>
@@ -21,33 +25,34 @@
 
 namespace nestgrid {
 
-/// How many patches are walked side by side, and so how many subtrees.
+/// The number of patches that are walked side by side, and of subtrees.
 inline constexpr std::size_t most_patches = 32;
 
-/// From bit 0 the faces of the subtree the node lies on, one bit each; from bit 4 those of the
-/// element with which the walk of patches began; from bit 8 its number.
+/// A node: from bit 0 the faces of the subtree that it lies on, one bit each; from bit 4 the faces
+/// of the root; from bit 8 its number.
 using SubtreeNode = std::uint32_t;
 
-inline constexpr SubtreeNode root_faces = 0xF0U;  ///< the latter
+inline constexpr SubtreeNode root_faces = 0xF0U;  ///< the bits of the faces of the root
 
-/// Whether no element outside the root has the edge between two.
+/// Whether no element outside the root has the edge between two nodes.
 constexpr bool is_within_root(SubtreeNode a, SubtreeNode b) { return (a & b & root_faces) == 0; }
 
-/// \tparam pattern of the patches
+/// Computes the numbers and faces of nodes.
+/// \tparam pattern the pattern of the patches
 template <const auto& pattern>
 class SubtreeNodes {
     static constexpr std::size_t dimension_ = pattern.corners - 1;
     static constexpr SubtreeNode faces_ = 0xFFU;
     static constexpr int number_at_ = 8;
-    /// Face i lies across from corner i.
+    /// The faces that meet in a corner. Face i lies across from corner i.
     static constexpr SubtreeNode faces_at(std::size_t corner) {
         return ((1U << pattern.corners) - 1) & ~(1U << corner);
     }
-    /// Into how many parts a patch divides the length of an edge, the shortest one counts.
+    /// The common denominator of the barycentric coordinates of the nodes of a patch.
     static constexpr std::uint32_t divisions_ = [] {
         constexpr std::uint32_t whole = 1U << pattern.height;
         std::array<std::array<std::uint32_t, pattern.corners>, pattern.most_nodes> coordinates{};
-        std::uint32_t any = whole;  // of all coordinates the bits
+        std::uint32_t any = whole;  // bits set in any coordinate
         for (std::size_t n = 0; n < pattern.nodes; ++n) {
             for (std::size_t i = 0; i < pattern.corners; ++i) {
                 std::uint32_t& x = coordinates[n][i];
@@ -64,15 +69,16 @@ class SubtreeNodes {
     }();
 
 public:
-    /// How many patches high a subtree is. Three of tetrahedra have 512 leaves, of whose edges half
-    /// lie inside.
+    /// The number of levels of patches in a subtree. A subtree of three levels of tetrahedra has
+    /// 512 leaves, and half of its edges lie inside it.
     static constexpr int height = divisions_ == 2 ? 3 : 1;
 
 private:
     static constexpr std::uint32_t extent_ =
         height == 3 ? divisions_ * divisions_ * divisions_ : divisions_;
     static constexpr std::uint32_t per_direction_ = 2 * extent_ + 1;  // sums of two coordinates
-    /// Of the edges of a subtree; even, that a node can have half of it.
+    /// How many numbers the edges of one subtree take; even, because corner 0 of subtree s has the
+    /// number s * numbers_ / 2.
     static constexpr std::uint32_t numbers_ = [] {
         std::uint32_t all = 1;
         for (std::size_t i = 0; i < dimension_; ++i) all *= per_direction_;
@@ -80,31 +86,33 @@ private:
     }();
 
 public:
-    /// Above those of the edges of as many subtrees.
+    /// All edges of this many subtrees have smaller numbers.
     static constexpr std::uint32_t edge_numbers(std::size_t subtrees) {
         return static_cast<std::uint32_t>(subtrees) * numbers_;
     }
-    /// Of an edge with an end that is in no subtree.
+    /// The number of an edge with an end in no subtree.
     static constexpr std::uint32_t no_number = 0;
-    /// Of nodes above or below the subtrees.
+    /// The number bits of a node above or below the subtrees.
     static constexpr SubtreeNode beyond = edge_numbers(most_patches) << number_at_;
-    /// What is in no subtree and in no root.
+    /// A node of unknown place: in no subtree, and on all faces, so that elements beyond may have
+    /// its edges.
     static constexpr SubtreeNode unknown = beyond | faces_;
 
+    /// The number of the edge between two nodes, or no_number.
     static constexpr std::uint32_t edge_number(SubtreeNode a, SubtreeNode b) {
         const std::uint32_t sum = (a >> number_at_) + (b >> number_at_);
         return sum < edge_numbers(most_patches) ? sum : no_number;
     }
-    /// Whether it has one, and no element outside the subtree has the edge.
+    /// Whether the edge has a number, and no element outside its subtree has the edge.
     static constexpr bool is_inside(SubtreeNode a, SubtreeNode b) {
         return ((a & b & 0x0FU) == 0) & (edge_number(a, b) != no_number);
     }
-    /// A corner of the root, before there are subtrees.
+    /// A corner of the root, above the subtrees.
     static constexpr SubtreeNode root_corner(std::size_t corner) {
         return beyond | faces_at(corner) << 4U | 0x0FU;
     }
-    /// A corner of one of the subtrees.
-    /// \param of what is known of it above
+    /// A corner of a subtree.
+    /// \param of the same node above the subtree
     static constexpr SubtreeNode corner(SubtreeNode of, std::size_t subtree, std::size_t corner) {
         std::uint32_t number = static_cast<std::uint32_t>(subtree) * (numbers_ / 2);
         std::uint32_t step = extent_;
@@ -112,7 +120,8 @@ public:
         if (corner > 0) number += step;
         return number << number_at_ | (of & root_faces) | faces_at(corner);
     }
-    /// The node between two, in a subtree or above it; of a Pack, too.
+    /// The node in the middle of two nodes, in a subtree or above it.
+    /// \tparam Nodes SubtreeNode, or a Pack of them
     template <class Nodes>
     NESTGRID_INLINE static Nodes middle(const Nodes& a, const Nodes& b) {
         const auto all = [](SubtreeNode bits) NESTGRID_INLINE_LAMBDA {
@@ -125,7 +134,7 @@ public:
         const Nodes number = all(~faces_);
         return (((a & number) + (b & number)) >> 1) | (a & b & all(faces_));
     }
-    /// The same below the subtrees.
+    /// The node in the middle of two nodes, below the subtrees, in Packs.
     template <class Nodes>
     NESTGRID_INLINE static Nodes middle_below(const Nodes& a, const Nodes& b) {
         return Nodes::all(beyond) | (a & b & Nodes::all(faces_));

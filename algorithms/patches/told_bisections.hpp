@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Bisections that a hierarchy tells in rows of nodes (Hierarchy::bisection_rows), as a grid and a
-// field that know them (known_bisection.hpp).
+// field with known bisections (known_bisection.hpp).
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace nestgrid::engine {
 
-/// Hierarchy and task are borrowed.
+/// The grid. Borrows hierarchy and task.
 template <int dim, class Real>
 class ToldBisections {
     static constexpr std::size_t corners_ = static_cast<std::size_t>(dim) + 1;
@@ -62,13 +62,13 @@ public:
     }
     bool whole() const { return true; }
 
-    // One by one.
+    // Single questions.
     bool halved(Node a, Node b) const {
         Node z{};
         perhaps_middles(std::span(&a, 1), std::span(&b, 1), std::span(&z, 1));
         return z != no_node;
     }
-    /// \throw GridError where there is none
+    /// \throw GridError where the hierarchy has no node in the middle
     Node middle(Node a, Node b) const {
         Node z{};
         middles(std::span(&a, 1), std::span(&b, 1), std::span(&z, 1));
@@ -85,7 +85,7 @@ public:
         return x;
     }
 
-    // In rows; the answers may take the place of the first one.
+    // Rows of questions. `out` may be the same row as the first argument.
     void middles(std::span<const Node> a, std::span<const Node> b, std::span<Node> out) const {
         perhaps_middles(a, b, out);
         if (std::find(out.begin(), out.end(), no_node) != out.end()) {
@@ -94,7 +94,8 @@ public:
                 "elements beside it are");
         }
     }
-    /// The same, or no_node where an edge is not halved.
+    /// Sets out[i] to the middle of a[i] and b[i], or to no_node where the grid does not halve
+    /// their edge.
     void perhaps_middles(std::span<const Node> a, std::span<const Node> b,
                          std::span<Node> out) const {
         rows_->middles(a, b, out);
@@ -113,7 +114,7 @@ private:
     std::array<const Rule*, static_cast<std::size_t>(dim)> rules_{};
 };
 
-/// The field on them.
+/// The field on ToldBisections.
 template <class Real>
 class ToldValues {
 public:
@@ -136,9 +137,9 @@ private:
     const detail::BisectionRows<Real>* rows_;
 };
 
-/// Walks the bisections below an element in patches, where facts().knows_patches: by the rows that
-/// the hierarchy tells, or else by its own bisect().
-/// \throw GridError for an element told with a tag that does not exist
+/// Walks the bisections below an element in patches: by the rows that the hierarchy tells or, where
+/// it tells none, by its own bisect(). Requires facts().knows_patches.
+/// \throw GridError where the element has a tag that does not exist
 template <int dim, class Real>
 void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element, const Real* values,
             int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);

@@ -18,6 +18,7 @@
 
 namespace nestgrid::engine {
 
+/// Finds the vertices on the edges of subtrees. Lists of edges and vertices hold them by place.
 class SubtreeVertices {
 public:
     using Number = std::uint32_t;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hierarchies of all grids whose bisections are known walk them in patches, where this comes before
-// they are made.
+// Lets hierarchies of all grids with known bisections walk in patches. Include it before a
+// hierarchy is made.
 #pragma once
 
 #include <nestgrid/hierarchy.hpp>
@@ -18,7 +18,7 @@ template <class Grid, class Field>
         detail::fits_handle<ElementOf<Grid>>)
 bool knows_patches(const Grid&, const Field&, const HierarchyFacts&) { return true; }
 
-/// Walks them below an element.
+/// Walks the bisections below an element in patches.
 template <class Grid, class Field>
     requires(
         KnowsBisections<Grid, Field>&& HasMaubachPatches<Grid>&& detail::components_of<Field>() ==

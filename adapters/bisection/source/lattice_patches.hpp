@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The walk in patches over lattices, for the sources that instantiate it.
+// The walk in patches over lattices. The sources that include this header instantiate it.
 #pragma once
 
 #include <nestgrid/adapters/bisection.hpp>

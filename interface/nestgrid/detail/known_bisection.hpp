@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bisections as constants, from which grids and the walk in patches are made.
+// Bisections as constants. Grids and the walk in patches (algorithms/patches) are made from them.
 #pragma once
 
 #include <array>

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several numbers at once, in vectors of the compiler as wide as the machine that is compiled for
-// has them.
+// A *pack*: several numbers side by side, eight unless a template argument says otherwise, on which
+// an operation works at once. They lie in vectors of the compiler as wide as the machine that is
+// compiled for has them.
 #pragma once
 
 #include <algorithm>
