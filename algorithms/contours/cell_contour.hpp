@@ -34,14 +34,14 @@ constexpr bool joins_across(double a, double b, double c, double d) {
 
 namespace detail {
 
-/// Whether the corners of a quadrilateral or hexahedron are sums of edges at the first, to the last
-/// bit, as those of boxes along the axes are.
+/// Whether each corner of a quadrilateral or hexahedron is the first corner plus edges at it, to
+/// the last bit, as in boxes along the axes.
 template <std::size_t n>
 bool is_parallelepiped(std::span<const Point, n> x) {
-    using Indices = std::array<std::size_t, 3>;  // a corner, and two of which it is the sum
+    using Indices = std::array<std::size_t, 3>;  // a corner, and the two whose sum it is
     constexpr std::array<Indices, 4> sums{{{3, 1, 2}, {5, 1, 4}, {6, 2, 4}, {7, 1, 6}}};
     constexpr std::size_t count = n == 4 ? 1 : sums.size();
-    // 0, all of its bits, where it is.
+    // All bits are 0 where `corner` is the sum of a and b, all relative to `first`.
     const auto off = [](const auto& corner, const auto& a, const auto& b, const auto& first) {
         return ((corner - first) - ((a - first) + (b - first))).template as<std::uint64_t>();
     };
@@ -60,8 +60,8 @@ bool is_parallelepiped(std::span<const Point, n> x) {
     return (any_xy[0] | any_xy[1] | any_z[0] | any_z[1] | any_z[2] | any_z[3]) == 0;
 }
 
-/// The same residual: there the fit leaves nothing but the twists, products of two or three
-/// coordinates, which are 1 or -1 at the corners.
+/// The affine_residual() of a parallelepiped. The fit leaves nothing but the twists: products of
+/// two or three coordinates, which are 1 or -1 at the corners.
 template <std::size_t n>
 double affine_residual_of_parallelepiped(std::span<const double, n> u) {
     if constexpr (n == 4) {
@@ -77,7 +77,7 @@ double affine_residual_of_parallelepiped(std::span<const double, n> u) {
         const double xz = (rise[1] - rise[0]) + (rise[3] - rise[2]);
         const double yz = (rise[2] - rise[0]) + (rise[3] - rise[1]);
         const double xyz = (rise[0] - rise[1]) - (rise[2] - rise[3]);
-        // The signs of the first three multiply to 1, that of the last one is any.
+        // At a corner the signs of xy, xz and yz multiply to 1, and xyz has either sign.
         const double even = std::max(std::abs(xy + xz + yz), std::abs(xy - xz - yz));
         const double odd = std::max(std::abs(xz - xy - yz), std::abs(yz - xy - xz));
         return (std::max(even, odd) + std::abs(xyz)) / 8;
@@ -93,8 +93,9 @@ inline bool is_sheared_prism(std::span<const Point, 6> x) {
     return same;
 }
 
-/// The same residual: there the fit is that of the means over these edges, which are those of an
-/// affine function, and half the mean difference along them.
+/// The affine_residual() of a sheared prism. The fit has the mean value of u in the middle of each
+/// of these edges, because an affine function can have any three values there, and rises along all
+/// three by the mean of their differences.
 inline double affine_residual_of_sheared_prism(std::span<const double, 6> u) {
     std::array<double, 3> slope;
     for (std::size_t i = 0; i < 3; ++i) slope[i] = (u[i + 3] - u[i]) / 2;
@@ -106,12 +107,12 @@ inline double affine_residual_of_sheared_prism(std::span<const double, 6> u) {
 
 }  // namespace detail
 
-/// How far values at the corners of an element are from any affine function: the greatest residual
-/// of a least-squares fit. Affine functions are interpolated exactly, and the shape functions are a
-/// partition of 1 and nowhere below 0, so within the element the interpolated function deviates
-/// from the fit by no more. Between points where it has one value, on a segment or triangle within
-/// the element, it deviates from that value by twice as much at most.
-template <std::size_t n>  // corners: the loops are short, and unrolled
+/// How far the values at the corners of an element are from an affine function: the greatest
+/// residual of a least-squares fit. Affine functions are interpolated exactly, and the shape
+/// functions are a partition of 1 and nowhere below 0, so within the element the interpolated
+/// function deviates from the fit by no more. Between points where it has one value, on a segment
+/// or triangle within the element, it deviates from that value by twice as much at most.
+template <std::size_t n>  // number of corners; the compiler unrolls the short loops
 double affine_residual(std::span<const Point, n> x, std::span<const double, n> u) {
     if constexpr (n == 4 || n == 8) {
         if (detail::is_parallelepiped(x)) return detail::affine_residual_of_parallelepiped(u);

@@ -5,7 +5,8 @@
 //
 // Every loop bounds a disc, or an annulus together with another one at the end of a tunnel.
 // Invariants: each segment of a loop, or of the chain that replaces it, belongs to one triangle,
-// which runs along it; every other edge belongs to two, and joins no two vertices on one face.
+// which runs along it; every other edge belongs to two triangles, and joins no two vertices on one
+// face.
 #pragma once
 
 #include <span>
@@ -16,7 +17,7 @@
 
 namespace nestgrid {
 
-/// Whether the diagonal from a to c is no longer than that from b to d.
+/// Whether the diagonal from a to c is no longer than the one from b to d.
 template <class P>
 NESTGRID_INLINE bool shorter(const P& a, const P& c, const P& b, const P& d) {
     return dot(c - a, c - a) <= dot(d - b, d - b);
@@ -50,8 +51,8 @@ public:
         fill_annulus(contour.loop[tunnel.from], contour.loop[tunnel.to], tunnel);
     }
 
-    /// The triangle a b c with chains in the place of its sides. No edge that is made here joins
-    /// two vertices of one chain.
+    /// Adds the triangle a b c with chains in the place of its sides. No new edge joins two
+    /// vertices of one chain.
     void add(Number a, Number b, Number c, Chain ab = {}, Chain bc = {}, Chain ca = {}) {
         if (ab.empty() && !bc.empty()) {
             fill_chained(b, c, a, bc, ca, ab);
@@ -67,8 +68,8 @@ public:
 private:
     using Vertices = std::array<Number, max_edges>;
 
-    /// The same where there is a chain from a to b: a fan around c, whose first and last triangles
-    /// become fans around the ends of the chain.
+    /// Adds the triangle a b c with a chain from a to b: a fan around c. Chains on the other sides
+    /// make its first and its last triangle fans around the ends of the chain from a to b.
     void fill_chained(Number a, Number b, Number c, const Chain& ab, const Chain& bc,
                       const Chain& ca) {
         fill_fan(ab.front(), c, ca, a);
@@ -106,7 +107,7 @@ private:
             add(v[i], v[j], v[k], chain(i, j), chain(j, k), chain(k, i));
         };
         if (n == 3) return add_places(0, 1, 2);
-        if (loop.any_diagonal) {  // the shorter one; both lie inside, so neighbours do not care
+        if (loop.any_diagonal) {  // the shorter one; both lie inside the element
             const auto x = [&](std::size_t i) { return cell_->position(v[i]); };
             const std::size_t a = shorter(x(0), x(2), x(1), x(3)) ? 0 : 1;
             add_places(a, a + 1, a + 2);
@@ -132,8 +133,8 @@ private:
         return sum;
     }
 
-    /// The strip between a loop and a ring that runs the same way. Both advance in step: where one
-    /// went around before the other began, an edge would appear twice.
+    /// Fills the strip between a loop and a ring that runs the same way. Advances on both in step,
+    /// because an edge would appear twice if one went around before the other began.
     void fill_strip(const ContourLoop& loop, const std::array<Number, 4>& ring) {
         const Vertices v = vertices(loop);
         const std::size_t n = loop.count;
@@ -156,6 +157,7 @@ private:
         }
     }
 
+    /// Fills the annulus between two loops, through the ring around the neck of the tunnel.
     void fill_annulus(const ContourLoop& from, const ContourLoop& to, const Tunnel& tunnel) {
         std::array<Number, 4> ring;
         std::vector<Point> ring_points;

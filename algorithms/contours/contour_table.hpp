@@ -134,6 +134,7 @@ public:
     /// Faces with such edges, one bit each; 1 in two dimensions.
     unsigned cut_faces(unsigned pattern) const { return cut_faces_[pattern]; }
 
+    /// The contour of a sign pattern.
     /// \param joined which alternating faces join their corners with U >= C, one bit each
     const Contour& at(unsigned pattern, unsigned joined = 0) const {
         unsigned choice = 0;
@@ -144,16 +145,16 @@ public:
         return contours_[first_[pattern] + choice];
     }
 
-    /// The contour of a pattern of which nothing depends on values: no signs alternate, every loop
-    /// is a segment or filled with triangles between its own vertices, and there is no tunnel. Else
-    /// null.
+    /// The contour of a pattern if nothing in it depends on values, else null. Nothing does if no
+    /// signs alternate, every loop is a segment or filled with triangles between its own vertices,
+    /// and there is no tunnel.
     const Contour* plain(unsigned pattern) const {
         return plain_[pattern] ? &contours_[first_[pattern]] : nullptr;
     }
 
 private:
     explicit ContourTable(Shape shape);
-    /// The table of one shape, made when it is asked for first.
+    /// The table of one shape. The first call makes it.
     template <Shape shape>
     static const ContourTable& table_of();
 

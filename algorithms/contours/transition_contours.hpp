@@ -28,14 +28,14 @@ class TransitionContours {
 public:
     using Index = std::uint32_t;
 
-    /// The element that draws.
+    /// The element that draws a segment.
     struct Owner {
         std::uint32_t element = 0;  ///< number in a list of the record
         Shape shape = Shape::point;
         int level = 0;
     };
 
-    /// Must be called once, before the first record().
+    /// Must be called once, before the first vertex() and record().
     /// \param elements an empty list for elements of the grid
     void begin(std::size_t attribute_count, Elements elements) {
         attribute_count_ = attribute_count;
@@ -61,7 +61,7 @@ public:
     }
     void record(NodeKey face, Index from, Index to) { segments_.push_back({face, from, to}); }
 
-    /// The number of the vertex with a name; `make` gives its Cut where it is new.
+    /// The number of the vertex with a name; make() returns its SurfaceCut where it is new.
     template <class Make>
     Index vertex(const KeyPair& name, Make&& make) {
         const auto [at, is_new] = vertex_of_.insert(name, static_cast<Index>(cuts_.size()));
@@ -168,7 +168,8 @@ private:
         Index to;
         bool operator==(const Segment&) const = default;
     };
-    /// How a face is divided, where it is divided one way, as first seen by an element below it.
+    /// The division of a face that is divided one way (ClosedFace::divided_by), and the element
+    /// that recorded it first.
     struct Split {
         NodeKey by;
         Owner owner;
@@ -195,7 +196,7 @@ private:
         return a.from != b.from ? a.from < b.from : a.to < b.to;
     }
 
-    /// Up to this many segments are searched one by one, which is faster than sorting them.
+    /// Searches up to this many segments one by one, which is faster than sorting them.
     static constexpr std::size_t few = 8;
     /// The segment from a vertex to the least vertex, or null.
     static const Segment* first_from(Index from, std::span<const Segment> on_face) {
@@ -241,8 +242,8 @@ private:
         return std::span(segments_).subspan(first, first_on_[face + 1U] - first);
     }
 
-    /// Links the segments that only one side draws to loops. Each vertex begins as many of these
-    /// segments as it ends.
+    /// Links the segments on a face that only one side draws to loops. At each vertex as many of
+    /// these segments begin as end.
     void find_gaps(NodeKey face, const Owner& owner) {
         std::vector<Segment> left;
         const Index number = *face_number_.find(face);
@@ -271,7 +272,7 @@ private:
     std::vector<Segment> segments_;
     std::vector<Gap> gaps_;
     KeyTable<NodeKey, Split> split_of_;
-    KeyTable<NodeKey, Owner> conflicts_;  // faces that are divided in two directions
+    KeyTable<NodeKey, Owner> conflicts_;  // faces whose sides divide them in two directions
     std::vector<Place> cuts_;
     std::vector<double> attributes_;  // of all cuts, one after the other
     std::size_t attribute_count_ = 0;
@@ -282,7 +283,7 @@ private:
     std::vector<Index> face_of_;   // scratch of group_segments(), like the next two
     std::vector<Index> place_;
     std::vector<Segment> grouped_;
-    KeyFilter faces_;
+    KeyFilter faces_;  // hashes of the faces in face_number_
 };
 
 }  // namespace nestgrid::engine

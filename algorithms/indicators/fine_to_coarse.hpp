@@ -7,7 +7,7 @@
 // epsilon) saturated; a slope does so for thresholds that vary in space with at most that slope, a
 // factor for weights between epsilon and factor * epsilon. |x - y| is rounded up to the greatest
 // distance between a corner and a new node of the split. A parent of y that is a new node of the
-// same split is to y as a corner is.
+// same split counts as a corner x, too.
 //
 // A child that is split again has a new node of its father for a corner (find_violation() of rules
 // sees to it), so that the sweep reaches a node from all finer ones through one split at a time.
@@ -23,14 +23,14 @@
 
 namespace nestgrid::engine {
 
-/// Raises the corners of one split, and the new nodes that are parents of others, to what its new
-/// nodes have.
-/// \param of numbers of the corners and, behind them, of the new nodes
+/// Raises the corners of one split, and those of its new nodes that are parents of others, to the
+/// numbers that its new nodes hand on.
+/// \param of the corners and, behind them, the new nodes, by number
 /// \param of_node of_node(node) is the number of a new node
-/// \param hand hand(number) is what a new node with that number hands to its parents; monotone
+/// \param hand hand(number), monotone, is what a new node with that number hands to its parents
 /// \param raise raise(node, number) raises a node to a number and returns whether that changed it
-/// \param greatest of all new nodes; set
-/// \return whether anything has changed
+/// \param greatest set to the maximum of itself and the numbers of the new nodes
+/// \return whether any node was raised
 template <class Number, class OfNode, class Hand, class Raise>
 bool raise_parents(const Rule& rule, std::span<const std::size_t> of, const OfNode& of_node,
                    const Hand& hand, const Raise& raise, Number& greatest) {
@@ -54,7 +54,8 @@ bool raise_parents(const Rule& rule, std::span<const std::size_t> of, const OfNo
 }
 
 /// Calls sweep_split(rule, numbers, reach) for all splits, fine to coarse, until it changes
-/// nothing. \param once whether one round is known to be enough
+/// nothing.
+/// \param once whether one round is enough
 template <class SweepSplit>
 void sweep(const SplitsByLevel& splits, bool once, const SweepSplit& sweep_split) {
     for (bool changed = true; changed;) {
@@ -67,7 +68,7 @@ void sweep(const SplitsByLevel& splits, bool once, const SweepSplit& sweep_split
     }
 }
 
-/// One number per node of a hierarchy, and all splits.
+/// One number per node of a hierarchy, and all splits, over which saturate() takes maxima.
 /// \tparam Number is ordered by <
 template <class Number>
 class NodeMaxima {

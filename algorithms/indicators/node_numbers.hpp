@@ -12,16 +12,18 @@
 
 namespace nestgrid::engine {
 
-/// The keys themselves where keys are dense, else 0, 1, ... in the order the nodes are met.
+/// Numbers of nodes: the keys themselves where keys are dense, else 0, 1, ... in the order in which
+/// find() meets the nodes.
 class NodeNumbers {
 public:
     /// \param dense how many dense keys there are, or 0
     explicit NodeNumbers(std::size_t dense) : dense_{dense} {}
 
     bool are_keys() const { return dense_ != 0; }
-    /// Above all numbers so far.
+    /// A number above all numbers so far.
     std::size_t count() const { return are_keys() ? dense_ : sparse_.size(); }
 
+    /// Sets out[i] to the number of the node with keys[i].
     /// \param out has a place for each key
     /// \throw GridError where a dense key is too large
     void find(std::span<const NodeKey> keys, std::span<std::size_t> out) {

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Entries of a hierarchical indicator, several at once.
+// Looks up entries of a hierarchical indicator, several at once.
 #pragma once
 
 #include <bit>
@@ -14,7 +13,7 @@
 
 namespace nestgrid::engine {
 
-/// Both numbers of an entry in one: the stop below the bound.
+/// Both numbers of an entry in one word: `stop` in its lower half, `bound` in the upper one.
 NESTGRID_INLINE std::uint32_t bits_of(const detail::IndicatorEntry& entry) {
     if constexpr (std::endian::native == std::endian::little) {
         std::uint32_t both;
@@ -26,6 +25,7 @@ NESTGRID_INLINE std::uint32_t bits_of(const detail::IndicatorEntry& entry) {
     }
 }
 
+/// The entry with these bits_of().
 NESTGRID_INLINE detail::IndicatorEntry entry_of(std::uint32_t bits) {
     return {static_cast<std::uint16_t>(bits), static_cast<std::uint16_t>(bits >> 16U)};
 }
@@ -76,7 +76,7 @@ NESTGRID_INLINE void prefetch([[maybe_unused]] const detail::IndicatorEntries& e
 #endif
 }
 
-/// Fetches those entries of the new nodes of a split that a look at the split reads.
+/// Fetches the entries of the new nodes that a decision about a split reads.
 NESTGRID_INLINE void prefetch(const detail::IndicatorEntries& entries, const Rule& rule,
                               std::span<const NodeKey> nodes) {
     prefetch(entries, rule.inside == no_new_node ? nodes : nodes.subspan(rule.inside, 1));

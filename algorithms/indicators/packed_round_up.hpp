@@ -10,12 +10,12 @@
 
 namespace nestgrid {
 
-/// The next floats above x >= 0 where the error is positive.
+/// The next floats above x where the error is positive, else x. Requires x >= 0.
 template <std::size_t size>
 Pack<float, size> raised(const Pack<float, size>& x, const Pack<float, size>& error) {
     const auto zero = Pack<float, size>::all(0);
     const auto raise = without(at_most(zero, error), at_most(error, zero));  // not where it is NaN
-    return (x.template as<std::uint32_t>() - raise).template as<float>();    // minus -1
+    return (x.template as<std::uint32_t>() - raise).template as<float>();    // a mask is -1
 }
 
 template <std::size_t size>

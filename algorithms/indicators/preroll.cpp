@@ -16,7 +16,7 @@ namespace nestgrid::engine {
 
 namespace {
 
-/// Tells a receiver of everything.
+/// Tells a receiver of the splits and leaves that a walk meets, and collects facts about them.
 /// \tparam Receiver Sweeps or PrerollLog
 template <class Real, class Receiver>
 class PrerollVisitor final : public TaskVisitor<Real> {
@@ -40,7 +40,7 @@ public:
         if (*leaf_errors_) {
             receiver_->leaf(corner_keys(view), error_of(view));
         } else if (view.level == 0) {
-            receiver_->leaf(corner_keys(view), 0);  // its nodes count, too
+            receiver_->leaf(corner_keys(view), 0);  // the nodes of a coarse leaf count, too
         }
         return {};
     }
@@ -90,7 +90,8 @@ private:
         }
     }
 
-    /// The greatest distance between a corner and a new node, rounded up; 0 where nobody asks.
+    /// The greatest distance between a corner and a new node, rounded up; 0 where distances do not
+    /// count.
     float reach_of(const View& view, const Rule& rule) const {
         if (!measures_) return 0;
         std::array<Point, max_corners> corner;
@@ -115,7 +116,8 @@ private:
         return float_above(error);
     }
 
-    /// Compares what the field says at nodes that hang, where it says anything, with what is used.
+    /// Compares the values of the field at hanging nodes, where it has any, with those that the
+    /// walk uses.
     void compare_hanging(const View& view, const Split& split, const Real* value) {
         const std::size_t stride = walk_->components();
         const Rule& rule = *split.rule;
@@ -151,7 +153,7 @@ detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const LeafErrors&
     using LoggingVisitor = PrerollVisitor<Real, PrerollLog>;
     PrerollLog above;
     LoggingVisitor visitor(walk, leaf_errors, measures, above);
-    const std::size_t wanted = 64 * executor.concurrency();  // short logs
+    const std::size_t wanted = 64 * executor.concurrency();  // many parts, so that logs stay short
     const Frontier<Real> frontier(walk, visitor, wanted);
     above.repeat(sweeps);
     detail::PrerollFacts facts = visitor.facts();

@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// The walk of a preroll over any hierarchy, by one thread or several. Several threads walk parts of
-// the hierarchy and log what they meet; the logs are repeated one after the other, beside the walks
-// that go on.
+// The walk of a preroll over any hierarchy, with one thread or several. Several threads walk parts
+// of the hierarchy and log what they meet, while the executor repeats finished logs in order.
 #pragma once
 
 #include <indicators/sweeps.hpp>
@@ -11,11 +9,11 @@
 
 namespace nestgrid::engine {
 
-/// Tells sweeps of all splits of a hierarchy, and of its leaves where leaves have errors; else of
+/// Tells `sweeps` of all splits of a hierarchy, and of its leaves where leaves have errors, else of
 /// its coarse leaves.
-/// \param walk with values and keys
+/// \param walk must carry values and keys
 /// \param leaf_errors empty where leaves have none
-/// \param measures whether distances count; then the walk must have positions
+/// \param measures whether distances count; the walk must carry positions then
 /// \throw InvalidInput where a value or an error is not usable
 template <class Real>
 detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const LeafErrors& leaf_errors,

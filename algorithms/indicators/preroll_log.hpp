@@ -9,7 +9,8 @@
 
 namespace nestgrid::engine {
 
-/// The splits and leaves that a part of a preroll has met, to be told to Sweeps in their order.
+/// Logs the splits and leaves that a part of a preroll meets, and tells Sweeps of them in this
+/// order.
 class PrerollLog {
 public:
     template <class Offset>

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// The splits that one walk has met, to be swept over level by level.
+// The splits that a walk has met, for sweeps over them level by level.
 #pragma once
 
 #include <array>
@@ -22,12 +21,12 @@ class SplitsByLevel {
 public:
     static constexpr std::uint64_t narrow = std::uint64_t{1} << 32U;
 
-    /// \param nodes how many there are; 0 where that is not known yet and no more than 2^32
+    /// \param nodes their number; 0 where it is not known yet, and will not exceed 2^32
     explicit SplitsByLevel(std::size_t nodes) : wide_{nodes > narrow} {}
 
     /// \param reach the greatest distance between a corner and a new node; 0 for all splits where
     ///        distances do not count
-    /// \throw GridError for more nodes than were said
+    /// \throw GridError for a node number of 2^32 or above where `nodes` did not exceed 2^32
     void add(std::size_t level, const Rule& rule, std::span<const std::size_t> nodes,
              float reach = 0) {
         if (level >= levels_.size()) levels_.resize(level + 1);
@@ -78,7 +77,7 @@ private:
         std::deque<const Rule*> rules;
         std::deque<std::uint32_t> low;
         std::deque<std::uint8_t> high;
-        std::deque<float> reach;  // of the first splits; 0 for the others
+        std::deque<float> reach;  // by split; 0 for splits behind its end
     };
     bool wide_;
     std::vector<Level> levels_;

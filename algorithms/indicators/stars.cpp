@@ -16,9 +16,9 @@ namespace nestgrid::engine {
 
 namespace {
 
-/// Interpolates like the walk, to the last bit.
-/// \tparam Number several at once
-/// \param at gives them at parent i
+/// The mean of the values at a number of parents, to the last bit that of the walk.
+/// \tparam Number a Pack
+/// \param at at(i) is the values at parent i
 template <class Number, class At>
 NESTGRID_INLINE Number mean_of_parents(std::size_t parents, const At& at) {
     if (parents == 2) return midpoint<Number>(at(0), at(1));
@@ -26,7 +26,7 @@ NESTGRID_INLINE Number mean_of_parents(std::size_t parents, const At& at) {
     return cell_mean(std::array<Number, 8>{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)});
 }
 
-/// Stop and bound of nodes, four at once, and the range of values.
+/// Computes stop and bound of the nodes in rows, four at once, and the range of values.
 template <class Real>
 class StarRows {
 public:
@@ -71,7 +71,7 @@ private:
             fetch(0, own_);
             for (std::size_t p = 0; p < row.parents.size(); ++p) fetch(row.parents[p], parent_[p]);
         }
-        // Where less than four are left, the last one is made several times.
+        // Where fewer than four nodes are left, computes the last one several times.
         Steps whole;
         Steps rest;
         for (std::size_t k = 0; k < width_; ++k) {
@@ -83,8 +83,10 @@ private:
         }
     }
 
-    /// \param i of the run
-    /// \param step from one node to those made with it
+    /// Computes four entries.
+    /// \param i number of the first node in the run
+    /// \param to its entry
+    /// \param step from this entry to each of the four
     NESTGRID_INLINE void make(const StarRow& row, std::size_t i, detail::IndicatorEntry* to,
                               const Steps& step) {
         Entries made = Entries::all(0);
@@ -111,7 +113,7 @@ private:
         unusable_ = unusable_ + v * Reals::all(0);
     }
 
-    /// The greater ones of the upper and of the lower halves, none of which is negative.
+    /// The greater upper and the greater lower halves of words. Requires halves below 2^15.
     NESTGRID_INLINE static Entries greater_halves(const Entries& a, const Entries& b) {
         using Halves [[gnu::vector_size(2 * width_ * sizeof(std::int16_t))]] = std::int16_t;
         const auto x = std::bit_cast<Halves>(a.numbers());
@@ -141,7 +143,7 @@ private:
     std::array<Run, 8> parent_;
     Reals least_ = Reals::all(std::numeric_limits<Real>::infinity());
     Reals greatest_ = Reals::all(-std::numeric_limits<Real>::infinity());
-    Reals unusable_ = Reals::all(0);  // NaN where one is infinite or not a number
+    Reals unusable_ = Reals::all(0);  // NaN where a value is infinite or not a number
 };
 
 /// Adds the rules of one element of each level, because all elements of a level are split alike.
@@ -171,7 +173,8 @@ detail::PrerollFacts sweep_stars(const Hierarchy<Real>& hierarchy,
                                  detail::IndicatorEntries& entries) {
     detail::PrerollFacts facts;
     add_splits(hierarchy, facts);
-    // Nodes of no element are in no row, and count as 0; a whole grid has no such nodes.
+    // A node of no element is in no row, and its entry is 0. Where rows hold all nodes, no entry
+    // needs to be set before.
     const std::size_t count = hierarchy.facts().node_count;
     entries.dense = hierarchy.facts().fills_rows
                         ? std::make_unique_for_overwrite<detail::IndicatorEntry[]>(count)

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// The preroll by rows of nodes, on grids that know their stars. Entries and facts have the bits
-// that the sweeps over levels give.
+// The preroll by rows of nodes, on grids that know their stars (StarRow). Entries and facts have
+// the bits that Sweeps gives.
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>

@@ -13,13 +13,13 @@ namespace nestgrid::detail {
 
 namespace {
 
-constexpr std::uint16_t octave = 128;  // numbers of bfloat16
+constexpr std::uint16_t octave = 128;  // bfloat16 numbers from x to 2 x
 
 std::uint16_t halved(std::uint16_t code) {
     return static_cast<std::uint16_t>(code > octave ? code - octave : 0);
 }
 
-/// Counts triangles at thresholds, which are bfloat16 numbers.
+/// Searches for the threshold of a budget among bfloat16 numbers.
 template <int dimension, class Real>
 class BudgetSearch {
 public:
@@ -60,7 +60,8 @@ private:
                                                   most, options_, executor_);
     }
 
-    /// Whether the surface at a threshold keeps within the budget; then it is the best so far.
+    /// Counts the triangles at a threshold and, where they keep within the budget, notes it as the
+    /// best so far. \return whether they do
     bool fits(std::uint16_t code) {
         const auto triangles = count(code, max_triangles_);
         ++best_.trials;

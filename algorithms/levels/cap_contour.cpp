@@ -25,7 +25,8 @@ void CapContour<dimension, Real>::for_each_polygon(unsigned inside, Function&& f
     }
 }
 
-/// The polygon around the first of the corners `left`, from which it takes its own.
+/// Makes the polygon around the first corner in the set `left`, and removes its corners from the
+/// set.
 template <int dimension, class Real>
 auto CapContour<dimension, Real>::polygon_from(Shape shape, const FaceTopology& face,
                                                unsigned signs, const FaceContour& contour,
@@ -55,8 +56,8 @@ auto CapContour<dimension, Real>::polygon_from(Shape shape, const FaceTopology& 
     return polygon;
 }
 
-/// Key of the sides along the maximal edge of an edge that run from corner `from` of the face to
-/// the next one, or the other way.
+/// The key of the sides along the maximal edge around `edge` that run from corner `from` of the
+/// face to the next corner (forward), or from that one to `from`. A mirrored element reverses both.
 template <int dimension, class Real>
 NodeKey CapContour<dimension, Real>::side_key(std::uint8_t edge, const FaceTopology& face,
                                               std::uint8_t from, bool forward) const {
@@ -86,7 +87,7 @@ void CapContour<dimension, Real>::record(unsigned inside, TransitionContours& re
     });
 }
 
-/// Records a side of a polygon, where it lies on a closed edge.
+/// Records a side of a polygon where it lies on a closed edge.
 template <int dimension, class Real>
 void CapContour<dimension, Real>::record_side(const FaceTopology& face, const Polygon& polygon,
                                               std::size_t side, TransitionContours& record) const {
@@ -104,7 +105,7 @@ void CapContour<dimension, Real>::record_side(const FaceTopology& face, const Po
     record.record(side_key(edge, face, polygon.corner[side].from, true), from, to);
 }
 
-/// The vertices on a side of a polygon that a finer polygon beyond it has there.
+/// The vertices that finer polygons beyond a side recorded between the ends of the side.
 template <int dimension, class Real>
 auto CapContour<dimension, Real>::chain(const FaceTopology& face, const Polygon& polygon,
                                         std::size_t side, const TransitionContours* drawn_below)
@@ -140,7 +141,8 @@ void CapContour<dimension, Real>::draw(unsigned inside, const TransitionContours
     });
 }
 
-/// Counterclockwise around the element the region is on the left, as on the contour.
+/// Draws the inside parts of the sides on the boundary. They run counterclockwise around the
+/// element, with the region inside the level on their left, as the contour does.
 template <int dimension, class Real>
 void CapContour<dimension, Real>::draw_segments(unsigned inside) {
     const ElementView<Real>& view = cuts_->view();

@@ -3,9 +3,10 @@
 //
 // Caps: the part of each boundary face of the domain that is inside a level.
 //
-// Two boundary faces meet in an edge, and one may be finer than the other. So the finer one records
-// its sides along closed edges, under the key of the maximal edge and the direction it runs in, and
-// the other one adopts the vertices between: what is done for faces, one dimension lower.
+// Two boundary faces meet in an edge, and one of them may be finer than the other. The finer one
+// records its sides along closed edges, under the key of the maximal edge and the direction in
+// which they run. The coarser one adopts the vertices between, as an element does with faces
+// (transitions.hpp).
 #pragma once
 
 #include <contours/transition_contours.hpp>
@@ -30,14 +31,14 @@ public:
 
 private:
     using Number = std::uint32_t;
-    struct Corner {  // of a polygon: corner `from` of the face, or the cut of its side `from`
+    struct Corner {  // corner `from` of the face, or the cut of the face's side `from`
         std::uint8_t from;
         bool cut;
     };
-    struct Polygon {  // sides from each corner to the next
+    struct Polygon {  // its sides run from each corner to the next
         std::size_t count = 0;
         std::array<Corner, 8> corner;
-        std::array<std::uint8_t, 8> edge;  // of the element, under a side; or no_edge
+        std::array<std::uint8_t, 8> edge;  // the edge of the element under each side, or no_edge
     };
 
     template <class Function>

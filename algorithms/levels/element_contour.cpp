@@ -35,7 +35,8 @@ void ElementContour<dimension, Real>::draw_plainly(LevelSurface<dimension>& surf
     }
 }
 
-/// All names of a loop are looked up at once, so that none waits for another one's slot.
+/// Finds the vertices of a loop. Fetches the slots of all names first, so that no look-up waits for
+/// the slot of another name.
 template <int dimension, class Real>
 auto ElementContour<dimension, Real>::find_vertices(const ContourLoop& loop, unsigned inside)
     -> Vertices {
@@ -65,8 +66,9 @@ auto ElementContour<dimension, Real>::make_vertices(const ContourLoop& loop, uns
     return v;
 }
 
-/// The simplices of a loop: a segment, the triangles of the table, or two with the shorter
-/// diagonal. Both diagonals lie inside the element, so neighbours do not care.
+/// Adds the simplices of a loop: a segment, the triangles of the table, or two with the shorter
+/// diagonal. Both diagonals lie inside the element, so that its neighbours do not depend on the
+/// choice.
 template <int dimension, class Real>
 NESTGRID_INLINE void ElementContour<dimension, Real>::put_loop(const ContourLoop& loop,
                                                                const Vertices& v, bool mirrored) {
@@ -84,11 +86,12 @@ NESTGRID_INLINE void ElementContour<dimension, Real>::put_loop(const ContourLoop
     }
 }
 
-/// Three vertices of a loop; a segment of its first two in two dimensions.
+/// Adds the triangle between three places of a loop; in two dimensions the segment between the
+/// first two.
 template <int dimension, class Real>
 NESTGRID_INLINE void ElementContour<dimension, Real>::put_triangle(
     const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored) {
-    // Whether elements are mirrored nobody can predict: no branch.
+    // Branch-free: mirroring is unpredictable.
     const std::size_t swap = (corner[0] ^ corner[1]) & (std::size_t{0} - (mirrored ? 1U : 0U));
     Locals simplex;
     simplex[0] = v[corner[0] ^ swap];
@@ -97,8 +100,8 @@ NESTGRID_INLINE void ElementContour<dimension, Real>::put_triangle(
     surface_->add_simplex(simplex, {});
 }
 
-/// The sides of a loop that lie on the boundary of the domain.
-/// \param boundary the element's faces there, one bit each
+/// Adds the sides of a loop that lie on the boundary of the domain.
+/// \param boundary the element's faces on it, one bit each
 template <int dimension, class Real>
 void ElementContour<dimension, Real>::put_boundary(const ContourLoop& loop, const Vertices& v,
                                                    unsigned boundary) {
@@ -174,7 +177,7 @@ void ElementContour<dimension, Real>::simplex(const Locals& corners) {
         v, options_->reference ? std::span<const Point>(reference) : std::span<const Point>());
 }
 
-/// The vertex in the middle of the gap keeps every edge of the filling from being one of an
+/// Adds a vertex in the middle of the gap, so that no edge inside the filling is an edge of an
 /// element.
 template <int dimension, class Real>
 void ElementContour<dimension, Real>::fill_gap(LevelSurface<dimension>& surface,
@@ -240,7 +243,8 @@ auto ElementContour<dimension, Real>::adopted(const SurfaceCut& cut, const FaceT
                      reference);
 }
 
-/// Newton's method on the map from the unit square (triangle) to the face.
+/// The reference coordinates of a point on a face, by Newton's method on the map from the unit
+/// square (triangle) to the face.
 template <int dimension, class Real>
 Point ElementContour<dimension, Real>::reference_on_face(const Point& x,
                                                          const FaceTopology& face) const {

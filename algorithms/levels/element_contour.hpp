@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Turns the signs at the corners of an element into loops of cuts and these into simplices.
-//
-// Invariant: what is drawn on a face depends on the face alone, or is the chain that the finer side
-// drew there (transitions.hpp).
+// Turns the signs at the corners of an element into loops of cuts, and the loops into simplices.
+// Invariant: the segments that an element draws on a face depend on the face alone, or are the
+// chain that the finer side drew there (transitions.hpp).
 #pragma once
 
 #include <contours/contour_filling.hpp>
@@ -58,7 +56,7 @@ public:
     void fill_gap(LevelSurface<dimension>& surface, std::span<const SurfaceCut> loop,
                   const Handle& owner, Shape shape, int level);
 
-    // Local vertices; ContourFilling asks for some.
+    // Local vertices, each new where the element does not have it yet (ContourFilling).
     Number vertex(std::uint8_t edge);
     Number node_vertex(std::size_t corner);
     /// A vertex that a finer side recorded on a face.
@@ -86,7 +84,7 @@ private:
     void put_triangle(const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored);
     void put_boundary(const ContourLoop& loop, const Vertices& v, unsigned boundary);
     Point reference_on_face(const Point& x, const FaceTopology& face) const;
-    /// Whether it must be known where vertices lie in the element.
+    /// Whether vertices need their reference coordinates.
     bool wants_reference() const { return options_->reference || cuts_->attribute_count() > 0; }
     Number number_of(Number vertex, const Point& reference);
 
@@ -99,7 +97,7 @@ private:
     bool begun_ = false;
     bool mirrored_ = false;
     std::vector<Number> local_;     // vertices of the surface, by local number
-    std::vector<Point> reference_;  // where they lie in the element, where wanted
+    std::vector<Point> reference_;  // reference coordinates of each, where wanted
     std::array<Number, max_edges> on_edge_{};
     std::array<Number, max_corners> on_corner_{};
     std::uint16_t chained_ = 0;  // edges with a chain behind them, one bit each

@@ -75,7 +75,7 @@ public:
     /// Attributes at a point of the reference element. Valid until the next call, cut() or node().
     std::span<const double> attributes_at(const Point& reference) const;
     /// The segments on a face.
-    /// \param signs at its corners, one bit each
+    /// \param signs bit i says that corner i of the face is inside the level
     const FaceContour& contour(const FaceTopology& face, unsigned signs) const {
         return face_contour(face.corners, signs, alternate(face.corners, signs) && joined(face));
     }
@@ -112,7 +112,7 @@ private:
     std::array<NodeKey, max_corners> key_{};
     std::array<Point, max_corners> x_{};
     std::array<double, max_corners> u_{};
-    mutable std::vector<double> attributes_;  // of the vertex made last
+    mutable std::vector<double> attributes_;  // attributes of the vertex made last
 };
 
 }  // namespace nestgrid::engine

@@ -79,8 +79,8 @@ NESTGRID_INLINE auto LevelSearch<Real>::range_of(const View& view, std::size_t c
 }
 
 /// Does not ask a saturated criterion about an element with a corner at which S > 0, because S is 1
-/// at all its new nodes then. Asks all the same where a new node lies outside, at which no element
-/// may stop.
+/// at all its new nodes then. Asks nevertheless where a new node lies outside, because no element
+/// may stop at such a node.
 template <class Real>
 auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
                              CriterionQuestion& question) const -> Sight {

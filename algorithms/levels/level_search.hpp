@@ -35,10 +35,11 @@ public:
     /// Whether elements may stop without conforming to their neighbours.
     bool may_stop_apart() const;
 
-    /// Whether the walk in patches may ask: the criterion looks at keys and levels alone, and
-    /// answers yes or no.
+    /// Whether the walk in patches may ask: whether the criterion looks at keys and levels alone,
+    /// and answers yes or no.
     bool fits_patches() const { return asks_for_masks_; }
 
+    /// Decides about an element and its split.
     /// \param caps whether the element is of interest also where it is wholly inside
     Sight look(const View& view, const Split& split, bool caps, CriterionQuestion& question) const;
     /// The leaves with corners on both sides of a level, one bit each.
@@ -54,7 +55,7 @@ public:
                                       : bounds_->offset_bound(node);
     }
 
-    // What the walk in patches asks.
+    // Questions of the walk in patches.
     struct Glance {
         Visit visit;
         Real bound;
@@ -90,9 +91,9 @@ private:
     std::size_t components_;
     const Criterion* criterion_;
     const Bounds* bounds_;
-    const HierarchicalIndicator* own_bounds_;   // where the bounds are the library's own
-    const detail::IndicatorEntries* entries_;   // theirs
-    const Threshold* own_threshold_ = nullptr;  // where the criterion is one of own_bounds_
+    const HierarchicalIndicator* own_bounds_;   // bounds_ where it has this type, else null
+    const detail::IndicatorEntries* entries_;   // entries of own_bounds_, or null
+    const Threshold* own_threshold_ = nullptr;  // criterion_ where it is one of own_bounds_
     Pack<float> packed_threshold_{};
     std::size_t last_component_ = 0;
     bool saturated_;

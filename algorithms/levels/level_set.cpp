@@ -65,7 +65,8 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
         options_->normals || options_->cap || (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
 
-/// Does as `leader` does: its pass, its limit, and what its tasks have recorded.
+/// Makes a task do as `leader` does: takes over its pass and its limit, and adopts what all its
+/// tasks have recorded.
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::join(const LevelSet& leader) {
     walks_.join(leader.walks_);
@@ -84,7 +85,7 @@ void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
     for (LevelSurface<dimension>& surface : surfaces_) surface.count_only();
 }
 
-/// Whether nothing but vertices and triangles is asked for.
+/// Whether the options ask for vertices and triangles alone.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::draws_plainly() const {
     return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->normals &&
@@ -120,7 +121,8 @@ void LevelSet<dimension, Real>::flush() {
     for (LevelSurface<dimension>& surface : surfaces_) surface.builder().flush();
 }
 
-/// A second walk that draws only the rest does not meet everything: the first one counts.
+/// Reports the counts of the first of two walks where the second one, which draws the rest alone,
+/// does not meet all elements.
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& result) const {
     result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
@@ -156,8 +158,8 @@ void LevelSet<dimension, Real>::undo() {
     --counts_.visited;
 }
 
-/// Leaves around which nothing is closed record nothing. Caps also lie in leaves that no level
-/// passes through.
+/// Leaves out leaves that would only record and around which nothing is closed. With caps, inspects
+/// all others, because caps also lie in leaves that no level passes through.
 template <int dimension, class Real>
 Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values, NodeMask which,
                                          bool closed) {
@@ -172,7 +174,8 @@ Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values, N
     return {cut, 0};
 }
 
-/// Reports the counts so far, and these.
+/// Reports the sum of the counts so far and these.
+/// \throw Cancelled where options.progress says so
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::report_progress(std::uint64_t calls, std::uint64_t visited) const {
     if (!options_->progress) return;
@@ -182,7 +185,8 @@ void LevelSet<dimension, Real>::report_progress(std::uint64_t calls, std::uint64
     if (!options_->progress(counts)) throw Cancelled{};
 }
 
-/// Simplices that conform are walked in patches, where nothing but triangles is asked for.
+/// Walks the bisections below an element in patches, where elements that stop conform and the
+/// options ask for vertices and triangles alone.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::takes(const View& view) {
     if (!bisects_) return false;
@@ -275,7 +279,8 @@ void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigne
     if (surface.counts_only()) surface.forget_element();
 }
 
-/// Counts an element that was drawn and the error it has, and hands on what is full.
+/// Counts an element that was drawn, raises the error bound by its error, and hands a full chunk to
+/// the sink.
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Draws level sets while a hierarchy is traversed; isosurface.hpp says what holds of the result.
+// Draws level sets in a traversal of a hierarchy. isosurface.hpp states the properties of the
+// result.
 #pragma once
 
 #include <memory>
@@ -48,10 +48,10 @@ public:
     void flush();
     /// Number of simplices drawn so far.
     std::uint64_t simplices() const { return tally_.drawn(); }
-    /// Sets what is known beside surface i.
+    /// Sets counts, error bound and memory in the result of level i.
     void report(std::size_t i, Isosurface<dimension>& result) const;
 
-    // The walk asks (visitor.hpp, frontier.hpp).
+    // Answers to the walk (visitor.hpp, frontier.hpp).
     Decision inspect(const View& view, const Split& split) override;
     void extract(const View& view) override;
     NodeMask children(const View& view) override { return walks_.children(view); }
@@ -88,7 +88,7 @@ private:
     /// What elements record on closed faces for one level.
     struct Transitions {
         TransitionContours record;
-        const TransitionContours* drawn_below = nullptr;  // those of all tasks
+        const TransitionContours* drawn_below = nullptr;  // the record of all tasks
     };
     /// The element at hand.
     struct AtHand {
@@ -100,7 +100,7 @@ private:
         Real bound = 0;  // how far U may leave the range of its corners
         bool loaded = false;
         bool loads_keys = false;
-        bool plainly = false;  // nothing but vertices and triangles is asked for
+        bool plainly = false;  // options ask for vertices and triangles alone
 
         AtHand(const Walk<Real>& walk, std::size_t first_attribute, SimplexTally& tally,
                const IsosurfaceOptions& options)
@@ -115,7 +115,7 @@ private:
     const IsosurfaceOptions* options_;
     std::size_t first_attribute_;
     std::vector<LevelSurface<dimension>> surfaces_;  // one a level
-    std::vector<Transitions> transitions_;           // likewise
+    std::vector<Transitions> transitions_;           // one a level
     TwoWalks<Real> walks_;
     SimplexTally tally_;
     Normals<Real> normals_;
@@ -123,7 +123,7 @@ private:
     TraversalCounts counts_;
     TraversalCounts counts_of_first_walk_;
     int deepest_ = 0;
-    bool bisects_ = false;  // bisections are walked in patches
+    bool bisects_ = false;  // takes() walks bisections in patches
     LevelTasks<dimension, Real> tasks_;
 };
 

@@ -10,7 +10,7 @@ namespace nestgrid::engine {
 
 template <int dimension, class Real>
 void LevelTasks<dimension, Real>::run(LevelSet<dimension, Real>& leader, const Executor& executor) {
-    // Enough parts that threads end together, and few entries, for each begins anew.
+    // Enough parts that threads end together, and few entries, because a walk begins anew at each.
     const std::size_t wanted = 16 * executor.concurrency();
     const Frontier<Real> frontier(*leader.walk_, leader, 2 * wanted);
     const std::size_t entries = frontier.entry_count();

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Level sets by several threads.
+// Draws level sets with several threads.
 //
 // Each task has a LevelSet of its own, which draws a part of the surfaces below its part of the
-// frontier. The parts are put together in their order, while later ones are drawn: vertices get
-// their numbers, and gradients are added up, in the order of one thread. So the surface does not
-// depend on the number of threads, nor on how the grid is cut, to the last bit.
+// frontier. The leader puts the parts together in their order, while tasks draw later ones: it
+// numbers vertices and adds up gradients in the order of one thread. So no bit of the surface
+// depends on the number of threads, or on where the frontier cuts the grid.
 #pragma once
 
 #include <memory>
@@ -39,7 +38,7 @@ private:
     static void add(const Task& task, LevelSet<dimension, Real>& leader);
 
     std::mutex mutex_;
-    std::vector<std::unique_ptr<Task>> idle_;  // whose memory is free to be used
+    std::vector<std::unique_ptr<Task>> idle_;  // finished; later tasks use their memory
     IsosurfaceOptions silent_;                 // those of the leader without progress
 };
 

@@ -21,7 +21,8 @@ template <class Real>
 Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, const Rule& rule,
                     std::size_t node);
 
-/// Section 8: the gradient as a vector-valued function, projected with the same S.
+/// The projected gradient at a corner: a vector-valued function, projected with the same S as the
+/// values (paper, section 8).
 template <class Real>
 Point projected_gradient(const Walk<Real>& walk, const ElementView<Real>& view,
                          std::size_t corner) {
@@ -62,7 +63,7 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
     const View& view = element.view();
     const std::size_t corners = view.corner_count();
     const std::size_t components = element.walk().components();
-    Gradients exact;  // asked for once, where a node is met for the first time
+    Gradients exact;  // fetched at the first corner that needs one
     bool asked = false;
     std::array<double, max_corners> value{};
     for (std::size_t i = 0; i < corners; ++i) value[i] = view.value[i * components];
@@ -81,7 +82,8 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
     }
 }
 
-/// The field's own gradients are the same from every element, and added once.
+/// Adds a gradient at a node. Adds a gradient of the field only once, because it is the same from
+/// every element.
 template <class Real>
 void Normals<Real>::add(Slot slot, const CornerGradient& gradient) {
     if (own_ && sums_.known(slot)) return;

@@ -12,18 +12,18 @@
 
 namespace nestgrid::engine {
 
-/// Takes the gradients of the field where it has own ones, else those of the drawn elements.
+/// Sums up gradients: those of the field where it offers them, else those of the drawn elements.
 template <class Real>
 class Normals {
 public:
     explicit Normals(const Walk<Real>& walk) : own_{walk.hierarchy().offers(Feature::gradients)} {}
 
-    /// Begins anew with the memory of the sums before.
-    /// \param logs whether another one will repeat what is added here (append())
+    /// Begins anew, and keeps its memory.
+    /// \param logs whether to log what add() adds, for append()
     void begin(bool logs);
     /// Adds the gradients at the corners of an element that is drawn.
     void add(const ElementCuts<Real>& element);
-    /// Adds what another one has logged, in its order.
+    /// Adds what `other` has logged, in its order.
     void append(const Normals& other);
 
     NodeGradients& sums() { return sums_; }

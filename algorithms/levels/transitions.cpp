@@ -14,14 +14,14 @@ bool is_cut(unsigned signs, std::size_t side, std::size_t corners) {
     return (signs >> side & 1U) != (signs >> ((side + 1) % corners) & 1U);
 }
 
-/// A face; in two dimensions the element itself as one.
+/// A face of an element; in two dimensions the element itself as a face.
 template <int dimension>
 FaceTopology loop_of(const Topology& topology, std::size_t face) {
     if (dimension == 2) return {Shape::quadrilateral, 4, {0, 1, 3, 2}};
     return topology.face[face];
 }
 
-/// The segments that an element draws on its closed faces, between edges.
+/// The segments that an element draws on its closed faces, each from one of its edges to another.
 class FaceSegments {
 public:
     struct Segment {
@@ -51,7 +51,7 @@ public:
     }
 
     std::span<const Segment> all() const { return {segment_.data(), count_}; }
-    unsigned edges() const { return edges_; }  ///< with an end of a segment, one bit each
+    unsigned edges() const { return edges_; }  ///< edges on which segments end, one bit each
 
 private:
     std::array<Segment, 2 * max_faces> segment_;
@@ -66,7 +66,7 @@ void record_transitions(const ElementCuts<Real>& element, unsigned cut_faces, un
                         TransitionContours& record) {
     const FaceSegments segments(element, cut_faces, inside);
     const ElementView<Real>& view = element.view();
-    std::array<KeyPair, max_edges> names;  // looked up at once: none waits for another one's slot
+    std::array<KeyPair, max_edges> names;  // fetched at once, so that none waits for another
     for (unsigned left = segments.edges(); left != 0; left &= left - 1) {
         const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
         names[e] = element.name(e);
@@ -106,8 +106,10 @@ bool TransitionAdoption<dimension, Real>::find(const TransitionContours* drawn_b
     return faces_ != 0;
 }
 
-/// Adopts what the finer side draws on a face from the cut of one of its sides.
-/// \return whether that joins the corners inside the level, where there is anything
+/// Adopts the vertices that the finer side drew on face `on`, from the cut of a side of the face to
+/// the cut of another side.
+/// \return whether these segments join the corners inside the level; nothing where the finer side
+///        drew none
 template <int dimension, class Real>
 auto TransitionAdoption<dimension, Real>::adopt(std::size_t on, std::size_t side, unsigned signs)
     -> Found {
@@ -164,7 +166,8 @@ unsigned TransitionAdoption<dimension, Real>::choose(unsigned inside, unsigned a
         const FaceTopology& face = t.face[f];
         const unsigned signs = signs_of(face, inside);
         for (std::size_t i = 0; i < face.corners; ++i) {
-            // The finer side draws from where our segment comes back to where it leaves.
+            // The finer side's segments run from the cut at which this element's segment comes back
+            // to the one at which it leaves.
             const bool begins_inside = (signs >> i & 1U) != 0;
             if (!is_cut(signs, i, face.corners) || begins_inside != (view.orientation < 0)) {
                 continue;

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Closed faces between elements that stop without conforming: the finer side records what it draws
-// on them, the coarser side adopts it (docs/closed_surfaces.md).
+// Closed faces between elements that stop without conforming. The finer side records the segments
+// that it draws on such a face, the coarser side adopts them (docs/closed_surfaces.md).
 #pragma once
 
 #include <contours/transition_contours.hpp>
@@ -28,11 +27,11 @@ public:
 
     /// Finds the cut faces on which a finer side recorded anything.
     /// \param drawn_below what finer sides recorded, or null
-    /// \return whether there is one
+    /// \return whether there is such a face
     bool find(const TransitionContours* drawn_below, unsigned cut_faces);
     /// Decides which faces join their corners inside the level, one bit each: as the finer side
-    /// does, else by the face's data. Sets the chains that finer sides drew; contour.begin() must
-    /// have been called.
+    /// does, else by the face's values. Gives the contour the chains that finer sides drew.
+    /// Requires that contour.begin() was called.
     /// \param alternating faces whose signs alternate, one bit each
     unsigned choose(unsigned inside, unsigned alternating);
 
@@ -45,8 +44,8 @@ private:
     const ElementCuts<Real>* cuts_;
     ElementContour<dimension, Real>* contour_;
     const TransitionContours* drawn_below_ = nullptr;
-    unsigned faces_ = 0;                       // with something recorded, one bit each
-    std::array<Number, max_faces> on_face_{};  // what, by face
+    unsigned faces_ = 0;                       // faces that find() found, one bit each
+    std::array<Number, max_faces> on_face_{};  // number of the record on each of them
     std::vector<Number> between_;              // vertices of the chain adopted last
 };
 

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Elements that stop without conforming are drawn in two walks. The first one records what finer
-// sides draw on closed faces (transitions.hpp), the second one draws. Where there is a level on
-// which no element has a finer neighbour, the first walk draws the elements of that level, and the
-// second one enters only what leads to the others.
+// Two walks draw elements that stop without conforming. The first one records what finer sides draw
+// on closed faces (transitions.hpp), the second one draws. Where no element of some level has a
+// finer neighbour, the first walk draws the elements of that level, and the second one enters only
+// elements that lead to others.
 #pragma once
 
 #include <nestgrid/algorithms/isosurface_options.hpp>
@@ -33,7 +32,7 @@ public:
         later_below_.clear();
         enter_ = &later_below_;
     }
-    /// Does as another one does, which must outlive the walk.
+    /// Makes this one do as `leader` does, which must outlive the walk.
     void join(const TwoWalks& leader) {
         begin(leader.pass_, leader.finest_);
         enter_ = leader.enter_;
@@ -44,7 +43,7 @@ public:
     bool is_recording() const { return pass_ == Pass::record; }
     /// Whether this walk draws only what the first one left.
     bool draws_rest() const { return pass_ == Pass::finish && finest_ >= 0; }
-    /// Whether this walk adopts what was recorded.
+    /// Whether this walk adopts what the first one recorded.
     bool adopts() const { return pass_ == Pass::finish; }
     /// Whether the first walk draws some elements.
     bool draws_finest() const { return finest_ >= 0; }
@@ -67,8 +66,8 @@ public:
         return children == nullptr ? 0 : *children;
     }
 
-    /// Leaves an element to the second walk. Ways are known by hashes: where two have the same, the
-    /// second walk enters more than it must.
+    /// Leaves an element to the second walk. Remembers the hash of the way to it: where two ways
+    /// have the same hash, the second walk enters more than it must.
     void leave_for_later(const View& view) {
         if (draws_finest()) remember_way(view);
     }
@@ -91,13 +90,13 @@ private:
         }
     }
 
-    /// By the path of an element above what is left: its children that lead there.
+    /// By the path of an element: its children that lead to elements left for later, one bit each.
     using Ways = KeyTable<NodeKey, NodeMask>;
 
     Pass pass_ = Pass::only;
     int finest_ = -1;
     Ways later_below_;
-    const Ways* enter_ = &later_below_;  // those of all tasks
+    const Ways* enter_ = &later_below_;  // the ways of all tasks
 };
 
 }  // namespace nestgrid::engine

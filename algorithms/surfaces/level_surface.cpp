@@ -69,7 +69,7 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part) {
         return std::span<const double>(surface.attributes)
             .subspan(first * stride, (end - first) * stride);
     };
-    std::vector<Number> number;  // of each vertex of the part
+    std::vector<Number> number;  // by vertex of the part: its number here
     number.reserve(x.size());
     const auto add_own = [&](std::size_t end) {
         const std::size_t first = number.size();
@@ -109,7 +109,7 @@ Point LevelSurface<dimension>::area(const Simplex& corners) const {
     return cross(position(corners[1]) - x, position(corners[dimension - 1]) - x);
 }
 
-/// The gradient at a vertex, interpolated between its nodes; 0 where none is known.
+/// The gradient at a vertex, interpolated between its nodes; 0 where neither node has a gradient.
 template <int dimension>
 Point LevelSurface<dimension>::gradient_at(const Where& where) const {
     const bool low = where.low != none && gradients_->known(where.low);
@@ -120,7 +120,7 @@ Point LevelSurface<dimension>::gradient_at(const Where& where) const {
     return (1 - where.fraction) * a + where.fraction * b;
 }
 
-/// Adds the area vectors of the triangles around them to the normals of flat vertices.
+/// Adds to the normal of each flat vertex the area vectors of the triangles around the vertex.
 template <int dimension>
 void LevelSurface<dimension>::add_areas(const std::vector<bool>& flat,
                                         std::vector<Point>& normals) const {

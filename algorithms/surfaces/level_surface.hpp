@@ -11,8 +11,9 @@
 
 namespace nestgrid::engine {
 
-/// Names vertices, numbers those that are new, and hands all to a builder. A vertex with a known
-/// name gets the number it has, where the builder shares vertices; else every vertex is new.
+/// Names vertices, numbers those that are new, and hands them and the simplices to a builder. A
+/// vertex with a known name gets the number it has, where the builder shares vertices; else every
+/// vertex is new.
 template <int dimension>
 class LevelSurface {
 public:
@@ -26,15 +27,15 @@ public:
     LevelSurface(Builder builder, bool small_keys)
         : builder_{std::move(builder)}, numbers_{small_keys} {}
 
-    /// Begins an empty surface with the memory of the one before.
+    /// Begins an empty surface, and keeps its memory.
     /// \param gradients at nodes, where normals are wanted here; else null
     void begin(Builder builder, NodeGradients* gradients, bool verify);
-    /// Makes no normals: another surface makes those of this part.
+    /// Makes no normals, because another LevelSurface makes those of this part.
     void leave_normals() {
         gradients_ = nullptr;
         sums_areas_ = false;
     }
-    /// Counts from now on: simplices are forgotten by forget_element().
+    /// Only counts from now on. The caller must drop simplices by forget_element().
     void count_only() { counts_only_ = true; }
     bool counts_only() const { return counts_only_; }
     void forget_element() { builder_.clear(); }
@@ -48,7 +49,7 @@ public:
     /// Whether vertices have names.
     bool names_vertices() const { return builder_.shares_vertices() && !counts_only_; }
     Name name(const KeyPair& nodes) const { return numbers_.name(nodes); }
-    /// The vertex with a name may be asked for soon.
+    /// Fetches what vertex(name) reads into the cache.
     void prefetch(const Name& name) const { numbers_.prefetch(name); }
 
     /// The vertex with a name; make() returns its SurfaceCut where it is new.
@@ -70,7 +71,7 @@ public:
     }
     /// Adds a vertex on an edge.
     Number add(const SurfaceCut& cut);
-    /// Adds vertices inside one element, or known to one task alone. \return the first one
+    /// Adds vertices without names: inside one element, or of one task alone. \return the first one
     Number add_unnamed(std::span<const Point> x, std::span<const double> attributes);
     /// \throw GridError where a vertex lies elsewhere
     void verify(Number number, const Point& x) const;
@@ -80,18 +81,18 @@ public:
         builder_.add_simplex(corners, reference);
         if (sums_areas_) sum_area(corners);
     }
-    /// Puts a part behind what is drawn. Its vertices get their numbers in the order in which it
-    /// has them; those that other parts know keep theirs.
+    /// Appends a part. Numbers its vertices in their order; those that earlier parts have keep
+    /// their numbers.
     void add_part(const SurfacePart<dimension>& part);
 
     /// Counts elements that contribute to the surface.
     void add_extracted(std::uint64_t more) { extracted_ += more; }
     std::uint64_t extracted() const { return extracted_; }
-    /// Says that U differs from the level by up to this on the surface.
+    /// Raises the bound of |U - level| on the surface to `bound` at least.
     void raise_error_bound(double bound) { error_bound_ = std::max(error_bound_, bound); }
     double error_bound() const { return error_bound_; }
 
-    /// Makes the normals, once all is drawn.
+    /// Makes the normals. Requires that everything is drawn.
     void set_normals();
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
@@ -115,7 +116,7 @@ private:
 
     Builder builder_;
     VertexNumbers numbers_;
-    SubtreeVertices within_;  // subtrees of bisections
+    SubtreeVertices within_;  // vertices in subtrees of bisections
     NodeGradients* gradients_ = nullptr;
     std::deque<Where> where_;   // by vertex, where normals are wanted
     std::vector<Point> areas_;  // area vectors around each vertex, where a sink takes the simplices

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Puts a surface together: in a Surface, in a part of one that a task draws, or in chunks for a
-// sink.
+// Puts a surface together: in a Surface, in the part of a surface that a task draws, or in chunks
+// for a sink.
 #pragma once
 
 #include <array>
@@ -28,7 +27,7 @@ struct SurfaceCut {
 /// A vertex of one part of a surface that other parts may contain, too.
 struct SharedVertex {
     std::uint32_t number;
-    std::array<NodeKey, 2> node;  ///< the one with the lower value first
+    std::array<NodeKey, 2> node;  ///< the node with the lower value first
     double fraction;              ///< of the way from the first node to the second
 };
 
@@ -37,7 +36,7 @@ struct ExtractedElement {
     Handle element;
     Shape shape;
     int level;
-    std::uint32_t simplices;  ///< how many come from it
+    std::uint32_t simplices;  ///< number of simplices from it
 };
 
 /// A surface with vertex numbers of its own, drawn by one task. Vertices that other parts may have
@@ -48,7 +47,8 @@ struct SurfacePart {
     std::vector<SharedVertex> shared;  ///< in the order of their numbers
 };
 
-/// Appends simplices whose corners are some of these vertices.
+/// Appends simplices.
+/// \param all their corners, as indices into `vertices`
 template <class Corners, std::size_t size>
 void append_simplices(std::span<const std::uint32_t> vertices, std::span<const Corners> all,
                       std::vector<std::array<std::uint32_t, size>>& to) {
@@ -135,9 +135,9 @@ public:
         if (elements_) surface_->element_of.push_back(last_element());
         for (const Point& x : reference) surface_->reference.push_back(x);
     }
-    /// Adds several elements, which may be left out where elements are not kept, and all simplices
-    /// from them, in their order.
-    /// \param vertices that the corners of the simplices refer to
+    /// Adds several elements and all simplices from them, in their order. Where the builder does
+    /// not keep elements, these may be left out.
+    /// \param vertices, all the simplices, as for append_simplices()
     template <class Corners>
     void add_extracted(std::span<const ExtractedElement> elements, std::span<const Number> vertices,
                        std::span<const Corners> all) {
@@ -171,7 +171,8 @@ public:
         append(part.shape_of, surface_->shape_of);
         append(part.level_of, surface_->level_of);
     }
-    /// Hands a part whose elements share no vertices to the sink, behind what is here.
+    /// Hands the chunk, and a part behind it, to the sink. Requires a sink to which elements share
+    /// no vertices.
     void hand_over(const Target& part) {
         flush();
         if (!part.simplices.empty()) soup_->take(part);
@@ -203,7 +204,7 @@ public:
             mesh_->set_normals(normals);
         }
     }
-    /// Forgets everything but the memory.
+    /// Empties the surface, and keeps its memory.
     void clear() {
         surface_->clear();
         if (shared_ != nullptr) shared_->clear();
@@ -211,7 +212,7 @@ public:
     }
 
 private:
-    // Simplices of a full chunk; one of a soup stays in the nearest cache.
+    // Simplices in a full chunk; a chunk of a soup stays in the nearest cache.
     static constexpr std::size_t mesh_chunk_ = 1024;
     static constexpr std::size_t soup_chunk_ = 128;
 

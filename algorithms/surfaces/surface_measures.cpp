@@ -56,7 +56,7 @@ std::vector<std::uint32_t> number_components(const Surface<3>& surface) {
     return component_of;
 }
 
-/// Adds a triangle to the measures of what it belongs to.
+/// Adds a triangle to measures.
 /// \param origin apex of the cones whose volumes are added
 void add_triangle(const Surface<3>& surface, const std::array<std::uint32_t, 3>& t,
                   const Point& origin, const std::vector<bool>& open, SurfaceMeasures& to) {

@@ -27,7 +27,7 @@ struct Side {
 
 using Sides = std::vector<Side>;
 
-/// All sides of all triangles; those of one edge follow each other.
+/// All sides of all triangles. The sides on one edge follow each other.
 /// \throw InvalidInput where a triangle repeats a vertex or names one that does not exist
 Sides sorted_sides(const Surface<3>& surface) {
     Sides sides;

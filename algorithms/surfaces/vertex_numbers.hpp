@@ -48,7 +48,7 @@ public:
 #endif
     }
 
-    /// The number of the vertex between two nodes; make() gives it where it is new.
+    /// The number of the vertex with a name; make() returns it where the vertex is new.
     template <class Make>
     NESTGRID_INLINE Number find(const Name& name, Make&& make) {
         reserve(1);
@@ -80,7 +80,7 @@ public:
         return {slot->number, is_new};
     }
 
-    /// Forgets everything but its memory.
+    /// Empties the table, and keeps its memory.
     void clear() {
         size_ = 0;
         if (++round_ != 0) return;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points in vectors of the machine. What is written as three numbers and read as a vector, or as
-// vectors that begin elsewhere, makes a processor wait until the numbers have reached its cache;
-// these are written and read as the same two vectors.
+// Points in vectors of the machine. A processor that reads a vector, after a program has written
+// its numbers one by one or as vectors that begin elsewhere, waits until they have reached the
+// cache. A WidePoint is written and read as the same two vectors.
 #pragma once
 
 #include <nestgrid/detail/geometry.hpp>
@@ -11,8 +11,8 @@
 
 namespace nestgrid {
 
-/// The results are those of the same operations on a Point, to the last bit, where the compiler
-/// does not fuse products and sums (-ffp-contract=off, or a machine that cannot).
+/// Operations have the results of those on a Point, to the last bit, where the compiler does not
+/// fuse products and sums (-ffp-contract=off, or a machine that cannot).
 class WidePoint {
 public:
     WidePoint() = default;

@@ -8,7 +8,8 @@
 
 namespace nestgrid::engine {
 
-/// The faces of each coarse element whose ids occur once on the coarse grid, one bit each.
+/// For each coarse element, one bit each, the faces on the boundary of the coarse grid: no other
+/// coarse element has a face with the same ids.
 /// \throw GridError where a coarse element has a shape of another dimension than the grid
 template <class Real>
 std::vector<std::uint8_t> coarse_boundary(const Hierarchy<Real>& hierarchy);

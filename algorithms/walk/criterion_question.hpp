@@ -12,8 +12,8 @@ namespace nestgrid::engine {
 /// Asks a criterion about the new nodes of a split, and keeps the memory of questions and answers.
 class CriterionQuestion {
 public:
-    /// \param walk with positions where the criterion wants them
-    /// \return weights in it are valid until the next question
+    /// \param walk must carry positions where the criterion wants them
+    /// \return a decision whose weights are valid until the next question
     template <class Real>
     Decision ask(const Walk<Real>& walk, const Criterion& criterion, const ElementView<Real>& view,
                  const Split& split) {

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// What a walk knows of an element, by pointers into the family that the element belongs to.
+// An element as a walk shows it, with pointers into the family and the frame that it belongs to.
 #pragma once
 
 #include <nestgrid/hierarchy.hpp>
@@ -17,15 +16,15 @@ template <class Real>
 struct ElementView {
     const Member* member;       ///< handle, rule and masks of the element
     const Family* family;       ///< the family that the member belongs to
-    WalkStack<Real>* stack;     ///< of the walk
+    WalkStack<Real>* stack;     ///< the memory of the walk
     std::size_t coarse;         ///< number of the coarse element above it
     const ElementView* father;  ///< null for a coarse element
     const Rule* made_by;        ///< the father's rule; null for a coarse element
     const Child* as;            ///< the element in that rule; null for a coarse element
     /// P_S U at the corners: component c of corner k at value[k * components + c].
     const Real* value;
-    const NodeKey* node_key;     ///< of the nodes of the father, where the walk carries keys
-    const Point* node_position;  ///< of the nodes of the father, where it carries positions
+    const NodeKey* node_key;     ///< keys of the father's nodes, where the walk carries keys
+    const Point* node_position;  ///< their positions, where it carries positions
     NodeKey path;                ///< a hash of the way down
     ClosedParts<Real> closed;    ///< edges and faces around the element that are closed
     int level;                   ///< 0 for coarse elements

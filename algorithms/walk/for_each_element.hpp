@@ -21,11 +21,11 @@ template <class Real>
 void for_each_element(const Walk<Real>& walk, bool splits_only,
                       const ElementFunction<Real>& function);
 
-/// The same for the elements on one level. A level is the depth in the tree.
+/// Calls a function in the same way for every element on one level.
 template <class Real>
 void for_each_on_level(const Walk<Real>& walk, int level, const ElementFunction<Real>& function);
 
-/// Number of levels of a hierarchy: 1 for a coarse grid alone.
+/// The number of levels of a hierarchy, 1 for a coarse grid alone.
 template <class Real>
 int count_levels(const Walk<Real>& walk);
 

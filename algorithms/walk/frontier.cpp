@@ -10,8 +10,8 @@ namespace nestgrid::engine {
 
 namespace {
 
-/// The level of an element, or of the first of the copies that lead to it. The elements below an
-/// element, and no others up to the next one beside it or above, have a head greater than its
+/// The level of an element, or of the first of the copies that lead to it. In preorder, the
+/// elements below an element follow it, up to the next element whose head is not greater than its
 /// level.
 template <class Real>
 int head(const ElementView<Real>& view) {
@@ -109,7 +109,7 @@ private:
     TaskVisitor<Real>* visitor_;
     std::size_t first_;
     std::size_t last_;
-    std::size_t item_;  // that the walk meets next
+    std::size_t item_;  // the item that the walk meets next
 };
 
 template <class Real>

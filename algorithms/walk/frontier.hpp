@@ -4,10 +4,10 @@
 // A walk cut into tasks: subtrees of one level, in the order in which one walk meets them.
 //
 // Invariants:
-//   - an entry is an element on the frontier's level, or one above it that is extracted; every
-//     element of interest lies above the frontier or below exactly one entry;
-//   - the elements above the frontier are kept in preorder, so that a task finds its entries by
-//     walking down to them from the coarse grid and skips all other elements. The frontier stores
+//   - an entry is an element on the frontier's level, or an extracted element above that level;
+//     every element of interest lies above the frontier, or is or lies below exactly one entry;
+//   - the frontier keeps the elements above it in preorder, so that a task finds its entries by
+//     walking down to them from the coarse grid, and skips all other elements. The frontier stores
 //     the place of an element and nothing else; fathers, keys and values come from the walk.
 // Memory: 20 bytes for each element above the frontier and on it.
 #pragma once
@@ -23,9 +23,9 @@ namespace nestgrid::engine {
 template <class Real>
 class TaskVisitor : public Visitor<Real> {
 public:
-    /// Takes the last inspect() back, because a task will repeat it.
+    /// Takes back the last inspect(), because a task will repeat it.
     virtual void undo() = 0;
-    /// Takes all calls back.
+    /// Takes back all calls.
     virtual void restart() = 0;
     /// Decides like inspect(), without counting the element.
     virtual Decision look(const ElementView<Real>& view, const Split& split) = 0;
@@ -42,7 +42,8 @@ protected:
 template <class Real>
 class Frontier {
 public:
-    /// Takes the first level with enough entries, or the last one with any.
+    /// Chooses the first level with enough entries whose children the visitor enters, or else the
+    /// first one without any such entry.
     /// \param visitor decides about the elements above the frontier as in an ordinary walk
     /// \throw GridError where the coarse grid has 2^32 elements or more
     Frontier(const Walk<Real>& walk, TaskVisitor<Real>& visitor, std::size_t wanted);
@@ -50,7 +51,7 @@ public:
     std::size_t entry_count() const { return entries_; }
 
     /// Shows a visitor the entries first ... last - 1 and all elements below them.
-    /// \param walk the one that the frontier was made with
+    /// \param walk the walk with which the frontier was made
     void run(const Walk<Real>& walk, std::size_t first, std::size_t last,
              TaskVisitor<Real>& visitor) const;
 
@@ -60,8 +61,8 @@ private:
 
     struct Item {
         std::uint32_t coarse;
-        std::uint32_t first_entry;  ///< the first one below the item, or the item itself
-        std::uint32_t next;         ///< the item behind its subtree
+        std::uint32_t first_entry;  ///< number of the first entry below the item, or of the item
+        std::uint32_t next;         ///< number of the item behind its subtree
         std::uint16_t head;         ///< level of the first of the copies that lead to the item
         std::uint16_t level;
         bool entry;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Numbers at a new node as the weighted mean of those at its parents, eq. (1).
+// Interpolates at a new node: takes the weighted mean of the numbers at its parents, eq. (1).
 #pragma once
 
 #include <algorithm>

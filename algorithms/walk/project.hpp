@@ -17,8 +17,8 @@ using ExtractFunction = std::type_identity_t<std::function<void(const ElementVie
 
 /// Calls a function for every element of the adaptive grid, in order; view.value holds P_S U at its
 /// corners.
-/// \param walk with values and keys, and positions where the criterion wants them, built with the
-/// indicator's hanging nodes
+/// \param walk must carry values and keys, and positions where the criterion wants them, and must
+///        know the indicator's hanging nodes
 template <class Real>
 void project(const Walk<Real>& walk, const Criterion& criterion,
              const ExtractFunction<Real>& function);

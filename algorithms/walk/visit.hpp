@@ -8,7 +8,7 @@ namespace nestgrid {
 
 /// What to do with an element.
 enum class Visit : std::uint8_t {
-    skip,     ///< leaves the element and all below it
+    skip,     ///< leaves out the element and all below it
     stop,     ///< extracts the element
     descend,  ///< enters the children
 };
