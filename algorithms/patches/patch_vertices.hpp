@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How PatchDrawing finds and makes vertices. patch_drawing.hpp includes this header.
+// How PatchDrawing finds and makes vertices. Included at the end of patch_drawing.hpp.
 #pragma once
-
-#include <patches/patch_drawing.hpp>
 
 namespace nestgrid::engine {
 

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How PatchWalk asks grid and field for new nodes, their keys and values: eight at once, or in
-// rows. patch_walk.hpp includes this header.
+// rows. Included at the end of patch_walk.hpp.
 #pragma once
-
-#include <patches/patch_walk.hpp>
 
 namespace nestgrid {
 

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of PatchWalk. patch_walk.hpp includes this header.
+// The steps of PatchWalk. Included at the end of patch_walk.hpp.
 #pragma once
-
-#include <patches/patch_walk.hpp>
 
 namespace nestgrid {
 

@@ -19,8 +19,11 @@ void bisect_patches(const LatticeBisection<dim>& grid,
 
 }  // namespace nestgrid
 
-#define NESTGRID_INSTANTIATE(dim, Sample, Real)                                           \
-    template void nestgrid::bisect_patches(                                               \
-        const LatticeBisection<dim>&, const LatticeField<LatticeBisection<dim>, Sample>&, \
-        NoContext&, const LatticeBisection<dim>::Element&, const Real*, int, int,         \
-        detail::ErasedBisectionVisitor<dim, Real>&);
+#define NESTGRID_INSTANTIATE(dim, Sample, Real)                                                  \
+    template class LatticeField<LatticeBisection<dim>, Sample>;                                  \
+    template class detail::ErasedHierarchy<LatticeBisection<dim>,                                \
+                                           LatticeField<LatticeBisection<dim>, Sample>>;         \
+    template void bisect_patches(const LatticeBisection<dim>&,                                   \
+                                 const LatticeField<LatticeBisection<dim>, Sample>&, NoContext&, \
+                                 const LatticeBisection<dim>::Element&, const Real*, int, int,   \
+                                 detail::ErasedBisectionVisitor<dim, Real>&);

@@ -4,6 +4,8 @@
 
 namespace nestgrid {
 
+template class Lattice<2>;
+template class LatticeBisection<2>;
 NESTGRID_INSTANTIATE(2, float, float)
 NESTGRID_INSTANTIATE(2, std::int8_t, float)
 NESTGRID_INSTANTIATE(2, std::uint8_t, float)

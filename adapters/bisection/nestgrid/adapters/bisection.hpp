@@ -20,8 +20,8 @@
 #include <bit>
 
 #include <nestgrid/adapters/lattice.hpp>
+#include <nestgrid/detail/erase.hpp>
 #include <nestgrid/detail/known_bisection.hpp>
-#include <nestgrid/hierarchy.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {

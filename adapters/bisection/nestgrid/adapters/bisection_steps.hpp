@@ -1,12 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Definitions of bisection.hpp.
+// Definitions of LatticeBisection, and what the library compiles of it. Included at the end of
+// bisection.hpp.
 #pragma once
-
-#include <bit>
-
-#include <nestgrid/adapters/bisection.hpp>
 
 namespace nestgrid {
 
@@ -112,5 +109,29 @@ void LatticeBisection<dim>::for_each_star_row(Function&& function) const {
         star_rows_of_plane(step, 0, plane, function);
     }
 }
+
+// The library compiles these classes for all samples that are WalkedInPatches, so that a program
+// that draws samples does not.
+#define NESTGRID_COMPILED(dim, Sample)                                   \
+    extern template class LatticeField<LatticeBisection<dim>, Sample>;   \
+    extern template class detail::ErasedHierarchy<LatticeBisection<dim>, \
+                                                  LatticeField<LatticeBisection<dim>, Sample>>;
+#define NESTGRID_COMPILED_FOR_ALL_SAMPLES(dim)   \
+    extern template class Lattice<dim>;          \
+    extern template class LatticeBisection<dim>; \
+    NESTGRID_COMPILED(dim, float)                \
+    NESTGRID_COMPILED(dim, double)               \
+    NESTGRID_COMPILED(dim, std::int8_t)          \
+    NESTGRID_COMPILED(dim, std::uint8_t)         \
+    NESTGRID_COMPILED(dim, std::int16_t)         \
+    NESTGRID_COMPILED(dim, std::uint16_t)        \
+    NESTGRID_COMPILED(dim, std::int32_t)         \
+    NESTGRID_COMPILED(dim, std::uint32_t)        \
+    NESTGRID_COMPILED(dim, std::int64_t)         \
+    NESTGRID_COMPILED(dim, std::uint64_t)
+NESTGRID_COMPILED_FOR_ALL_SAMPLES(2)
+NESTGRID_COMPILED_FOR_ALL_SAMPLES(3)
+#undef NESTGRID_COMPILED_FOR_ALL_SAMPLES
+#undef NESTGRID_COMPILED
 
 }  // namespace nestgrid
