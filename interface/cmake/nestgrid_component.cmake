@@ -12,18 +12,19 @@ function(nestgrid_library)
   nestgrid_install_component(library)
 endfunction()
 
-# nestgrid_component(<name> [HEADERS ...] [SOURCES ...] [PRIVATE_INCLUDES <folder> ...]
+# nestgrid_component(<name> [HEADERS ...] [PARTS ...] [SOURCES ...] [PRIVATE_INCLUDES <folder> ...]
 #                    [DEPENDS <component> ...] [LINK <target> ...]
 #                    [PACKAGES "<find_package arguments>" ...] [FIND_MODULES <file> ...])
 #
 # Makes the target nestgrid::<name>, in the tree and installed. Each component is an include root of
-# its own, so a component sees the headers of those it depends on and no others. SOURCES become
+# its own, so a component sees the headers of those it depends on and no others. PARTS are headers
+# that one of HEADERS includes at its end; alone they do not compile. SOURCES become
 # objects of libnestgrid; they alone see PRIVATE_INCLUDES. Without SOURCES the component is
 # header-only. PACKAGES are found again by whoever asks the installed package for the component,
 # with FIND_MODULES where they bring none of their own.
 function(nestgrid_component name)
   cmake_parse_arguments(
-    PARSE_ARGV 1 arg "" "" "HEADERS;SOURCES;PRIVATE_INCLUDES;DEPENDS;LINK;PACKAGES;FIND_MODULES")
+    PARSE_ARGV 1 arg "" "" "HEADERS;PARTS;SOURCES;PRIVATE_INCLUDES;DEPENDS;LINK;PACKAGES;FIND_MODULES")
   set(target nestgrid_${name})
   add_library(${target} INTERFACE)
   add_library(nestgrid::${name} ALIAS ${target})
@@ -38,19 +39,27 @@ function(nestgrid_component name)
   endforeach()
   target_link_libraries(${target} INTERFACE ${arg_LINK})
   file(GLOB_RECURSE forgotten RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} nestgrid/*.h nestgrid/*.hpp)
-  list(REMOVE_ITEM forgotten ${arg_HEADERS})
+  list(REMOVE_ITEM forgotten ${arg_HEADERS} ${arg_PARTS})
   if(forgotten)
     message(FATAL_ERROR "nestgrid: headers that component ${name} does not list: ${forgotten}")
   endif()
   if(arg_HEADERS)
     target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} FILES
                                        ${arg_HEADERS})
+    set_target_properties(${target} PROPERTIES INTERFACE_HEADER_SETS_TO_VERIFY HEADERS)
     if(NESTGRID_BUILD_TESTS AND NOT CMAKE_CXX_CLANG_TIDY)
       set_target_properties(${target} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
     endif()
   endif()
-  nestgrid_install_component(${name} DEPENDS ${arg_DEPENDS} PACKAGES ${arg_PACKAGES} FIND_MODULES
-                             ${arg_FIND_MODULES})
+  set(file_sets HEADERS)
+  if(arg_PARTS)
+    list(APPEND file_sets parts)
+    target_sources(${target} INTERFACE FILE_SET parts TYPE HEADERS BASE_DIRS
+                                       ${CMAKE_CURRENT_SOURCE_DIR} FILES ${arg_PARTS})
+  endif()
+  nestgrid_install_component(
+    ${name} FILE_SETS ${file_sets} DEPENDS ${arg_DEPENDS} PACKAGES ${arg_PACKAGES} FIND_MODULES
+                                                                   ${arg_FIND_MODULES})
 endfunction()
 
 # Compiles sources into libnestgrid that include what users of the component do.
@@ -72,13 +81,17 @@ function(nestgrid_objects target sources private_includes)
   target_sources(nestgrid_library PRIVATE $<TARGET_OBJECTS:${objects}>)
 endfunction()
 
-# nestgrid_install_component(<name> [DEPENDS ...] [PACKAGES ...] [FIND_MODULES ...])
+# nestgrid_install_component(<name> [FILE_SETS ...] [DEPENDS ...] [PACKAGES ...] [FIND_MODULES ...])
 function(nestgrid_install_component name)
   if(NOT NESTGRID_INSTALL)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "DEPENDS;PACKAGES;FIND_MODULES")
-  install(TARGETS nestgrid_${name} EXPORT nestgrid-${name}-targets FILE_SET HEADERS)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "FILE_SETS;DEPENDS;PACKAGES;FIND_MODULES")
+  set(headers "")
+  foreach(file_set IN LISTS arg_FILE_SETS)
+    list(APPEND headers FILE_SET ${file_set})
+  endforeach()
+  install(TARGETS nestgrid_${name} EXPORT nestgrid-${name}-targets ${headers})
   install(
     EXPORT nestgrid-${name}-targets
     NAMESPACE nestgrid::

@@ -70,7 +70,8 @@ void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& 
             member.first_key = static_cast<std::uint32_t>(family.keys.size());
             // A grid that gives the keys of another rule writes no farther than this, and
             // check_grid can name the mistake.
-            family.keys.reserve(family.keys.size() + max_new_nodes);
+            const std::size_t room = family.keys.size() + max_new_nodes;
+            if (family.keys.capacity() < room) family.keys.reserve(2 * room);
             family.keys.resize(family.keys.size() + member.rule->new_nodes.size());
             call_new_keys(grid, context, e, std::span(family.keys).subspan(member.first_key));
         }
