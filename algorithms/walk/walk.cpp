@@ -444,50 +444,6 @@ void Walk<Real>::corners(const View& view, NodeKey* keys, Point* positions) cons
     }
 }
 
-template <class Real>
-std::array<Point, 2> Walk<Real>::positions(const MaximalEdge<Real>& edge) const {
-    const auto& split = *edge.split;
-    const auto& [a, b] = edge.end;
-    if (split.places != nullptr) return {split.places[a], split.places[b]};
-    const std::size_t corners = split.element->corner_count();
-    std::array<Point, max_corners + max_new_nodes> x;
-    this->corners(*split.element, nullptr, x.data());
-    for (std::size_t n = corners; n <= std::max(a, b); ++n) {
-        const bool asked = n == a || n == b;
-        if (!asked && split.rule->steps == 1) continue;  // not a parent of another new node
-        x[n] = detail::interpolate(split.rule->new_nodes[n - corners], x.data());
-    }
-    return {x[a], x[b]};
-}
-
-template <class Real>
-void Walk<Real>::new_positions(const View& view, const Rule& rule, std::span<Point> out) const {
-    if (new_positions_) {
-        hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(), out);
-        return;
-    }
-    const std::size_t corners = view.corner_count();
-    std::array<Point, max_corners + max_new_nodes> x;
-    this->corners(view, nullptr, x.data());
-    for (std::size_t n = 0; n < out.size(); ++n) {
-        x[corners + n] = detail::interpolate(rule.new_nodes[n], x.data());
-        out[n] = x[corners + n];
-    }
-}
-
-template <class Real>
-unsigned Walk<Real>::boundary(const View& view) const {
-    if (!boundary_faces_) return view.boundary;
-    unsigned faces = 0;
-    hierarchy_->corners(view.stack->task.get(), view.element(), 0, nullptr, nullptr, &faces);
-    return faces;
-}
-
-template <class Real>
-void Walk<Real>::gradients(const View& view, std::span<Point> out) const {
-    hierarchy_->corner_gradients(view.stack->task.get(), view.element(), out);
-}
-
 template class WalkStack<float>;
 template class WalkStack<double>;
 template struct ClosingSplit<float>;

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What visitors ask a walk about the element at hand.
+#include <algorithm>
+
+#include <walk/interpolate.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+template <class Real>
+std::array<Point, 2> Walk<Real>::positions(const MaximalEdge<Real>& edge) const {
+    const auto& split = *edge.split;
+    const auto& [a, b] = edge.end;
+    if (split.places != nullptr) return {split.places[a], split.places[b]};
+    const std::size_t corners = split.element->corner_count();
+    std::array<Point, max_corners + max_new_nodes> x;
+    this->corners(*split.element, nullptr, x.data());
+    for (std::size_t n = corners; n <= std::max(a, b); ++n) {
+        const bool asked = n == a || n == b;
+        if (!asked && split.rule->steps == 1) continue;  // not a parent of another new node
+        x[n] = detail::interpolate(split.rule->new_nodes[n - corners], x.data());
+    }
+    return {x[a], x[b]};
+}
+
+template <class Real>
+void Walk<Real>::new_positions(const View& view, const Rule& rule, std::span<Point> out) const {
+    if (new_positions_) {
+        hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(), out);
+        return;
+    }
+    const std::size_t corners = view.corner_count();
+    std::array<Point, max_corners + max_new_nodes> x;
+    this->corners(view, nullptr, x.data());
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        x[corners + n] = detail::interpolate(rule.new_nodes[n], x.data());
+        out[n] = x[corners + n];
+    }
+}
+
+template <class Real>
+unsigned Walk<Real>::boundary(const View& view) const {
+    if (!boundary_faces_) return view.boundary;
+    unsigned faces = 0;
+    hierarchy_->corners(view.stack->task.get(), view.element(), 0, nullptr, nullptr, &faces);
+    return faces;
+}
+
+template <class Real>
+void Walk<Real>::gradients(const View& view, std::span<Point> out) const {
+    hierarchy_->corner_gradients(view.stack->task.get(), view.element(), out);
+}
+
+template std::array<Point, 2> Walk<float>::positions(const MaximalEdge<float>&) const;
+template std::array<Point, 2> Walk<double>::positions(const MaximalEdge<double>&) const;
+template void Walk<float>::new_positions(const View&, const Rule&, std::span<Point>) const;
+template void Walk<double>::new_positions(const View&, const Rule&, std::span<Point>) const;
+template unsigned Walk<float>::boundary(const View&) const;
+template unsigned Walk<double>::boundary(const View&) const;
+template void Walk<float>::gradients(const View&, std::span<Point>) const;
+template void Walk<double>::gradients(const View&, std::span<Point>) const;
+
+}  // namespace nestgrid::engine
