@@ -8,6 +8,7 @@
 #include <indicators/preroll.hpp>
 #include <indicators/stars.hpp>
 #include <nestgrid/error.hpp>
+#include <walk/crossing_nodes.hpp>
 #include <walk/hanging_nodes.hpp>
 
 namespace nestgrid {
@@ -73,13 +74,16 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
     engine::Sweeps sweeps(hierarchy.facts().node_count, own_errors_, spread_);
     facts_ = engine::walk_preroll(walk, leaf_errors, measures, sweeps, executor);
     sweeps.saturate();
-    facts_.one_level_a_node = sweeps.one_level_a_node();
+    // No element above a crossing node stops, whatever its level.
+    facts_.one_level_a_node = sweeps.one_level_a_node() && hanging_.crossing() == nullptr;
     node_count_ = sweeps.node_count();
     sweeps.store(entries_);
 }
 
 std::size_t HierarchicalIndicator::memory_bytes() const {
-    return (entries_.dense == nullptr ? 0 : node_count_ * sizeof(detail::IndicatorEntry)) +
+    const engine::CrossingNodes* crossing = hanging_.crossing();
+    return (crossing == nullptr ? 0 : crossing->memory_bytes()) +
+           (entries_.dense == nullptr ? 0 : node_count_ * sizeof(detail::IndicatorEntry)) +
            entries_.sparse.memory_bytes() + hanging_.memory_bytes();
 }
 

@@ -7,6 +7,7 @@
 
 #include <indicators/fine_to_coarse.hpp>
 #include <walk/for_each_element.hpp>
+#include <walk/hanging_nodes.hpp>
 
 namespace nestgrid {
 
@@ -41,7 +42,11 @@ void add_element(const engine::Walk<float>& walk, const engine::ElementView<floa
 }  // namespace
 
 NodeLevels::NodeLevels(const Hierarchy<float>& hierarchy) {
-    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true});
+    HangingNodes hanging;  // S holds at no crossing node
+    if (hierarchy.offers(Feature::hanging_parents)) {
+        hanging = engine::derive_hanging_nodes(hierarchy);
+    }
+    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true}, &hanging);
     Heights heights(hierarchy.facts().node_count, unknown);
     engine::for_each_element(
         walk, true, [&](const engine::ElementView<float>& view, const engine::Split& split) {

@@ -106,7 +106,9 @@ void Sweeps::split(const MetSplit& s, Offset&& offset) {
         const bool is_new = node.made_on == 0;
         one_level_ = one_level_ && (is_new || node.made_on == level);
         node.made_on = level;
-        if (is_new) node.offset = offset(n);  // every element that makes it has the same parents
+        // Every element that makes a node has the same parents for it, but for crossing nodes, at
+        // which S does not hold.
+        if (is_new || (s.outside >> n & 1U) != 0) node.offset = std::max(node.offset, offset(n));
         const std::uint16_t own = (s.outside >> n & 1U) != 0 ? bfloat16_infinity
                                   : of_leaves_               ? std::uint16_t{0}
                                                              : bfloat16_above(node.offset);

@@ -61,7 +61,7 @@ struct MaximalEdge {
     };
 
     const Split* split;
-    std::array<std::uint8_t, 2> end;
+    std::array<std::uint32_t, 2> end;
 
     NodeKey key(std::size_t i) const { return split->key[end[i]]; }
     Real value(std::size_t i, std::size_t component) const {

@@ -8,6 +8,7 @@
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/detail/hanging_probe.hpp>
 #include <nestgrid/error.hpp>
+#include <walk/crossing_nodes.hpp>
 #include <walk/for_each_element.hpp>
 #include <walk/interpolate.hpp>
 
@@ -38,6 +39,7 @@ std::string name_of(const ElementView<Real>& view) {
 template <class Real>
 [[noreturn]] void refuse_face(const Walk<Real>& walk, const ElementView<Real>& view,
                               const Rule& rule, const detail::OneWayFace& face) {
+    const bool gives_parents = walk.hierarchy().offers(Feature::hanging_parents);
     std::array<Point, max_corners + max_new_nodes> place{};
     walk.corners(view, nullptr, place.data());
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
@@ -45,13 +47,18 @@ template <class Real>
             nestgrid::detail::interpolate(rule.new_nodes[n], place.data());
     }
     Point x{0, 0, 0};
-    for (const std::uint8_t corner : face) x = x + 0.25 * place[corner];
+    for (const std::uint8_t corner : face.corner) x = x + 0.25 * place[corner];
     throw GridError("elements on the two sides of the face around (" + std::to_string(x[0]) + ", " +
                     std::to_string(x[1]) + ", " + std::to_string(x[2]) + ") of element " +
                     name_of(view) +
                     " divide it in different directions first and one of them then across, so that "
-                    "a node there hangs on others than its parents: refine both in the same order, "
-                    "or each in its own direction only");
+                    "a node there hangs on " +
+                    (gives_parents ? "edges in both directions, or the grid does not give its "
+                                     "parents: refine both in the same order, or each in its own "
+                                     "direction only"
+                                   : "others than its parents: refine both in the same order, or "
+                                     "each in its own direction only, or let the grid give these "
+                                     "parents (hanging_parents)"));
 }
 
 /// Says where nodes hang on others than their parents, in a walk that carries positions, too.
@@ -73,11 +80,17 @@ template <class Real>
 HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
     const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
     detail::HangingProbe probe;
+    std::optional<CrossingSearch<Real>> crossing;
+    if (hierarchy.offers(Feature::hanging_parents)) {
+        crossing.emplace(walk);
+        probe.rely_on_given_parents();
+    }
     Keys keys;
     for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule == nullptr) return;
-        walk.corners(view, keys.data(), nullptr);
-        probe.add_nodes(*split.rule, keys, split.keys);
+        const std::span<const NodeKey> of = keys_of(walk, view, split, keys);
+        probe.add_nodes(*split.rule, of, split.keys);
+        if (crossing) crossing->add_split(*split.rule, of, probe);
     });
     probe.finish();
     const bool may_cross = probe.divides_one_way();
@@ -92,7 +105,9 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
         }
     });
     if (crossed) refuse_crossed_face(hierarchy, probe);
-    return probe.take();
+    HangingNodes hanging = probe.take();
+    if (crossing) hanging.set_crossing(crossing->find(probe, hanging));
+    return hanging;
 }
 
 template HangingNodes derive_hanging_nodes(const Hierarchy<float>&);

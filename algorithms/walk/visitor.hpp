@@ -26,6 +26,7 @@ struct Split {
     const Rule* rule = nullptr;
     NodeMask constrained = 0;       ///< new nodes that hang
     NodeMask outside = 0;           ///< see the operation `outside`
+    NodeMask crossing = 0;          ///< new nodes that no stencil of the rule gives a value
     std::span<const NodeKey> keys;  ///< of the new nodes, where the walk needs keys
 };
 

@@ -9,6 +9,7 @@
 
 #include <nestgrid/error.hpp>
 #include <walk/coarse_boundary.hpp>
+#include <walk/crossing_nodes.hpp>
 #include <walk/interpolate.hpp>
 
 namespace nestgrid::engine {
@@ -53,6 +54,9 @@ Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const Han
       carries_keys_{needs.keys && !own_keys_},
       carries_positions_{needs.positions && !own_positions_} {
     if (!boundary_faces_) boundary_ = coarse_boundary(hierarchy);
+    if (hanging != nullptr && hanging->crossing() != nullptr) {
+        fixed_ = std::make_unique<FixedNodes<Real>>(hierarchy, *hanging->crossing(), needs.values);
+    }
 }
 
 template <class Real>
@@ -161,6 +165,7 @@ void Walk<Real>::visit(const View& view, Visitor<Real>& visitor) const {
         split.keys = view.family->new_keys(member);
     }
     if (!constrained_ && hanging_ != nullptr) split.constrained = hanging_->mask(split.keys);
+    if (fixed_ != nullptr) mark_crossing(view, split);
     Decision decision;
     if (count > 0) decision = visitor.inspect(view, split);
     if (decision.visit == Visit::skip) return;
@@ -169,6 +174,20 @@ void Walk<Real>::visit(const View& view, Visitor<Real>& visitor) const {
     } else {
         descend(view, split, decision, visitor);
     }
+}
+
+/// Sets Split::crossing. These nodes count as new ones that do not hang, and S holds at no fixed
+/// one.
+template <class Real>
+void Walk<Real>::mark_crossing(const View& view, Split& split) const {
+    const NodeMask fixed = fixed_->mask(split.keys);
+    if (fixed == 0) return;
+    split.outside |= fixed;
+    std::array<NodeKey, max_corners + max_new_nodes> keys;
+    corners(view, keys.data(), nullptr);
+    std::ranges::copy(split.keys, keys.data() + view.corner_count());
+    split.crossing = fixed_->crossing().made_otherwise(*split.rule, keys);
+    split.constrained &= ~split.crossing;
 }
 
 template <class Real>
@@ -187,12 +206,13 @@ void Walk<Real>::descend(const View& view, const Split& split, const Decision& d
         }
     }
     if (!rule.new_nodes.empty()) visitor.entered(view, split, frame.value.data());
-    if (carries_positions_) project_positions(view, rule, mean, frame);
+    if (carries_positions_) project_positions(view, split, mean, frame);
     const ClosingSplit<Real>* closing = nullptr;
-    if (needs_.closed && (view.closed.any || mean != 0 || rule.divides_bare_faces)) {
+    if (needs_.closed &&
+        (view.closed.any || (mean | split.crossing) != 0 || rule.divides_bare_faces)) {
         closing = close(view, split, mean, frame);
     }
-    visit_children(view, rule, interpolated, closing, frame, visitor);
+    visit_children(view, split, interpolated, closing, frame, visitor);
 }
 
 /// Moves the values at new nodes where S has a weight towards their interpolants (section 6), in
@@ -224,12 +244,13 @@ void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, No
     const std::size_t corners = view.corner_count();
     const std::size_t stride = components_;
     Real* const value = with_room(frame.value, (corners + rule.new_nodes.size()) * stride);
-    const NodeMask which = needs_.values ? rule.all() & ~mean : NodeMask{0};
+    const NodeMask which = needs_.values ? rule.all() & ~(mean | split.crossing) : NodeMask{0};
     const NodeMask missing = hierarchy_->enter(view.stack->task.get(), view.element(), rule, which,
                                                value + corners * stride, wanted, frame.family);
     if ((missing & which) != 0) throw_missing(missing & which, view);
     if (!needs_.values) return;
     std::copy_n(view.value, corners * stride, value);
+    if (split.crossing != 0) fixed_->put_values(split, value + corners * stride);
     for (NodeMask left = affine_ != 0 ? rule.all() : mean; left != 0; left &= left - 1) {
         const auto n = static_cast<std::size_t>(std::countr_zero(left));
         const std::size_t count = (mean >> n & 1U) != 0 ? stride : affine_;
@@ -243,8 +264,9 @@ void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, No
 /// Puts the positions of the corners and new nodes into the frame. True positions are projected
 /// like the data.
 template <class Real>
-void Walk<Real>::project_positions(const View& view, const Rule& rule, NodeMask mean,
+void Walk<Real>::project_positions(const View& view, const Split& split, NodeMask mean,
                                    Frame<Real>& frame) const {
+    const Rule& rule = *split.rule;
     const std::size_t corners = view.corner_count();
     const std::size_t count = rule.new_nodes.size();
     Point* const x = with_room(frame.position, corners + count);
@@ -257,6 +279,7 @@ void Walk<Real>::project_positions(const View& view, const Rule& rule, NodeMask 
         hierarchy_->new_positions(view.stack->task.get(), view.element(), given,
                                   {x + corners, count});
     }
+    if (fixed_ != nullptr) given |= fixed_->put_positions(split.keys, x + corners);
     for (std::size_t n = 0; n < count; ++n) {
         if ((given >> n & 1U) == 0) x[corners + n] = detail::interpolate(rule.new_nodes[n], x);
     }
@@ -282,6 +305,10 @@ const ClosingSplit<Real>* Walk<Real>::close(const View& view, const Split& split
     closing.split.components = components_;
     closing.split.places = carries_positions_ ? frame.position.data() : nullptr;
     closing.close(view, *split.rule, mean);
+    if (split.crossing != 0) {
+        if (!frame.crossed) frame.crossed = std::make_unique<CrossedSplit<Real>>();
+        fixed_->close_parts(split, mean, closing, *frame.crossed);
+    }
     return &closing;
 }
 
@@ -295,7 +322,7 @@ void ClosingSplit<Real>::close(const ElementView<Real>& view, const Rule& rule, 
     // Which edges and faces are closed nobody can predict: they are chosen without branches.
     for (std::size_t e = 0; e < rule.edges.size(); ++e) {
         const RuleEdge& of = rule.edges[e];
-        closed_edge[e] = {&split, of.end};
+        closed_edge[e] = {&split, {of.end[0], of.end[1]}};
         const MaximalEdge<Real>* outer = e < t.edges ? view.closed.edge(e) : nullptr;
         const MaximalEdge<Real>* own = of.inner != 0 ? &closed_edge[e] : nullptr;
         const bool divided = (of.inner & ~mean) != 0;
@@ -316,9 +343,10 @@ void ClosingSplit<Real>::close(const ElementView<Real>& view, const Rule& rule, 
 }
 
 template <class Real>
-void Walk<Real>::visit_children(const View& view, const Rule& rule, NodeMask interpolated,
+void Walk<Real>::visit_children(const View& view, const Split& split, NodeMask interpolated,
                                 const ClosingSplit<Real>* closing, Frame<Real>& frame,
                                 Visitor<Real>& visitor) const {
+    const Rule& rule = *split.rule;
     const Family& family = frame.family;
     NodeMask shown = family.leaves;
     if ((family.hidden & shown) != 0 && !visitor.sees_hidden()) shown &= ~family.hidden;
@@ -334,7 +362,11 @@ void Walk<Real>::visit_children(const View& view, const Rule& rule, NodeMask int
         if (any_interpolated) {
             child.interpolated = interpolated_corners(view, *child.as, interpolated);
         }
-        if (closing != nullptr) child.closed = closing->around(*child.as);
+        if (closing != nullptr) {
+            child.closed = split.crossing == 0
+                               ? closing->around(*child.as)
+                               : fixed_->around(split, *closing, *child.as, *frame.crossed);
+        }
         if ((leaves.extract >> c & 1U) != 0) {
             visitor.extract(child);
         } else {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <nestgrid/detail/hanging.hpp>
+#include <walk/crossed_parts.hpp>
 #include <walk/visitor.hpp>
 
 namespace nestgrid::engine {
@@ -40,6 +41,7 @@ struct Frame {
     std::vector<Real> child_value;  ///< at the corners of the child that the walk is at
     Family family;
     std::unique_ptr<ClosingSplit<Real>> closing;
+    std::unique_ptr<CrossedSplit<Real>> crossed;
 };
 
 /// The memory of one walk: a frame a level, and the grid's own state.
@@ -104,11 +106,12 @@ private:
     void blend(const Rule& rule, NodeMask mean, std::span<const float> weights, Real* value) const;
     void project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
                  Frame<Real>& frame) const;
-    void project_positions(const View& view, const Rule& rule, NodeMask mean,
+    void project_positions(const View& view, const Split& split, NodeMask mean,
                            Frame<Real>& frame) const;
     const ClosingSplit<Real>* close(const View& view, const Split& split, NodeMask mean,
                                     Frame<Real>& frame) const;
-    void visit_children(const View& view, const Rule& rule, NodeMask interpolated,
+    void mark_crossing(const View& view, Split& split) const;
+    void visit_children(const View& view, const Split& split, NodeMask interpolated,
                         const ClosingSplit<Real>* closing, Frame<Real>& frame,
                         Visitor<Real>& visitor) const;
     View make_child(const View& father, const Rule& rule, const Frame<Real>& frame) const;
@@ -135,6 +138,7 @@ private:
     bool constrained_;
     bool carries_keys_;
     bool carries_positions_;
+    std::unique_ptr<const FixedNodes<Real>> fixed_;  // null where no node crosses
     mutable std::mutex mutex_;
     mutable std::vector<std::unique_ptr<Stack>> idle_;  // whose memory is free to be used
 };

@@ -174,6 +174,9 @@ public:
     virtual void corner_gradients(Task* task, const Handle& element,
                                   std::span<Point> out) const = 0;
 
+    /// The parents of a node that hangs on an edge, where the grid has hanging_parents.
+    virtual std::array<NodeKey, 2> hanging_parents(NodeKey node) const;
+
     /// Calls function(row) for all star rows (optional.hpp), where facts().knows_stars.
     virtual void star_rows(const std::function<void(const StarRow&)>& function) const;
     /// Values at the nodes first, first + stride, ..., likewise.
@@ -196,6 +199,10 @@ protected:
     HierarchyFacts facts_;
 };
 
+template <class Real>
+std::array<NodeKey, 2> Hierarchy<Real>::hanging_parents(NodeKey node) const {
+    return {node, node};
+}
 template <class Real>
 void Hierarchy<Real>::star_rows(const std::function<void(const StarRow&)>&) const {}
 template <class Real>

@@ -132,6 +132,10 @@ typedef struct nestgrid_grid {
      * same context (NULL where that function takes none); or NULL. It stays valid until the thread
      * calls another function of the table. Callers of the library receive it as text. */
     const char* (*last_error)(const void* self, void* context);
+
+    /* Optional, with corner_keys and new_keys: the keys of the nodes in whose middle a node hangs
+     * on an edge of a leaf, or twice its own key (hanging_parents in optional.hpp). */
+    int (*hanging_parents)(const void* self, uint64_t node, uint64_t out[2]);
 } nestgrid_grid;
 
 /* Values are float or double as value_type says; component c of node n goes to

@@ -15,6 +15,11 @@
 //         true positions on curved or moving grids; projected with the same S as the data
 //     NodeMask constrained(e)
 //         new nodes of e that hang, here or in any other element; default: derived
+//     std::array<NodeKey, 2> hanging_parents(NodeKey node)
+//         with own keys, random access: the ends of the edge, or part of an edge, of a leaf in
+//         whose middle the node hangs; `node` twice where it hangs on no edge. Where refinement is
+//         anisotropic, an element that makes the node may know other parents; without this
+//         operation such grids are refused
 //     bool conforming()
 //         promises that no node hangs, which spares the derivation
 //     bool masked(e)
@@ -89,8 +94,9 @@ enum class Feature : unsigned {
     boundary_faces = 128,
     gradients = 256,
     hidden = 512,
+    hanging_parents = 1024,
 };
-inline constexpr Feature last_feature = Feature::hidden;
+inline constexpr Feature last_feature = Feature::hanging_parents;
 
 enum class Hidden : std::uint8_t { not_at_all, partly, wholly };
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -158,6 +159,30 @@ public:
             of_node.push_back(at->second);
         }
     }
+    /// Those in the box around a cell.
+    std::vector<std::size_t> around(const Forest<3>& forest, const Forest<3>::Cell& cell) const {
+        Point low = forest.positions[cell.nodes[0]];
+        Point high = low;
+        for (std::size_t k = 1; k < topology(cell.shape).corners; ++k) {
+            for (std::size_t d = 0; d < 3; ++d) {
+                low[d] = std::min(low[d], forest.positions[cell.nodes[k]][d]);
+                high[d] = std::max(high[d], forest.positions[cell.nodes[k]][d]);
+            }
+        }
+        std::vector<std::size_t> result;
+        for (std::size_t p = 0; p < positions.size(); ++p) {
+            const Point& x = positions[p];
+            if (x[0] >= low[0] && x[0] <= high[0] && x[1] >= low[1] && x[1] <= high[1] &&
+                x[2] >= low[2] && x[2] <= high[2]) {
+                result.push_back(p);
+            }
+        }
+        return result;
+    }
+    std::optional<std::size_t> find(const Point& x) const {
+        const auto at = number_.find(x);
+        return at == number_.end() ? std::nullopt : std::optional(at->second);
+    }
     std::vector<std::size_t> of_node;
     std::vector<Point> positions;
 
@@ -165,18 +190,69 @@ private:
     std::map<Point, std::size_t> number_;
 };
 
+/// For each node that hangs inside an edge of a leaf: the ends of the part of the edge in whose
+/// middle it lies, when edges are halved again and again. By places.
+struct ParentsOnEdges {
+    std::map<std::size_t, std::set<std::size_t>> of;
+    bool unique = true;  ///< no node lies between other ends on another edge, nor between no nodes
+};
+
+inline ParentsOnEdges find_parents_on_edges(const Forest<3>& forest, const Places& places) {
+    ParentsOnEdges parents;
+    for (const auto& cell : forest.cells) {
+        if (cell.rule != nullptr) continue;
+        const Topology& t = topology(cell.shape);
+        const std::vector<std::size_t> near = places.around(forest, cell);
+        for (std::size_t e = 0; e < t.edges; ++e) {
+            const Point& a = forest.positions[cell.nodes[t.edge[e][0]]];
+            const Point& b = forest.positions[cell.nodes[t.edge[e][1]]];
+            for (const std::size_t p : near) {
+                const Point& x = places.positions[p];
+                const double at = dot(x - a, b - a) / dot(b - a, b - a);
+                if (!(at > 0 && at < 1) || !(x == a + at * (b - a))) continue;
+                Point low = a;
+                Point high = b;
+                for (Point middle = 0.5 * (a + b); middle != x; middle = 0.5 * (low + high)) {
+                    (norm(x - a) < norm(middle - a) ? high : low) = middle;
+                }
+                const auto first = places.find(low);
+                const auto second = places.find(high);
+                parents.unique = parents.unique && first && second;
+                if (!first || !second) continue;
+                const std::set<std::size_t> ends{*first, *second};
+                parents.unique =
+                    parents.unique && parents.of.try_emplace(p, ends).first->second == ends;
+            }
+        }
+    }
+    return parents;
+}
+
 /// Whether on every leaf each node that lies in it without being a corner has the value that the
 /// leaf has there, whatever the values of the nodes that hang nowhere; and each node one stencil.
+/// With parents: those of the nodes that hang inside edges are known; a node that hangs on several
+/// edges has the same parents on all of them, and one that hangs elsewhere has one stencil.
 class Judge {
 public:
-    Judge(const Forest<3>& forest, std::mt19937& random) : forest_{&forest}, places_{forest} {
+    Judge(const Forest<3>& forest, std::mt19937& random, bool with_parents = false)
+        : forest_{&forest}, places_{forest} {
+        if (with_parents) parents_ = find_parents_on_edges(forest, places_);
         value_.resize(places_.positions.size());
         hangs_.resize(value_.size());
         find_hanging();
-        find_values(random);
+        find_stencils();
+        for (double& v : value_) v = uniform(random);
+        for (auto& [place, stencils] : stencils_) {
+            one_stencil_ = one_stencil_ && stencils.size() == 1;
+            const bool has_value = parents_.of.contains(place) || (with_parents && !hangs_[place]);
+            if (!has_value) one_value_ = one_value_ && stencils.size() == 1;
+        }
+        for (std::size_t p = 0; p < value_.size(); ++p) interpolate(p);
     }
 
-    bool supports() const { return one_stencil_ && leaves_agree(); }
+    bool supports() const { return one_value_ && parents_.unique && leaves_agree(); }
+    /// Whether elements make all nodes alike.
+    bool has_one_stencil() const { return one_stencil_; }
     std::size_t hanging() const { return hanging_.size(); }
 
 private:
@@ -207,7 +283,7 @@ private:
             if (cell.rule != nullptr) continue;
             std::set<std::size_t> corners;
             for (const std::uint32_t node : cell.nodes) corners.insert(places_.of_node[node]);
-            for (std::size_t p = 0; p < places_.positions.size(); ++p) {
+            for (const std::size_t p : places_.around(*forest_, cell)) {
                 const Point at = place_in(cell, places_.positions[p]);
                 const auto [least, most] = std::minmax({at[0], at[1], at[2]});
                 if (least < 0 || most > 1 || corners.contains(p)) continue;
@@ -218,26 +294,37 @@ private:
         }
     }
 
-    void find_values(std::mt19937& random) {
-        std::map<std::size_t, std::map<std::size_t, double>> stencils;
-        for (double& v : value_) v = uniform(random);
+    using WeightAt = std::map<std::size_t, double>;  // by parent
+
+    void find_stencils() {
         for (const auto& cell : forest_->cells) {
             for (std::size_t n = 0; cell.rule != nullptr && n < cell.rule->new_nodes.size(); ++n) {
                 const Stencil& s = cell.rule->new_nodes[n];
+                WeightAt stencil;
+                for (std::size_t i = 0; i < s.count; ++i) {
+                    stencil[places_.of_node[cell.nodes[s.parent[i]]]] = s.weight[i];
+                }
                 const std::size_t node =
                     places_.of_node[cell.nodes[topology(cell.shape).corners + n]];
-                std::map<std::size_t, double> stencil;
-                double mean = 0;
-                for (std::size_t i = 0; i < s.count; ++i) {
-                    const std::size_t parent = places_.of_node[cell.nodes[s.parent[i]]];
-                    stencil[parent] = s.weight[i];
-                    mean += s.weight[i] * value_[parent];
-                }
-                const auto [at, is_new] = stencils.try_emplace(node, stencil);
-                one_stencil_ = one_stencil_ && at->second == stencil;
-                if (is_new && hangs_[node]) value_[node] = mean;
+                stencils_[node].insert(stencil);
             }
         }
+    }
+
+    /// Gives a hanging node the mean of its parents, after these.
+    void interpolate(std::size_t place) {
+        if (!hangs_[place] || !stencils_.contains(place) || !done_.insert(place).second) return;
+        WeightAt stencil = *stencils_.at(place).begin();
+        if (const auto given = parents_.of.find(place); given != parents_.of.end()) {
+            stencil.clear();
+            for (const std::size_t parent : given->second) stencil[parent] = 0.5;
+        }
+        double mean = 0;
+        for (const auto& [parent, weight] : stencil) {
+            interpolate(parent);
+            mean += weight * value_[parent];
+        }
+        value_[place] = mean;
     }
 
     bool leaves_agree() const {
@@ -256,7 +343,11 @@ private:
     std::vector<double> value_;  // by place
     std::vector<bool> hangs_;
     std::vector<Hanging> hanging_;
+    ParentsOnEdges parents_;
+    std::map<std::size_t, std::set<WeightAt>> stencils_;  // by place
+    std::set<std::size_t> done_;
     bool one_stencil_ = true;
+    bool one_value_ = true;
 };
 
 /// The same grid with the numbers of places for keys: a node has one, whatever makes it.
@@ -281,7 +372,24 @@ private:
         for (std::size_t k = 0; k < out.size(); ++k) out[k] = places_.of_node[nodes[first + k]];
     }
     const Forest<3>* forest_;
+
+protected:
     Places places_;
+};
+
+/// The same grid, which gives the parents of nodes that hang on edges.
+class ParentsByPlace : public KeysByPlace {
+public:
+    explicit ParentsByPlace(const Forest<3>& forest)
+        : KeysByPlace(forest), parents_{find_parents_on_edges(forest, places_)} {}
+    std::array<NodeKey, 2> hanging_parents(NodeKey node) const {
+        const auto at = parents_.of.find(static_cast<std::size_t>(node));
+        if (at == parents_.of.end()) return {node, node};
+        return {*at->second.begin(), *at->second.rbegin()};
+    }
+
+private:
+    ParentsOnEdges parents_;
 };
 
 }  // namespace nestgrid_test

@@ -11,6 +11,7 @@
 #include <nestgrid/check_grid.hpp>
 #include <nestgrid/table.hpp>
 
+#include "anisotropic_grids.hpp"
 #include "archetype.hpp"
 #include "curved.hpp"
 #include "forest.hpp"
@@ -122,6 +123,28 @@ TEST(Tables, GiveTheSameSurfaceWhereNodesHang) {
     const ForestField<3> field(forest, distance);
     EXPECT_GT(derive_hanging_nodes(forest).size(), 0U);
     expect_same_behind_tables(forest, field, 0.3, {});
+}
+
+TEST(Tables, GiveTheSameSurfaceWhereParentsAreGiven) {
+    int crossing = 0;
+    for (unsigned seed = 0; crossing < 5; ++seed) {
+        std::mt19937 random(seed);
+        const Forest<3> forest = random_anisotropic_grid(random);
+        const Judge judge(forest, random, true);
+        if (!judge.supports() || judge.has_one_stencil()) continue;
+        ++crossing;
+        const ParentsByPlace grid(forest);
+        const ForestField<3> field(forest, distance);
+        expect_same_behind_tables(grid, field, 0.8, {.threshold = 0.01});
+        TableInC failing(grid);
+        failing.table.hanging_parents = [](const void*, std::uint64_t, std::uint64_t*) {
+            return 7;
+        };
+        failing.table.last_error = nullptr;
+        const auto hierarchy = open_table<double>(failing.table, field_in_c(grid, field));
+        EXPECT_EQ(refusal<GridError>([&] { HierarchicalIndicator indicator(*hierarchy); }),
+                  "the operation 'hanging_parents' of the grid failed with code 7");
+    }
 }
 
 TEST(Tables, PassOnStateAndOptionalOperations) {

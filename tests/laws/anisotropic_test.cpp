@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Anisotropic hexahedra and prisms: where nodes hang on their own parents, surfaces are closed;
-// where they do not, check_grid and the preroll refuse the grid.
+// Anisotropic hexahedra and prisms: where nodes hang on their own parents, or on those that the
+// grid gives, surfaces are closed; where they do not, check_grid and the preroll refuse the grid.
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/node_levels.hpp>
 #include <nestgrid/check_grid.hpp>
 
 #include "anisotropic_grids.hpp"
@@ -40,15 +41,38 @@ std::string refused_by_preroll(const Grid& grid, const ForestField<3>& field) {
     return refusal<GridError>([&] { HierarchicalIndicator(grid, field); });
 }
 
+/// With every shared vertex computed from every element around it.
 template <class Grid>
 void expect_closed_surfaces(const Grid& grid, const ForestField<3>& field) {
     const HierarchicalIndicator indicator(grid, field);
+    const auto draw = [&](const Criterion& criterion, bool cap) {
+        const IsosurfaceOptions options{.cap = cap, .verify = true};
+        expect_closed(isosurface(grid, field, 0.0, criterion, indicator, options).surface, cap);
+    };
     for (const double epsilon : six_thresholds) {
         SCOPED_TRACE(epsilon);
-        expect_closed(
-            isosurface(grid, field, 0.0, Threshold(&indicator, epsilon), indicator).surface);
+        draw(Threshold(&indicator, epsilon), false);
+        draw(Threshold(&indicator, epsilon), true);
+    }
+    const NodeLevels levels(grid);
+    for (const int deepest : {0, 1}) {
+        SCOPED_TRACE(deepest);
+        draw(levels.deeper_than(deepest), false);
     }
 }
+
+/// The same grid with coarse corners moved at random.
+struct Deformed : ParentsByPlace {
+    explicit Deformed(const Forest<3>& forest) : ParentsByPlace(forest) {}
+    CoarseElement<Element> coarse(std::size_t i) const {
+        CoarseElement<Element> c = ParentsByPlace::coarse(i);
+        for (std::size_t k = 0; k < topology(c.shape).corners; ++k) {
+            std::mt19937 random(static_cast<unsigned>(c.ids[k]));
+            for (double& x : c.corners[k]) x += 0.2 * uniform(random);
+        }
+        return c;
+    }
+};
 
 template <class Grid>
 void expect_refused_by_both(const Grid& grid, const ForestField<3>& field) {
@@ -91,6 +115,7 @@ Forest<3> two_cubes(const Halved& left, const Halved& right) {
 
 constexpr unsigned y = 1;
 constexpr unsigned z = 2;
+constexpr unsigned yz = 5;  // in both directions at once
 
 TEST(Anisotropic, FacesDividedAcrossAreRefusedByName) {
     for (const Halved& right : {Halved{{z}}, Halved{{z, y}}, Halved{{z, y}, true}}) {
@@ -121,6 +146,73 @@ TEST(Anisotropic, FacesDividedInOneOrderAreSupported) {
     }
 }
 
+TEST(Anisotropic, FacesDividedAcrossAreDrawnWhereParentsAreGiven) {
+    const std::vector<std::pair<Halved, Halved>> sides{
+        {{{y, z}}, {{z}}},    {{{y, z}}, {{z, y}}},      {{{y, z}}, {{z, y}, true}},
+        {{{y, z, z}}, {{z}}}, {{{yz, y, z}}, {{z, yz}}},
+    };
+    for (const auto& [left, right] : sides) {
+        const Forest<3> forest = two_cubes(left, right);
+        const ParentsByPlace grid(forest);
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            const auto field = noise(forest, seed);
+            const auto violation = check_grid(grid, field);
+            EXPECT_FALSE(violation) << violation->sentence;
+            expect_closed_surfaces(grid, field);
+        }
+    }
+}
+
+TEST(Anisotropic, ANodeOnTwoEdgesIsRefusedThoughParentsAreGiven) {
+    for (const Forest<3>& forest :
+         {two_cubes({{y, z}, true}, {{z}}), two_cubes({{yz, y, z}, true}, {{z, yz}})}) {
+        expect_refused_by_both(ParentsByPlace(forest), noise(forest, 1));
+    }
+}
+
+/// Gives one node, the centre of the common face of two cubes, other parents.
+struct OtherParents : ParentsByPlace {
+    explicit OtherParents(const Forest<3>& forest) : ParentsByPlace(forest) {}
+    std::array<NodeKey, 2> hanging_parents(NodeKey node) const {
+        return node == centre ? parents : ParentsByPlace::hanging_parents(node);
+    }
+    NodeKey centre = *places_.find({1, 0.5, 0.5});
+    std::array<NodeKey, 2> parents{};
+};
+
+TEST(Anisotropic, WrongParentsAreRefused) {
+    const Forest<3> forest = two_cubes({{y, z}}, {{z}});
+    const auto field = noise(forest, 1);
+    OtherParents grid(forest);
+    const auto expect_refused = [&](const std::array<NodeKey, 2>& parents, const char* by_check,
+                                    const char* by_preroll) {
+        grid.parents = parents;
+        const auto violation = check_grid(grid, field);
+        ASSERT_TRUE(violation);
+        EXPECT_EQ(violation->law, Law::hanging_parents);
+        EXPECT_NE(violation->sentence.find(by_check), std::string::npos) << violation->sentence;
+        EXPECT_NE(refused_by_preroll(grid, field).find(by_preroll), std::string::npos)
+            << refused_by_preroll(grid, field);
+    };
+    expect_refused({grid.centre, grid.centre}, "", "or the grid does not give its parents");
+    expect_refused({0, 1}, "do not give it the value", "or the grid does not give its parents");
+    expect_refused({0, 1234567}, "a key of no node", "or the grid does not give its parents");
+}
+
+TEST(Anisotropic, NoElementAboveACrossingNodeStops) {
+    const Forest<3> forest = two_cubes({{y, z}}, {{z}});
+    const ParentsByPlace grid(forest);
+    const auto field = noise(forest, 1);
+    const HierarchicalIndicator indicator(grid, field);
+    EXPECT_THROW(isosurface(grid, field, 0.0, DeepestLevel(0), indicator), InvalidInput);
+    const Places places(forest);
+    const auto key = [&](const Point& x) { return static_cast<NodeKey>(*places.find(x)); };
+    const NodeLevels levels(grid);  // -1 where S does not hold
+    EXPECT_EQ(levels.level(key({1, 0.5, 0.5})), -1);
+    for (const double side : {0.0, 1.0}) EXPECT_EQ(levels.level(key({1, side, 0.5})), -1);
+    EXPECT_EQ(levels.level(key({0, 0.5, 0.5})), 2);
+}
+
 TEST(Anisotropic, UnsupportedGridsAreRefusedByBoth) {
     unsigned unsupported = 0;
     on_random_grids(6000, 0, [&](const Forest<3>& forest, std::mt19937& random) {
@@ -131,6 +223,40 @@ TEST(Anisotropic, UnsupportedGridsAreRefusedByBoth) {
         expect_refused_by_both(KeysByPlace(forest), field);
     });
     EXPECT_EQ(unsupported, 1000U);
+}
+
+TEST(Anisotropic, UnsupportedGridsAreRefusedByBothThoughParentsAreGiven) {
+    unsigned unsupported = 0;
+    on_random_grids(11000, 200000, [&](const Forest<3>& forest, std::mt19937& random) {
+        if (unsupported == 1000 || Judge(forest, random, true).supports()) return;
+        ++unsupported;
+        const auto field = noise(forest, unsupported);
+        const ParentsByPlace grid(forest);
+        EXPECT_TRUE(check_grid(grid, field));
+        EXPECT_NE(refused_by_preroll(grid, field), "");
+    });
+    EXPECT_EQ(unsupported, 1000U);
+}
+
+TEST(Anisotropic, GridsThatGiveParentsDrawClosedSurfaces) {
+    unsigned supported = 0;
+    unsigned crossing = 0;
+    on_random_grids(3000, 300000, [&](const Forest<3>& forest, std::mt19937& random) {
+        const Judge judge(forest, random, true);
+        if (!judge.supports()) return;
+        ++supported;
+        const auto field = noise(forest, supported);
+        const ParentsByPlace grid(forest);
+        const auto violation = check_grid(grid, field);
+        EXPECT_FALSE(violation) << violation->sentence;
+        EXPECT_EQ(refused_by_preroll(grid, field), "");
+        if (Judge(forest, random).supports()) return;  // the other tests draw these
+        ++crossing;
+        expect_closed_surfaces(grid, field);
+        expect_closed_surfaces(Deformed(forest), field);
+    });
+    EXPECT_GT(supported, 2500U);
+    EXPECT_GT(crossing, 300U);
 }
 
 TEST(Anisotropic, SupportedGridsDrawClosedSurfaces) {

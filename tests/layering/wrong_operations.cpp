@@ -25,6 +25,9 @@ struct IsNotConst : ArchetypeGrid {
 struct HalfOfTheKeys : ArchetypeGrid {
     void new_keys(const Element&, std::span<NodeKey>) const;
 };
+struct OneParent : ArchetypeGrid {
+    NodeKey hanging_parents(NodeKey) const;
+};
 struct CountsRows : ArchetypeGrid {
     void for_each_star_row(std::size_t) const;
 };
@@ -37,5 +40,6 @@ static_assert(require_fitting_operations<SaysYes, ArchetypeField>());
 static_assert(require_fitting_operations<IsNoFunction, ArchetypeField>());
 static_assert(require_fitting_operations<IsNotConst, ArchetypeField>());
 static_assert(require_fitting_operations<HalfOfTheKeys, ArchetypeField>());
+static_assert(require_fitting_operations<OneParent, ArchetypeField>());
 static_assert(require_fitting_operations<CountsRows, ArchetypeField>());
 static_assert(require_fitting_operations<ArchetypeGrid, OneGradient>());

@@ -11,8 +11,10 @@ namespace nestgrid {
 
 /// Walks the whole hierarchy twice, and once more where a rule divides a quadrilateral face in one
 /// direction first. Costs O(nodes) memory while it runs.
-/// \throw GridError where nodes hang on others than their parents: two sides of a face divide it in
-///        different directions first, and one of them then across
+/// \throw GridError where nodes hang on others than their parents, which the grid does not give:
+/// two
+///        sides of a face divide it in different directions first, and one of them then across; or
+///        where a node hangs on two edges in two directions
 HangingNodes derive_hanging_nodes(const Hierarchy<float>& hierarchy);
 
 template <class Grid>

@@ -203,9 +203,7 @@ public:
     int finest_level() const override { return facts_.all_divided ? facts_.finest_level : -1; }
     bool one_level_a_node() const override { return facts_.one_level_a_node; }
     /// Nodes that hang, where the grid did not say so itself: hand them to every walk.
-    const HangingNodes* hanging() const override {
-        return hanging_.size() > 0 ? &hanging_ : nullptr;
-    }
+    const HangingNodes* hanging() const override { return hanging_.empty() ? nullptr : &hanging_; }
 
     /// The largest difference between the field at a hanging node and its interpolant there, where
     /// the field gives one. More than rounding says that constraints were not distributed, or that

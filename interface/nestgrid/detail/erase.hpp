@@ -200,6 +200,13 @@ public:
         }
     }
 
+    std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
+        if constexpr (may_offer<Grid>(Feature::hanging_parents)) {
+            return grid_->hanging_parents(node);
+        }
+        return {node, node};
+    }
+
     void star_rows(const std::function<void(const StarRow&)>& function) const override {
         if constexpr (has_star_rows_) grid_->for_each_star_row(function);
     }

@@ -2,9 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
+
+namespace engine {
+class CrossingNodes;
+}
 
 /// The nodes of a grid that hang: that lie on an edge or face of some leaf without being a corner
 /// of it. A property of the node, the same from every element. Filled by derive_hanging_nodes().
@@ -14,6 +21,7 @@ public:
     bool contains(NodeKey key) const { return keys_.find(key) != nullptr; }
     std::size_t size() const { return keys_.size(); }
     std::size_t memory_bytes() const { return keys_.memory_bytes(); }
+    bool empty() const { return size() == 0 && crossing_ == nullptr; }
 
     /// Which of the keys hang, one bit each.
     NodeMask mask(std::span<const NodeKey> keys) const {
@@ -26,9 +34,16 @@ public:
         return result;
     }
 
+    /// Nodes that have several stencils, on grids that give parents (optional.hpp); or null.
+    const engine::CrossingNodes* crossing() const { return crossing_.get(); }
+    void set_crossing(std::shared_ptr<const engine::CrossingNodes> nodes) {
+        crossing_ = std::move(nodes);
+    }
+
 private:
     struct Present {};
     KeyTable<NodeKey, Present> keys_;
+    std::shared_ptr<const engine::CrossingNodes> crossing_;
 };
 
 }  // namespace nestgrid

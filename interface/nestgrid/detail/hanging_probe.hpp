@@ -11,11 +11,14 @@
 // The probe relies on this: where a face is divided on both sides, both sides divide it alike, or
 // one of them along one direction only and the other along the other one only. crossed_face()
 // finds the quadrilaterals where this does not hold: nodes there hang on others than their parents.
+// Where the grid gives the parents of nodes that hang on edges (optional.hpp), the probe relies on
+// these instead, and crossed_face() finds the quadrilaterals where they are missing.
 // Costs O(nodes) memory while it runs, and keeps the keys of hanging nodes.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <span>
@@ -28,26 +31,54 @@
 
 namespace nestgrid::detail {
 
-/// A quadrilateral in tensor order, by nodes of a rule that divides its edges 01 and 23 first.
-using OneWayFace = std::array<std::uint8_t, 4>;
+/// A quadrilateral that a rule divides in one direction first, by nodes of the rule: its corners in
+/// tensor order, and the nodes that divide the edges 01 and 23.
+struct OneWayFace {
+    std::array<std::uint8_t, 4> corner;
+    std::array<std::uint8_t, 2> line;
+};
 
-/// The quadrilaterals, parts of faces included, that a rule divides in one direction first: both
-/// nodes of the first step lie between the ends of opposite edges.
-inline std::vector<OneWayFace> one_way_faces(const Rule& rule) {
+/// The node that a rule makes with some parents; 0, a corner, where it makes none.
+inline std::uint8_t node_with_parents(const Rule& rule, std::initializer_list<std::uint8_t> of) {
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        const Stencil& s = rule.new_nodes[n];
+        if (s.count == of.size() && s.mean != Mean::weighted &&
+            std::is_permutation(of.begin(), of.end(), s.parent.begin())) {
+            return static_cast<std::uint8_t>(static_cast<std::size_t>(rule.corner_count()) + n);
+        }
+    }
+    return 0;
+}
+
+/// The quadrilaterals, parts of faces included, that a rule divides in one direction first.
+/// \param of_four also the halves of each face that the rule divides into four
+inline std::vector<OneWayFace> one_way_faces(const Rule& rule, bool of_four) {
     std::vector<OneWayFace> result;
     for (const RuleFace& face : rule.faces) {
-        if (!face.one_way) continue;
+        if (face.corners != 4 || !face.divided) continue;
         const auto& c = face.corner;
-        const auto divides = [&](std::uint8_t a, std::uint8_t b) {
-            for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-                const Stencil& s = rule.new_nodes[n];
-                if ((face.first >> n & 1U) == 0 || s.mean != Mean::midpoint) continue;
-                if (std::minmax(s.parent[0], s.parent[1]) == std::minmax(a, b)) return true;
-            }
-            return false;
+        const std::uint8_t m01 = node_with_parents(rule, {c[0], c[1]});
+        const std::uint8_t m12 = node_with_parents(rule, {c[1], c[2]});
+        const std::uint8_t m23 = node_with_parents(rule, {c[2], c[3]});
+        const std::uint8_t m30 = node_with_parents(rule, {c[3], c[0]});
+        const auto is_first = [&](std::uint8_t node) {
+            return node != 0 && (face.first >> (node - rule.corner_count()) & 1U) != 0;
         };
-        if (divides(c[0], c[1]) && divides(c[2], c[3])) result.push_back({c[0], c[1], c[3], c[2]});
-        if (divides(c[1], c[2]) && divides(c[3], c[0])) result.push_back({c[1], c[2], c[0], c[3]});
+        if (face.one_way) {
+            if (is_first(m01) && is_first(m23)) {
+                result.push_back({{c[0], c[1], c[3], c[2]}, {m01, m23}});
+            }
+            if (is_first(m12) && is_first(m30)) {
+                result.push_back({{c[1], c[2], c[0], c[3]}, {m12, m30}});
+            }
+            continue;
+        }
+        const std::uint8_t centre = node_with_parents(rule, {c[0], c[1], c[2], c[3]});
+        if (!of_four || centre == 0) continue;
+        result.push_back({{c[0], c[3], m01, m23}, {m30, centre}});
+        result.push_back({{m01, m23, c[1], c[2]}, {centre, m12}});
+        result.push_back({{c[0], c[1], m30, m12}, {m01, centre}});
+        result.push_back({{m30, m12, c[3], c[2]}, {centre, m23}});
     }
     return result;
 }
@@ -70,6 +101,14 @@ public:
         divides_one_way_ = divides_one_way_ || !faces_of(rule).empty();
     }
 
+    /// The parents that the grid gives a node. After add_nodes(), before finish().
+    void add_parents(NodeKey node, const KeyPair& parents) {
+        nodes_.insert(mean_key(mix(parents.low) + mix(parents.high), 2), node);
+        given_.insert(node, {parents});
+    }
+    /// Must be called before the first add_nodes() where the grid gives parents at all.
+    void rely_on_given_parents() { relies_on_given_ = true; }
+
     /// Between the last add_nodes() and the first probe_leaf().
     void finish() {
         parents_.reset(nodes_.size());
@@ -85,7 +124,9 @@ public:
             const NodeKey b = k[t.edge[e][1]];
             middle_of[e] = middle(a, b);
             any = any || middle_of[e] != nullptr;
+            on_leaf_edge_ = true;
             probe_parts(a, b, middle_of[e]);
+            on_leaf_edge_ = false;
         }
         // A face that is divided has an edge that is.
         for (std::size_t f = 0; any && t.dimension == 3 && f < t.faces; ++f) {
@@ -105,21 +146,38 @@ public:
 
     HangingNodes take() { return std::move(hanging_); }
 
+    /// The given parents of a node that hangs between them on an edge of a leaf; else null.
+    const KeyPair* parents_on_edge(NodeKey node) const {
+        const Given* given = given_.find(node);
+        return given != nullptr && given->on_edge ? &given->parents : nullptr;
+    }
+    /// A node that hangs on an edge of a leaf between others than its given parents.
+    const std::optional<NodeKey>& contradiction() const { return contradiction_; }
+
     /// Whether some split divides a quadrilateral in one direction first; else no face is crossed.
     bool divides_one_way() const { return divides_one_way_; }
 
     /// A quadrilateral that a split divides in one direction first, while an element on its other
-    /// side divides it in both directions, first or later in the other one. After finish().
+    /// side divides it in both directions, first or later in the other one, and a node where the
+    /// divisions cross has no parents on the line of this split. After finish().
     /// \param keys of the corners, then of the new nodes
     std::optional<OneWayFace> crossed_face(const Rule& rule, std::span<const NodeKey> keys) {
         for (const OneWayFace& face : faces_of(rule)) {
-            if (is_crossed(keys[face[0]], keys[face[1]], keys[face[2]], keys[face[3]])) return face;
+            const auto& c = face.corner;
+            if (is_crossed({keys[c[0]], keys[c[1]], keys[c[2]], keys[c[3]]}, &keys[face.line[0]],
+                           &keys[face.line[1]])) {
+                return face;
+            }
         }
         return std::nullopt;
     }
 
 private:
     struct Present {};
+    struct Given {
+        KeyPair parents;
+        bool on_edge = false;  ///< of a leaf
+    };
     /// The key of a node that exists, or null.
     using Found = const NodeKey*;
 
@@ -136,6 +194,7 @@ private:
     void probe_parts(NodeKey a, NodeKey b, Found m) {
         if (m == nullptr) return;
         hanging_.insert(*m);
+        if (on_leaf_edge_) note_on_edge(a, b, *m);
         probe_edge(a, *m);
         probe_edge(*m, b);
     }
@@ -198,25 +257,43 @@ private:
 
     /// one_way_faces(), made once for each rule.
     const std::vector<OneWayFace>& faces_of(const Rule& rule) {
-        if (rule.divides_all || rule.parent == Shape::tetrahedron) return none_;
+        const bool divides_all = rule.divides_all && !relies_on_given_;
+        if (divides_all || rule.parent == Shape::tetrahedron) return none_;
         if (&rule != last_rule_) {
             const auto at = one_way_.find(&rule);
-            last_faces_ = at != one_way_.end()
-                              ? &at->second
-                              : &one_way_.emplace(&rule, one_way_faces(rule)).first->second;
+            last_faces_ =
+                at != one_way_.end()
+                    ? &at->second
+                    : &one_way_.emplace(&rule, one_way_faces(rule, relies_on_given_)).first->second;
             last_rule_ = &rule;
         }
         return *last_faces_;
     }
 
-    /// Corners in tensor order. One side of the face divides its edges ab and cd first; so no node
-    /// of the other side lies between nodes of ac and bd.
-    bool is_crossed(NodeKey a, NodeKey b, NodeKey c, NodeKey d) const {
+    /// One side of a face divides its edges ab and cd first; so no node of the other side lies
+    /// between nodes of ac and bd, but for nodes that lie in the middle of `low` and `high`, too.
+    /// \param corner a, b, c, d in tensor order
+    /// \param low, high the ends of the part of the dividing line that lies in the face, or null
+    bool is_crossed(const std::array<NodeKey, 4>& corner, Found low, Found high) const {
+        const auto [a, b, c, d] = corner;
         const Found ac = middle(a, c);
         const Found bd = ac == nullptr ? nullptr : middle(b, d);
         if (bd == nullptr) return false;
-        return middle(a, b, c, d) != nullptr || middle(*ac, *bd) != nullptr ||
-               is_crossed(a, b, *ac, *bd) || is_crossed(*ac, *bd, c, d);
+        const Found centre = middle(a, b, c, d);
+        const Found crossing = centre != nullptr ? centre : middle(*ac, *bd);
+        const bool has_line = relies_on_given_ && low != nullptr && high != nullptr;
+        const Found on_line = has_line ? middle(*low, *high) : nullptr;
+        if (crossing != nullptr && (on_line == nullptr || *on_line != *crossing)) return true;
+        return is_crossed({a, b, *ac, *bd}, low, on_line) ||
+               is_crossed({*ac, *bd, c, d}, on_line, high);
+    }
+
+    /// Notes that a node hangs on an edge of a leaf, between a and b.
+    void note_on_edge(NodeKey a, NodeKey b, NodeKey node) {
+        Given* given = given_.find(node);
+        if (given == nullptr) return;
+        given->on_edge = true;
+        if (!(given->parents == KeyPair{a, b})) contradiction_ = node;
     }
 
     KeyTable<NodeKey, NodeKey> nodes_;  // by their parents
@@ -228,6 +305,10 @@ private:
     const Rule* last_rule_ = nullptr;
     const std::vector<OneWayFace>* last_faces_ = nullptr;  // of that
     bool divides_one_way_ = false;
+    KeyTable<NodeKey, Given> given_;
+    bool relies_on_given_ = false;
+    bool on_leaf_edge_ = false;
+    std::optional<NodeKey> contradiction_;
 };
 
 }  // namespace nestgrid::detail

@@ -72,6 +72,9 @@ struct NoContextArgument {
               void, C, E, NodeMask, Points)                                                        \
     OPERATION(of_grid, Feature::constrained, constrained,                                          \
               "NodeMask constrained(const Element&) const", NodeMask, C, E)                        \
+    OPERATION(of_grid, Feature::hanging_parents, hanging_parents,                                  \
+              "std::array<NodeKey, 2> hanging_parents(NodeKey node) const", Parents,               \
+              NoContextArgument, NodeKey)                                                          \
     OPERATION(of_grid, no_feature, conforming, "bool conforming() const", bool, NoContextArgument) \
     OPERATION(of_grid, Feature::masked, masked, "bool masked(const Element&) const", bool, C, E)   \
     OPERATION(of_grid, Feature::hidden, hidden, "Hidden hidden(const Element&) const", Hidden, C,  \
@@ -161,7 +164,9 @@ public:
 #undef NESTGRID_ADD_FEATURE
         offered &= ~missing;
         const bool keys = (offered & static_cast<unsigned>(Feature::own_keys)) != 0;
-        return keys ? offered : offered & ~static_cast<unsigned>(Feature::dense_keys);
+        const unsigned of_keys = static_cast<unsigned>(Feature::dense_keys) |
+                                 static_cast<unsigned>(Feature::hanging_parents);
+        return keys ? offered : offered & ~of_keys;
     }
 
     static consteval bool all_fit() {
@@ -199,6 +204,7 @@ private:
     using C = Context<Grid>;
     using Keys = std::span<NodeKey>;
     using Points = std::span<Point>;
+    using Parents = std::array<NodeKey, 2>;
     using Values = std::span<Real>;
 };
 

@@ -138,12 +138,16 @@ public:
         }
     }
     bool has(NodeKey place) const { return known_.find(place) != nullptr; }
+    bool has_parents(const Made& node) const {
+        const auto parents = std::span(node.parent).first(node.parents);
+        return std::ranges::all_of(parents, [&](NodeKey place) { return has(place); });
+    }
+    /// Requires its parents.
     /// \return whether its value is that of the leaf's shape functions
     bool add(const Made& node) {
         Weights weights{};
         for (std::size_t p = 0; p < node.parents; ++p) {
             const Weights* parent = known_.find(node.parent[p]);
-            if (parent == nullptr) return false;
             for (std::size_t k = 0; k < max_corners; ++k) {
                 weights[k] += node.weight[p] * (*parent)[k];
             }
@@ -172,10 +176,17 @@ void GridChecker::check_leaf(const State& s, const std::vector<Inside>& inside) 
     };
     if (std::none_of(inside.begin(), inside.end(), hangs)) return;
     LeafNodes nodes(s);
+    std::vector<const Made*> left;
     for (const Inside& x : inside) {
-        const Made& made = made_[x.node];
-        if (nodes.has(made.place)) continue;
-        check_hanging_node(s, made, nodes.add(made));
+        if (hangs(x)) left.push_back(&made_[x.node]);
+    }
+    while (!left.empty()) {
+        // Parents that the grid gives may be made later than the node.
+        const auto next =
+            std::ranges::find_if(left, [&](const Made* made) { return nodes.has_parents(*made); });
+        const bool interpolated = next != left.end() && nodes.add(**next);
+        check_hanging_node(s, next == left.end() ? *left.front() : **next, interpolated);
+        left.erase(next);
     }
 }
 
@@ -185,6 +196,10 @@ void GridChecker::check_hanging_node(const State& leaf, const Made& made, bool i
     const std::string who = "a node made by " + name(node.element) + " hangs on " + name(leaf.step);
     if (hierarchy_->facts().conforming) {
         fail(Law::conforming, who + ", but the grid says that it is conforming");
+    }
+    if (const auto two = two_stencils_.find(made.place);
+        two != two_stencils_.end() && !made.given) {
+        fail(Law::one_stencil, two->second + "; it hangs, and the grid does not give its parents");
     }
     if (!interpolated) {
         fail(Law::hanging_parents,
@@ -196,7 +211,7 @@ void GridChecker::check_hanging_node(const State& leaf, const Made& made, bool i
     if (grid_knows && !node.constrained) {
         fail(Law::hanging_mask, who + ", but is not in the constrained mask");
     }
-    if (!grid_knows && !hanging_.contains(made.derived)) {
+    if (!grid_knows && !hanging_.contains(made.key)) {
         fail(Law::hanging_parents, who +
                                        " at another place than the middle of an edge or face, and "
                                        "the grid does not offer 'constrained'");
@@ -206,7 +221,34 @@ void GridChecker::check_hanging_node(const State& leaf, const Made& made, bool i
     }
 }
 
+/// Puts the parents that the grid gives in the place of those in the rule.
+void GridChecker::take_given_parents() {
+    if (!hierarchy_->offers(Feature::hanging_parents)) return;
+    for (Made& made : made_) {
+        const std::array<NodeKey, 2> given = hierarchy_->hanging_parents(made.key);
+        if (given[0] == given[1]) continue;
+        Node& node = *nodes_.find(made.place);
+        double mean = 0;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const NodeKey* parent = place_of_key_.find(given[i]);
+            if (parent == nullptr) {
+                fail(Law::hanging_parents,
+                     "hanging_parents gives a key of no node to a node made by " +
+                         name(node.element));
+            }
+            made.parent[i] = *parent;
+            made.weight[i] = 0.5;
+            mean += 0.5 * values_[nodes_.find(*parent)->first];
+        }
+        made.parents = 2;
+        made.given = true;
+        node.deviates = deviates(mean, values_[node.first]);
+        probe_.add_parents(made.key, {given[0], given[1]});
+    }
+}
+
 void GridChecker::check_hanging() {
+    take_given_parents();
     probe_.finish();
     for (const Leaf& leaf : leaves_) probe_.probe_leaf(leaf.shape, leaf.keys);
     hanging_ = probe_.take();

@@ -66,7 +66,7 @@ void GridChecker::check_leaf_state(const State& s) {
     }
     if (s.member->hidden == Hidden::wholly) return;
     std::array<NodeKey, max_corners> keys{};
-    for (std::size_t k = 0; k < topology(s.shape).corners; ++k) keys[k] = s.corner[k].derived;
+    for (std::size_t k = 0; k < topology(s.shape).corners; ++k) keys[k] = s.corner[k].key;
     leaves_.push_back({s.shape, keys});
 }
 
@@ -129,7 +129,7 @@ void GridChecker::make_node(const Rule& rule, std::size_t n, std::vector<Corner>
     const Stencil& stencil = rule.new_nodes[n];
     Corner c;
     std::array<NodeKey, max_corners + max_new_nodes> keys;
-    for (std::size_t k = 0; k < nodes.size(); ++k) keys[k] = nodes[k].derived;
+    for (std::size_t k = 0; k < nodes.size(); ++k) keys[k] = nodes[k].key;
     for (std::size_t i = 0; i < stencil.count; ++i) {
         const Corner& p = nodes[stencil.parent[i]];
         for (std::size_t k = 0; k < max_corners; ++k) {
@@ -138,7 +138,7 @@ void GridChecker::make_node(const Rule& rule, std::size_t n, std::vector<Corner>
         c.position = c.position + stencil.weight[i] * p.position;
     }
     c.place = place_of(c.weights);
-    c.derived = c.key = derived_key(stencil, keys.data());
+    c.key = derived_key(stencil, keys.data());
     nodes.push_back(c);
 }
 
@@ -163,9 +163,9 @@ void GridChecker::check_new_nodes(const State& s, const Rule& rule, std::span<co
         check_node(s, corners + n, c, value, (constrained >> n & 1U) != 0,
                    deviates_from_mean(stencil, nodes));
     }
-    std::vector<NodeKey> derived;
-    for (const Corner& c : nodes) derived.push_back(c.derived);
-    const std::span<const NodeKey> all(derived);
+    std::vector<NodeKey> keys;
+    for (const Corner& c : nodes) keys.push_back(c.key);
+    const std::span<const NodeKey> all(keys);
     probe_.add_nodes(rule, all.first(corners), all.subspan(corners));
 }
 
@@ -196,9 +196,11 @@ void GridChecker::check_stencil(const State& s, const Rule& rule, std::size_t n,
         }
         return sum;
     };
-    fail(Law::one_stencil, "one node has two stencils: " + text(origin) + " as node " +
-                               std::to_string(nodes.size() - 1) + " of " + name(s.step) + ", and " +
-                               text(*known) + " in " + name(known->element));
+    const std::string sentence = "one node has two stencils: " + text(origin) + " as node " +
+                                 std::to_string(nodes.size() - 1) + " of " + name(s.step) +
+                                 ", and " + text(*known) + " in " + name(known->element);
+    if (!hierarchy_->offers(Feature::hanging_parents)) fail(Law::one_stencil, sentence);
+    two_stencils_.try_emplace(nodes.back().place, sentence);
 }
 
 /// Whether the value of the last node is not its interpolant.
@@ -208,15 +210,20 @@ bool GridChecker::deviates_from_mean(const Stencil& stencil,
     for (std::size_t i = 0; i < stencil.count; ++i) {
         mean += stencil.weight[i] * nodes[stencil.parent[i]].value;
     }
+    return deviates(mean, nodes.back().value);
+}
+
+/// Whether the value at a node is not the mean of its parents.
+bool GridChecker::deviates(double mean, double value) const {
     const double tolerance = std::max(options_->value_tolerance, 4 * epsilon_);
-    return std::abs(mean - nodes.back().value) > tolerance * largest_value_;
+    return std::abs(mean - value) > tolerance * largest_value_;
 }
 
 void GridChecker::add_made(const Corner& node, const Stencil& stencil,
                            const std::vector<Corner>& nodes) {
     Made made;
     made.place = node.place;
-    made.derived = node.derived;
+    made.key = node.key;
     made.coarse = coarse_number_;
     made.weights = node.weights;
     made.parents = stencil.count;

@@ -168,8 +168,7 @@ void GridChecker::walk_coarse(std::size_t i) {
     for (std::size_t k = 0; k < corners; ++k) {
         Corner& c = s.corner[k];
         const auto value = std::span<const double>(values).subspan(k * components_, components_);
-        c.derived = coarse_key(coarse_.ids[k]);
-        c.key = own_keys_ ? own[k] : c.derived;
+        c.key = own_keys_ ? own[k] : coarse_key(coarse_.ids[k]);
         c.position = coarse_.corners[k];
         c.value = value[0];
         size_ = std::max(size_, norm(c.position - coarse_.corners[0]));

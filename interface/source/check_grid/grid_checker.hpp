@@ -44,11 +44,10 @@ private:
     };
     struct Corner {
         Weights weights{};
-        NodeKey place = 0;    // hash of the weights over coarse ids
-        NodeKey derived = 0;  // key
-        NodeKey key = 0;      // own one, where the grid has such; else the derived one
-        Point position{};     // by the rules
-        double value = 0;     // of component 0
+        NodeKey place = 0;  // hash of the weights over coarse ids
+        NodeKey key = 0;    // own one, where the grid has such; else the derived one
+        Point position{};   // by the rules
+        double value = 0;   // of component 0
     };
     /// How a node is made: what check_grid compares, and what it prints.
     struct Origin {
@@ -76,12 +75,13 @@ private:
     };
     struct Made {  // a new node, by what made it first
         NodeKey place = 0;
-        NodeKey derived = 0;
+        NodeKey key = 0;
         std::size_t coarse = 0;  // number of the coarse element that the weights are of
         Weights weights{};
         std::size_t parents = 0;
         std::array<NodeKey, max_corners> parent{};  // places
         std::array<double, max_corners> weight{};
+        bool given = false;  // parents by the grid, not by the rule
     };
     struct Inside {  // a new node in an element
         std::size_t node;
@@ -145,6 +145,7 @@ private:
                        const std::vector<Corner>& nodes);
     void check_new_nodes(const State& s, const Rule& rule, std::span<const double> values,
                          std::vector<Corner>& nodes);
+    bool deviates(double mean, double value) const;
     bool deviates_from_mean(const Stencil& stencil, const std::vector<Corner>& nodes) const;
     void check_own(const State& s);
     void check_hidden(const State& s);
@@ -152,6 +153,7 @@ private:
 
     // Hanging nodes (check_hanging.cpp).
     void check_hanging();
+    void take_given_parents();
     void find_nodes_inside();
     void walk_regions(std::size_t i);
     void check_region(const State& s, const std::vector<Inside>& inside);
@@ -182,13 +184,15 @@ private:
     std::vector<double> values_;         // all components of each node
     KeyTable<NodeKey, Origin> origins_;  // of new nodes, by place
     std::vector<WeightedPoint> parents_;
+    std::map<NodeKey, std::string> two_stencils_;  // sentences by place, where the grid may give
+                                                   // parents
     KeyTable<NodeKey, NodeKey> place_of_key_;
     std::vector<Made> made_;                              // parents first
     std::vector<std::vector<std::uint64_t>> coarse_ids_;  // of each coarse element
     std::vector<std::vector<std::size_t>> inside_;        // new nodes in it, by number in made_
     std::vector<Leaf> leaves_;
     HangingProbe probe_;
-    HangingNodes hanging_;  // by derived keys
+    HangingNodes hanging_;
 };
 
 }  // namespace nestgrid::detail

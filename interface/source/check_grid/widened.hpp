@@ -46,6 +46,9 @@ public:
                        std::span<Point> out) const override {
         from_->new_positions(task, element, which, out);
     }
+    std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
+        return from_->hanging_parents(node);
+    }
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         from_->corner_gradients(task, element, out);
     }

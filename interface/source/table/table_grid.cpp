@@ -92,6 +92,8 @@ bool TableGrid::offers(Feature feature) const {
             return table_.outside != nullptr;
         case Feature::boundary_faces:
             return table_.boundary_faces != nullptr;
+        case Feature::hanging_parents:
+            return keys && table_.hanging_parents != nullptr;
         default:
             return false;
     }
@@ -106,6 +108,13 @@ void TableGrid::keys(KeysFunction function, const char* operation, const Element
         check(function(table_.self, c.state(), &e, out.size(), keys.data()), operation, &c);
         std::copy_n(keys.begin(), out.size(), out.begin());
     }
+}
+
+std::array<NodeKey, 2> TableGrid::hanging_parents(NodeKey node) const {
+    const auto key = static_cast<std::uint64_t>(node);  // own keys have 64 bits
+    std::array<std::uint64_t, 2> parents{key, key};
+    check(table_.hanging_parents(table_.self, key, parents.data()), "hanging_parents", nullptr);
+    return {parents[0], parents[1]};
 }
 
 bool TableGrid::tells_bisections() const {

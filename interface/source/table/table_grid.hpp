@@ -123,6 +123,7 @@ public:
     NodeMask constrained(const Element& e, TableContext& c) const {
         return ask<std::uint64_t>(table_.constrained, "constrained", e, c);
     }
+    std::array<NodeKey, 2> hanging_parents(NodeKey node) const;
     bool conforming() const { return table_.conforming != 0; }
     bool masked(const Element& e, TableContext& c) const {
         return ask<int>(table_.masked, "masked", e, c) != 0;

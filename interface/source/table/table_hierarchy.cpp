@@ -93,6 +93,11 @@ public:
         field_.corner_gradients(of(element), out, context_of(task));
     }
 
+    std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
+        if (!this->offers(Feature::hanging_parents)) return {node, node};
+        return grid_.hanging_parents(node);
+    }
+
     const BisectionRows<Real>* bisection_rows() const override {
         return tells_rows() ? this : nullptr;
     }

@@ -221,6 +221,9 @@ private:
         if constexpr (has(Feature::constrained)) {
             if (offered(Feature::constrained)) table.constrained = constrained;
         }
+        if constexpr (has(Feature::hanging_parents)) {
+            if (offered(Feature::hanging_parents)) table.hanging_parents = hanging_parents;
+        }
         if constexpr (has(Feature::masked)) {
             if (offered(Feature::masked)) table.masked = masked;
         }
@@ -291,6 +294,9 @@ private:
                 return nestgrid::detail::call_constrained(grid(self), ctx, Cross::load(e));
             });
         });
+    }
+    static int hanging_parents(const void* self, std::uint64_t node, std::uint64_t* out) {
+        return guarded([&] { copy(grid(self).hanging_parents(node), out); });
     }
     static int masked(const void* self, void* context, E e, int* answer) {
         return guarded([&] {
