@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <boost/container/small_vector.hpp>
+
 namespace nestgrid::detail {
 
 static_assert(NESTGRID_SEGMENT == static_cast<int>(Shape::segment));
@@ -99,15 +101,23 @@ bool TableGrid::offers(Feature feature) const {
     }
 }
 
+/// Lets ask(keys) write keys of 64 bits, as many as out.size(), and puts them into `out`.
+template <class Key, class Ask>
+static void get_keys(std::span<Key> out, Ask&& ask) {
+    if constexpr (std::is_same_v<Key, std::uint64_t>) {
+        ask(out.data());
+    } else {
+        boost::container::small_vector<std::uint64_t, max_new_nodes> keys(out.size());
+        ask(keys.data());
+        std::copy(keys.begin(), keys.end(), out.begin());
+    }
+}
+
 void TableGrid::keys(KeysFunction function, const char* operation, const Element& e,
                      std::span<NodeKey> out, TableContext& c) const {
-    if constexpr (std::is_same_v<NodeKey, std::uint64_t>) {
-        check(function(table_.self, c.state(), &e, out.size(), out.data()), operation, &c);
-    } else {
-        std::array<std::uint64_t, max_new_nodes> keys{};  // also holds the keys of the corners
-        check(function(table_.self, c.state(), &e, out.size(), keys.data()), operation, &c);
-        std::copy_n(keys.begin(), out.size(), out.begin());
-    }
+    get_keys(out, [&](std::uint64_t* keys) {
+        check(function(table_.self, c.state(), &e, out.size(), keys), operation, &c);
+    });
 }
 
 std::array<NodeKey, 2> TableGrid::hanging_parents(NodeKey node) const {
@@ -126,17 +136,10 @@ bool TableGrid::tells_bisections() const {
 }
 
 void TableGrid::node_keys(std::span<const std::uint64_t> nodes, std::span<NodeKey> out) const {
-    const auto ask = [&](std::uint64_t* keys) {
+    get_keys(out, [&](std::uint64_t* keys) {
         check(table_.node_keys(table_.self, nodes.size(), nodes.data(), keys), "node_keys",
               nullptr);
-    };
-    if constexpr (std::is_same_v<NodeKey, std::uint64_t>) {
-        ask(out.data());
-    } else {
-        std::vector<std::uint64_t> keys(nodes.size());
-        ask(keys.data());
-        std::copy(keys.begin(), keys.end(), out.begin());
-    }
+    });
 }
 
 template <class Real>
