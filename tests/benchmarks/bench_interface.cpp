@@ -24,7 +24,7 @@ constexpr double most_instructions = 105;
 struct General : Tetrahedra {
     using Tetrahedra::Tetrahedra;
     struct Nothing {};
-    static constexpr Nothing bisections{};
+    [[maybe_unused]] static constexpr Nothing bisections{};
 };
 
 /// What --handwritten runs under valgrind.

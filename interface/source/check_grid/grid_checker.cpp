@@ -203,8 +203,9 @@ void GridChecker::check_node(const State& s, std::size_t n, const Corner& c,
     fresh.first = values_.size();
     fresh.constrained = constrained;
     fresh.deviates = deviates;
-    const auto [node, is_new] = nodes_.insert(c.place, fresh);
-    if (is_new) {
+    const auto found = nodes_.insert(c.place, fresh);
+    const Node* const node = found.first;
+    if (found.second) {
         values_.insert(values_.end(), values.begin(), values.end());
         const auto [place, key_is_new] = place_of_key_.insert(c.key, c.place);
         if (!key_is_new) {
