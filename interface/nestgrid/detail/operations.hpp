@@ -235,19 +235,6 @@ constexpr bool offers(const Grid& grid, Feature feature) {
     }
 }
 
-/// How much of an element is hidden.
-template <class Grid>
-Hidden hidden_part(const Grid& grid, Context<Grid>& context, const ElementOf<Grid>& e) {
-    if constexpr (may_offer<Grid>(Feature::hidden)) {
-        if (offers(grid, Feature::hidden)) return detail::call_hidden(grid, context, e);
-    }
-    return Hidden::not_at_all;
-}
-template <class Grid>
-bool is_hidden(const Grid& grid, Context<Grid>& context, const ElementOf<Grid>& e) {
-    return hidden_part(grid, context, e) == Hidden::wholly;
-}
-
 /// Whether this field offers gradients at the corners of elements of the grid.
 template <class Grid, class Field>
 constexpr bool offers_gradients(const Field& field) {
