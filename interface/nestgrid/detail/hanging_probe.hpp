@@ -103,7 +103,7 @@ public:
 
     /// The parents that the grid gives a node. After add_nodes(), before finish().
     void add_parents(NodeKey node, const KeyPair& parents) {
-        nodes_.insert(mean_key(mix(parents.low) + mix(parents.high), 2), node);
+        nodes_.insert(parents_key(parents.low, parents.high), node);
         given_.insert(node, {parents});
     }
     /// Must be called before the first add_nodes() where the grid gives parents at all.
@@ -124,9 +124,7 @@ public:
             const NodeKey b = k[t.edge[e][1]];
             middle_of[e] = middle(a, b);
             any = any || middle_of[e] != nullptr;
-            on_leaf_edge_ = true;
-            probe_parts(a, b, middle_of[e]);
-            on_leaf_edge_ = false;
+            probe_parts(a, b, middle_of[e], true);
         }
         // A face that is divided has an edge that is.
         for (std::size_t f = 0; any && t.dimension == 3 && f < t.faces; ++f) {
@@ -181,22 +179,30 @@ private:
     /// The key of a node that exists, or null.
     using Found = const NodeKey*;
 
-    /// The node in the middle of others. Own keys may be small numbers, whose sums coincide, so
-    /// each is mixed first.
+    /// Names the mean of some nodes. Own keys may be small numbers, whose sums coincide, so each is
+    /// mixed first.
+    template <class... Keys>
+    static NodeKey parents_key(Keys... of) {
+        return mean_key((mix(of) + ...), sizeof...(of));
+    }
+    /// The node in the middle of others.
     template <class... Keys>
     Found middle(Keys... of) const {
-        const NodeKey parents = mean_key((mix(of) + ...), sizeof...(of));
+        const NodeKey parents = parents_key(of...);
         return parents_.perhaps(hash(parents)) ? nodes_.find(parents) : nullptr;
     }
 
-    void probe_edge(NodeKey a, NodeKey b) { probe_parts(a, b, middle(a, b)); }
-    /// \param m the node in its middle, or null
-    void probe_parts(NodeKey a, NodeKey b, Found m) {
+    /// \param of_leaf whether it is an edge of the leaf or a part of one
+    void probe_edge(NodeKey a, NodeKey b, bool of_leaf = false) {
+        probe_parts(a, b, middle(a, b), of_leaf);
+    }
+    /// \param m the node in the middle of the edge, or null
+    void probe_parts(NodeKey a, NodeKey b, Found m, bool of_leaf) {
         if (m == nullptr) return;
         hanging_.insert(*m);
-        if (on_leaf_edge_) note_on_edge(a, b, *m);
-        probe_edge(a, *m);
-        probe_edge(*m, b);
+        if (of_leaf) note_on_edge(a, b, *m);
+        probe_edge(a, *m, of_leaf);
+        probe_edge(*m, b, of_leaf);
     }
 
     /// Bisected or refined into four, along any of its edges.
@@ -205,7 +211,7 @@ private:
     }
     void probe_triangle(NodeKey a, NodeKey b, NodeKey c, Found ab, Found bc, Found ca) {
         if (ab == nullptr && bc == nullptr && ca == nullptr) return;
-        if (!triangles_.insert(mean_key(mix(a) + mix(b) + mix(c), 3), {}).second) return;
+        if (!triangles_.insert(parents_key(a, b, c), {}).second) return;
         const auto bisected = [&](Found m, NodeKey p, NodeKey q, NodeKey r) {
             if (m == nullptr) return;
             probe_edge(*m, r);
@@ -307,7 +313,6 @@ private:
     bool divides_one_way_ = false;
     KeyTable<NodeKey, Given> given_;
     bool relies_on_given_ = false;
-    bool on_leaf_edge_ = false;
     std::optional<NodeKey> contradiction_;
 };
 
