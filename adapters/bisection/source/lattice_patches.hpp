@@ -27,3 +27,17 @@ void bisect_patches(const LatticeBisection<dim>& grid,
                                  const LatticeField<LatticeBisection<dim>, Sample>&, NoContext&, \
                                  const LatticeBisection<dim>::Element&, const Real*, int, int,   \
                                  detail::ErasedBisectionVisitor<dim, Real>&);
+
+// All samples whose values are float, and all whose values are double (lattice_field.hpp).
+#define NESTGRID_INSTANTIATE_FLOATS(dim)           \
+    NESTGRID_INSTANTIATE(dim, float, float)        \
+    NESTGRID_INSTANTIATE(dim, std::int8_t, float)  \
+    NESTGRID_INSTANTIATE(dim, std::uint8_t, float) \
+    NESTGRID_INSTANTIATE(dim, std::int16_t, float) \
+    NESTGRID_INSTANTIATE(dim, std::uint16_t, float)
+#define NESTGRID_INSTANTIATE_DOUBLES(dim)            \
+    NESTGRID_INSTANTIATE(dim, double, double)        \
+    NESTGRID_INSTANTIATE(dim, std::int32_t, double)  \
+    NESTGRID_INSTANTIATE(dim, std::uint32_t, double) \
+    NESTGRID_INSTANTIATE(dim, std::int64_t, double)  \
+    NESTGRID_INSTANTIATE(dim, std::uint64_t, double)

@@ -4,10 +4,6 @@
 
 namespace nestgrid {
 
-NESTGRID_INSTANTIATE(2, double, double)
-NESTGRID_INSTANTIATE(2, std::int32_t, double)
-NESTGRID_INSTANTIATE(2, std::uint32_t, double)
-NESTGRID_INSTANTIATE(2, std::int64_t, double)
-NESTGRID_INSTANTIATE(2, std::uint64_t, double)
+NESTGRID_INSTANTIATE_DOUBLES(2)
 
 }  // namespace nestgrid

@@ -6,10 +6,6 @@ namespace nestgrid {
 
 template class Lattice<2>;
 template class LatticeBisection<2>;
-NESTGRID_INSTANTIATE(2, float, float)
-NESTGRID_INSTANTIATE(2, std::int8_t, float)
-NESTGRID_INSTANTIATE(2, std::uint8_t, float)
-NESTGRID_INSTANTIATE(2, std::int16_t, float)
-NESTGRID_INSTANTIATE(2, std::uint16_t, float)
+NESTGRID_INSTANTIATE_FLOATS(2)
 
 }  // namespace nestgrid

@@ -4,10 +4,6 @@
 
 namespace nestgrid {
 
-NESTGRID_INSTANTIATE(3, double, double)
-NESTGRID_INSTANTIATE(3, std::int32_t, double)
-NESTGRID_INSTANTIATE(3, std::uint32_t, double)
-NESTGRID_INSTANTIATE(3, std::int64_t, double)
-NESTGRID_INSTANTIATE(3, std::uint64_t, double)
+NESTGRID_INSTANTIATE_DOUBLES(3)
 
 }  // namespace nestgrid

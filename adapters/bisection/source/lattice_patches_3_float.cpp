@@ -6,10 +6,6 @@ namespace nestgrid {
 
 template class Lattice<3>;
 template class LatticeBisection<3>;
-NESTGRID_INSTANTIATE(3, float, float)
-NESTGRID_INSTANTIATE(3, std::int8_t, float)
-NESTGRID_INSTANTIATE(3, std::uint8_t, float)
-NESTGRID_INSTANTIATE(3, std::int16_t, float)
-NESTGRID_INSTANTIATE(3, std::uint16_t, float)
+NESTGRID_INSTANTIATE_FLOATS(3)
 
 }  // namespace nestgrid
