@@ -17,6 +17,22 @@ static_assert(NESTGRID_PYRAMID == static_cast<int>(Shape::pyramid));
 static_assert(NESTGRID_PRISM == static_cast<int>(Shape::prism));
 static_assert(NESTGRID_HEXAHEDRON == static_cast<int>(Shape::hexahedron));
 
+namespace {
+
+/// Lets ask(keys) write keys of 64 bits, as many as out.size(), and puts them into `out`.
+template <class Key, class Ask>
+void get_keys(std::span<Key> out, Ask&& ask) {
+    if constexpr (std::is_same_v<Key, std::uint64_t>) {
+        ask(out.data());
+    } else {
+        boost::container::small_vector<std::uint64_t, max_new_nodes> keys(out.size());
+        ask(keys.data());
+        std::copy(keys.begin(), keys.end(), out.begin());
+    }
+}
+
+}  // namespace
+
 void fail_in_table(int code, const char* what, const char* operation, const char* last_error) {
     const std::string why = last_error == nullptr ? "" : last_error;
     throw GridError("the operation '" + std::string(operation) + "' of the " + what + " failed" +
@@ -98,18 +114,6 @@ bool TableGrid::offers(Feature feature) const {
             return keys && table_.hanging_parents != nullptr;
         default:
             return false;
-    }
-}
-
-/// Lets ask(keys) write keys of 64 bits, as many as out.size(), and puts them into `out`.
-template <class Key, class Ask>
-static void get_keys(std::span<Key> out, Ask&& ask) {
-    if constexpr (std::is_same_v<Key, std::uint64_t>) {
-        ask(out.data());
-    } else {
-        boost::container::small_vector<std::uint64_t, max_new_nodes> keys(out.size());
-        ask(keys.data());
-        std::copy(keys.begin(), keys.end(), out.begin());
     }
 }
 
