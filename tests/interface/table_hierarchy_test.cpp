@@ -12,6 +12,7 @@
 #include <nestgrid/table.hpp>
 
 #include "anisotropic_grids.hpp"
+#include "anisotropic_judge.hpp"
 #include "archetype.hpp"
 #include "curved.hpp"
 #include "forest.hpp"

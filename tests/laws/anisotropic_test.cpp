@@ -10,6 +10,8 @@
 #include <nestgrid/check_grid.hpp>
 
 #include "anisotropic_grids.hpp"
+#include "anisotropic_judge.hpp"
+#include "closedness.hpp"
 #include "refusal.hpp"
 
 using namespace nestgrid_test;
