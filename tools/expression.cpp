@@ -54,9 +54,8 @@ double Expression::operator()(const nestgrid::Point& x) const {
     x_ = x;
     const double value = parser_->Eval();
     if (!std::isfinite(value)) {
-        throw nestgrid::InvalidInput("the field '" + text_ + "' is no finite number at (" +
-                                     std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " +
-                                     std::to_string(x[2]) + ")");
+        throw nestgrid::InvalidInput("the field '" + text_ + "' is no finite number at " +
+                                     nestgrid::text_of(x));
     }
     return value;
 }

@@ -88,9 +88,8 @@ void CrossingSearch<Real>::refuse(NodeKey node, const std::string& what) const {
         walk.corners(view, keys.data(), x.data());
         for (std::size_t k = 0; k < view.corner_count(); ++k) {
             if (keys[k] != node) continue;
-            where = " at (" + std::to_string(x[k][0]) + ", " + std::to_string(x[k][1]) + ", " +
-                    std::to_string(x[k][2]) + "), below coarse element " +
-                    std::to_string(view.coarse);
+            where =
+                " at " + text_of(x[k]) + ", below coarse element " + std::to_string(view.coarse);
         }
     });
     throw GridError("the node" + where + " " + what);

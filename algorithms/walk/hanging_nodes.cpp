@@ -48,8 +48,7 @@ template <class Real>
     }
     Point x{0, 0, 0};
     for (const std::uint8_t corner : face.corner) x = x + 0.25 * place[corner];
-    throw GridError("elements on the two sides of the face around (" + std::to_string(x[0]) + ", " +
-                    std::to_string(x[1]) + ", " + std::to_string(x[2]) + ") of element " +
+    throw GridError("elements on the two sides of the face around " + text_of(x) + " of element " +
                     name_of(view) +
                     " divide it in different directions first and one of them then across, so that "
                     "a node there hangs on " +

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 
 namespace nestgrid {
 
@@ -30,5 +31,8 @@ constexpr Point cross(const Point& a, const Point& b) {
 }
 
 inline double norm(const Point& a) { return std::sqrt(dot(a, a)); }
+
+/// As in "(0.500000, 0.000000, 1.000000)", for sentences.
+std::string text_of(const Point& x);
 
 }  // namespace nestgrid

@@ -117,12 +117,10 @@ void GridChecker::check_corners(const std::string& who) {
 
 void GridChecker::check_ids() const {
     if (several_ids_at_.empty()) return;
-    const Point& x = *several_ids_at_.begin();
     const std::string sentence =
         "coarse corners have different ids at " + std::to_string(several_ids_at_.size()) + " of " +
-        std::to_string(id_at_.size()) + " places, such as (" + std::to_string(x[0]) + ", " +
-        std::to_string(x[1]) + ", " + std::to_string(x[2]) +
-        "): elements share no node there, as at a slit or where each counts its ids itself";
+        std::to_string(id_at_.size()) + " places, such as " + text_of(*several_ids_at_.begin()) +
+        ": elements share no node there, as at a slit or where each counts its ids itself";
     if (options_->one_id_a_place) fail(Law::coarse_ids, sentence);
     if (options_->notes != nullptr) options_->notes->push_back(sentence);
 }

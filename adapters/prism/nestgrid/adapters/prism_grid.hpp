@@ -91,10 +91,8 @@ private:
     template <class Tree>
     static void refuse_if_there(const Tree& tree, std::uint32_t node) {
         if (node == no_node) return;
-        const Point x = tree.position[node];
-        throw InvalidInput("prisms at the face around (" + std::to_string(x[0]) + ", " +
-                           std::to_string(x[1]) + ", " + std::to_string(x[2]) +
-                           ") are refined horizontally and then vertically, and the other way "
+        throw InvalidInput("prisms at the face around " + text_of(tree.position[node]) +
+                           " are refined horizontally and then vertically, and the other way "
                            "round: the node in its middle would have two stencils");
     }
 };
