@@ -173,16 +173,15 @@ bool CrossingSearch<Real>::hangs_beside(NodeKey node, NodeKey end) const {
 /// parts of faces which that node, or a node beside it, halves.
 template <class Real>
 void CrossingSearch<Real>::need_around() {
-    std::array<NodeKey, max_corners + max_new_nodes> keys;
+    SplitKeys room;
     for_each_element(*walk_, true, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule == nullptr) return;
-        const std::size_t corners = view.corner_count();
-        walk_->corners(view, keys.data(), nullptr);
-        std::ranges::copy(split.keys, keys.data() + corners);
-        const NodeMask crossing = found_->made_otherwise(
-            *split.rule, std::span<const NodeKey>(keys).first(corners + split.keys.size()));
+        const std::span<const NodeKey> keys = walk_->split_keys(view, split, room);
+        const NodeMask crossing = found_->made_otherwise(*split.rule, keys);
         if (crossing == 0) return;
-        for (const Child& child : split.rule->children) need_around(child, crossing, corners, keys);
+        for (const Child& child : split.rule->children) {
+            need_around(child, crossing, view.corner_count(), keys);
+        }
     });
 }
 

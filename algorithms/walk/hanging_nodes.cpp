@@ -18,17 +18,6 @@ namespace engine {
 
 namespace {
 
-using Keys = std::array<NodeKey, max_corners + max_new_nodes>;
-
-/// Keys of the corners of a split element, then of its new nodes.
-template <class Real>
-std::span<const NodeKey> keys_of(const Walk<Real>& walk, const ElementView<Real>& view,
-                                 const Split& split, Keys& keys) {
-    walk.corners(view, keys.data(), nullptr);
-    std::ranges::copy(split.keys, keys.data() + view.corner_count());
-    return std::span<const NodeKey>(keys).first(view.corner_count() + split.keys.size());
-}
-
 /// The element as check_grid names it: number of the coarse element and of children.
 template <class Real>
 std::string name_of(const ElementView<Real>& view) {
@@ -65,10 +54,10 @@ template <class Real>
 template <class Real>
 void refuse_crossed_face(const Hierarchy<Real>& hierarchy, detail::HangingProbe& probe) {
     const Walk<Real> walk(hierarchy, {.values = false, .keys = true, .positions = true});
-    Keys keys;
+    SplitKeys keys;
     for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule == nullptr) return;
-        const auto face = probe.crossed_face(*split.rule, keys_of(walk, view, split, keys));
+        const auto face = probe.crossed_face(*split.rule, walk.split_keys(view, split, keys));
         if (face) refuse_face(walk, view, *split.rule, *face);
     });
 }
@@ -84,10 +73,10 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
         crossing.emplace(walk);
         probe.rely_on_given_parents();
     }
-    Keys keys;
+    SplitKeys keys;
     for_each_element(walk, true, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule == nullptr) return;
-        const std::span<const NodeKey> of = keys_of(walk, view, split, keys);
+        const std::span<const NodeKey> of = walk.split_keys(view, split, keys);
         probe.add_nodes(*split.rule, of, split.keys);
         if (crossing) crossing->add_split(*split.rule, of, probe);
     });
@@ -96,8 +85,9 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
     bool crossed = false;
     for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule != nullptr) {
-            crossed = crossed || (may_cross && probe.crossed_face(
-                                                   *split.rule, keys_of(walk, view, split, keys)));
+            crossed =
+                crossed ||
+                (may_cross && probe.crossed_face(*split.rule, walk.split_keys(view, split, keys)));
         } else if (view.member->hidden != Hidden::wholly) {
             walk.corners(view, keys.data(), nullptr);
             probe.probe_leaf(view.shape, keys);

@@ -183,10 +183,8 @@ void Walk<Real>::mark_crossing(const View& view, Split& split) const {
     const NodeMask fixed = fixed_->mask(split.keys);
     if (fixed == 0) return;
     split.outside |= fixed;
-    std::array<NodeKey, max_corners + max_new_nodes> keys;
-    corners(view, keys.data(), nullptr);
-    std::ranges::copy(split.keys, keys.data() + view.corner_count());
-    split.crossing = fixed_->crossing().made_otherwise(*split.rule, keys);
+    SplitKeys keys;
+    split.crossing = fixed_->crossing().made_otherwise(*split.rule, split_keys(view, split, keys));
     split.constrained &= ~split.crossing;
 }
 

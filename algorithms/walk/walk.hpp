@@ -24,6 +24,9 @@
 
 namespace nestgrid::engine {
 
+/// Room for the keys of the corners and new nodes of any split.
+using SplitKeys = std::array<NodeKey, max_corners + max_new_nodes>;
+
 /// What a walk carries along.
 struct Needs {
     bool values = true;      ///< otherwise all values are undefined and the field is never asked
@@ -87,6 +90,9 @@ public:
 
     /// Keys and positions of the corners; each pointer may be null.
     void corners(const View& view, NodeKey* keys, Point* positions) const;
+    /// Keys of the corners of a split element and, behind them, of its new nodes.
+    /// \param out takes them
+    std::span<const NodeKey> split_keys(const View& view, const Split& split, SplitKeys& out) const;
     /// Positions of the ends of a maximal edge.
     std::array<Point, 2> positions(const MaximalEdge<Real>& edge) const;
     /// True positions of the new nodes of an element. The walk must carry positions.

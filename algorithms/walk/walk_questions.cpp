@@ -10,6 +10,15 @@
 namespace nestgrid::engine {
 
 template <class Real>
+std::span<const NodeKey> Walk<Real>::split_keys(const View& view, const Split& split,
+                                                SplitKeys& out) const {
+    const std::size_t corners = view.corner_count();
+    this->corners(view, out.data(), nullptr);
+    std::ranges::copy(split.keys, out.data() + corners);
+    return std::span<const NodeKey>(out).first(corners + split.keys.size());
+}
+
+template <class Real>
 std::array<Point, 2> Walk<Real>::positions(const MaximalEdge<Real>& edge) const {
     const auto& split = *edge.split;
     const auto& [a, b] = edge.end;
@@ -53,6 +62,10 @@ void Walk<Real>::gradients(const View& view, std::span<Point> out) const {
     hierarchy_->corner_gradients(view.stack->task.get(), view.element(), out);
 }
 
+template std::span<const NodeKey> Walk<float>::split_keys(const View&, const Split&,
+                                                          SplitKeys&) const;
+template std::span<const NodeKey> Walk<double>::split_keys(const View&, const Split&,
+                                                           SplitKeys&) const;
 template std::array<Point, 2> Walk<float>::positions(const MaximalEdge<float>&) const;
 template std::array<Point, 2> Walk<double>::positions(const MaximalEdge<double>&) const;
 template void Walk<float>::new_positions(const View&, const Rule&, std::span<Point>) const;
