@@ -13,10 +13,11 @@ namespace nestgrid::engine {
 
 namespace {
 
-/// Puts the field's value at a node that does not hang into the first place of `values`.
+/// Puts the field's value at a node that does not hang into `to`.
+/// \param values room for a split
 template <class Real>
 void ask_field(const Hierarchy<Real>& hierarchy, const CrossingNodes& crossing,
-               const FixedNode& node, Task* task, std::vector<Real>& values) {
+               const FixedNode& node, Task* task, std::vector<Real>& values, Real* to) {
     NodeMask missing = 0;
     if (node.rule != nullptr) {
         missing = hierarchy.new_values(task, crossing.elements().handle(node.element), *node.rule,
@@ -32,7 +33,7 @@ void ask_field(const Hierarchy<Real>& hierarchy, const CrossingNodes& crossing,
         throw GridError("the field has no value at a node between which another one hangs");
     }
     const auto components = static_cast<std::size_t>(hierarchy.facts().components);
-    std::copy_n(values.data() + node.node * components, components, values.data());
+    std::copy_n(values.data() + node.node * components, components, to);
 }
 
 bool is_among(std::size_t node, NodeMask nodes, std::size_t corners) {
@@ -61,8 +62,7 @@ FixedNodes<Real>::FixedNodes(const Hierarchy<Real>& hierarchy, const CrossingNod
         if (!with_values) continue;
         Real* const to = value_.data() + i * components_;
         if (!node.hangs) {
-            ask_field(hierarchy, crossing, node, task.get(), values);
-            std::copy_n(values.data(), components_, to);
+            ask_field(hierarchy, crossing, node, task.get(), values, to);
             continue;
         }
         for (std::size_t p = 0; p < node.stencil.count; ++p) {
