@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nestgrid/algorithms/triangle_budget.hpp>
-
 #include <limits>
 #include <string>
 
@@ -9,9 +7,13 @@
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/error.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid {
+
+namespace engine {
 
 namespace {
+
+using nestgrid::detail::MakeCriterion;
 
 constexpr std::uint16_t octave = 128;  // bfloat16 numbers from x to 2 x
 
@@ -23,12 +25,10 @@ std::uint16_t halved(std::uint16_t code) {
 template <int dimension, class Real>
 class BudgetSearch {
 public:
-    BudgetSearch(const Hierarchy<Real>& hierarchy, double isovalue,
-                 const MakeCriterion& criterion_at, const HierarchicalIndicator& indicator,
-                 std::uint64_t max_triangles, const IsosurfaceOptions& options,
-                 const Executor& executor)
-        : hierarchy_{hierarchy},
-          isovalue_{isovalue},
+    BudgetSearch(const Levels<Real>& levels, const MakeCriterion& criterion_at,
+                 const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                 const IsosurfaceOptions& options, const Executor& executor)
+        : levels_{levels},
           criterion_at_{criterion_at},
           indicator_{indicator},
           max_triangles_{max_triangles},
@@ -56,8 +56,8 @@ public:
 private:
     std::optional<std::uint64_t> count(std::uint16_t code, std::uint64_t most) const {
         const std::unique_ptr<const Criterion> criterion = criterion_at_(bfloat16_value(code));
-        return engine::count_simplices<dimension>(hierarchy_, isovalue_, *criterion, indicator_,
-                                                  most, options_, executor_);
+        return count_simplices<dimension>(levels_, *criterion, indicator_, most, options_,
+                                          executor_);
     }
 
     /// Counts the triangles at a threshold and, where they keep within the budget, notes it as the
@@ -80,8 +80,7 @@ private:
                            " triangles: " + std::to_string(*triangles));
     }
 
-    const Hierarchy<Real>& hierarchy_;
-    double isovalue_;
+    const Levels<Real>& levels_;
     const MakeCriterion& criterion_at_;
     const HierarchicalIndicator& indicator_;
     std::uint64_t max_triangles_;
@@ -93,40 +92,68 @@ private:
 }  // namespace
 
 template <int dimension, class Real>
+TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& criterion_at,
+                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                              const IsosurfaceOptions& options, const Executor& executor) {
+    return BudgetSearch<dimension, Real>(levels, criterion_at, indicator, max_triangles, options,
+                                         executor)
+        .run();
+}
+
+template <int dimension, class Real>
+Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator& indicator,
+                        const IsosurfaceOptions& options, const Executor& executor) {
+    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
+    if (options.max_triangles == 0) return {&indicator, options.threshold};
+    const MakeCriterion everywhere = [&](double threshold) {
+        return std::make_unique<const Threshold>(&indicator, threshold);
+    };
+    const TriangleBudget best = find_threshold<dimension>(levels, everywhere, indicator,
+                                                          options.max_triangles, options, executor);
+    return {&indicator, best.threshold};
+}
+
+}  // namespace engine
+
+namespace detail {
+
+template <int dimension, class Real>
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
                               const MakeCriterion& criterion_at,
                               const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
                               const IsosurfaceOptions& options, const Executor& executor) {
-    return BudgetSearch<dimension, Real>(hierarchy, isovalue, criterion_at, indicator,
-                                         max_triangles, options, executor)
-        .run();
+    const auto levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
+    return engine::find_threshold<dimension>(levels, criterion_at, indicator, max_triangles,
+                                             options, executor);
 }
 
 template <int dimension, class Real>
 Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
                         const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
                         const Executor& executor) {
-    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
-    if (options.max_triangles == 0) return {&indicator, options.threshold};
-    const MakeCriterion everywhere = [&](double threshold) {
-        return std::make_unique<const Threshold>(&indicator, threshold);
-    };
-    const TriangleBudget best = find_threshold<dimension>(
-        hierarchy, isovalue, everywhere, indicator, options.max_triangles, options, executor);
-    return {&indicator, best.threshold};
+    const auto levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
+    return engine::criterion_for<dimension>(levels, indicator, options, executor);
 }
 
-#define NESTGRID_INSTANTIATE(dimension, Real)                                               \
-    template TriangleBudget find_threshold<dimension>(                                      \
-        const Hierarchy<Real>&, double, const MakeCriterion&, const HierarchicalIndicator&, \
-        std::uint64_t, const IsosurfaceOptions&, const Executor&);                          \
-    template Threshold criterion_for<dimension>(const Hierarchy<Real>&, double,             \
-                                                const HierarchicalIndicator&,               \
-                                                const IsosurfaceOptions&, const Executor&);
+}  // namespace detail
+
+#define NESTGRID_INSTANTIATE(dimension, Real)                                                    \
+    template TriangleBudget engine::find_threshold<dimension>(                                   \
+        const engine::Levels<Real>&, const detail::MakeCriterion&, const HierarchicalIndicator&, \
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);                               \
+    template Threshold engine::criterion_for<dimension>(                                         \
+        const engine::Levels<Real>&, const HierarchicalIndicator&, const IsosurfaceOptions&,     \
+        const Executor&);                                                                        \
+    template TriangleBudget detail::find_threshold<dimension>(                                   \
+        const Hierarchy<Real>&, double, const detail::MakeCriterion&,                            \
+        const HierarchicalIndicator&, std::uint64_t, const IsosurfaceOptions&, const Executor&); \
+    template Threshold detail::criterion_for<dimension>(                                         \
+        const Hierarchy<Real>&, double, const HierarchicalIndicator&, const IsosurfaceOptions&,  \
+        const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)
 NESTGRID_INSTANTIATE(3, float)
 NESTGRID_INSTANTIATE(3, double)
 #undef NESTGRID_INSTANTIATE
 
-}  // namespace nestgrid::detail
+}  // namespace nestgrid

@@ -7,15 +7,15 @@
 
 namespace nestgrid::engine {
 
-/// Calls function(face, polygon) for each polygon inside the level on each boundary face.
+/// Calls function(face, polygon) for each polygon inside the level on each of the faces.
 template <int dimension, class Real>
 template <class Function>
-void CapContour<dimension, Real>::for_each_polygon(unsigned inside, Function&& function) const {
+void CapContour<dimension, Real>::for_each_polygon(unsigned inside, unsigned faces,
+                                                   Function&& function) const {
     const ElementView<Real>& view = cuts_->view();
     const Topology& t = view.topology();
-    const unsigned boundary = cuts_->walk().boundary(view);
     for (std::size_t f = 0; f < t.faces; ++f) {
-        if ((boundary >> f & 1U) == 0) continue;
+        if ((faces >> f & 1U) == 0) continue;
         const FaceTopology& face = t.face[f];
         const unsigned signs = signs_of(face, inside);
         const FaceContour& contour = cuts_->contour(face, signs);
@@ -80,9 +80,10 @@ NodeKey CapContour<dimension, Real>::side_key(std::uint8_t edge, const FaceTopol
 }
 
 template <int dimension, class Real>
-void CapContour<dimension, Real>::record(unsigned inside, TransitionContours& record) const {
+void CapContour<dimension, Real>::record(unsigned inside, unsigned faces,
+                                         TransitionContours& record) const {
     if (dimension == 2) return;
-    for_each_polygon(inside, [&](const FaceTopology& face, const Polygon& polygon) {
+    for_each_polygon(inside, faces, [&](const FaceTopology& face, const Polygon& polygon) {
         for (std::size_t i = 0; i < polygon.count; ++i) record_side(face, polygon, i, record);
     });
 }
@@ -134,9 +135,10 @@ auto CapContour<dimension, Real>::chain(const FaceTopology& face, const Polygon&
 }
 
 template <int dimension, class Real>
-void CapContour<dimension, Real>::draw(unsigned inside, const TransitionContours* drawn_below) {
-    if (dimension == 2) return draw_segments(inside);
-    for_each_polygon(inside, [&](const FaceTopology& face, const Polygon& polygon) {
+void CapContour<dimension, Real>::draw(unsigned inside, unsigned faces,
+                                       const TransitionContours* drawn_below) {
+    if (dimension == 2) return draw_segments(inside, faces);
+    for_each_polygon(inside, faces, [&](const FaceTopology& face, const Polygon& polygon) {
         draw_polygon(face, polygon, drawn_below);
     });
 }
@@ -144,16 +146,15 @@ void CapContour<dimension, Real>::draw(unsigned inside, const TransitionContours
 /// Draws the inside parts of the sides on the boundary. They run counterclockwise around the
 /// element, with the region inside the level on their left, as the contour does.
 template <int dimension, class Real>
-void CapContour<dimension, Real>::draw_segments(unsigned inside) {
+void CapContour<dimension, Real>::draw_segments(unsigned inside, unsigned faces) {
     const ElementView<Real>& view = cuts_->view();
     const Topology& t = view.topology();
-    const unsigned boundary = cuts_->walk().boundary(view);
     for (std::size_t f = 0; f < t.faces; ++f) {
         const std::uint8_t a = t.face[f].corner[0];
         const std::uint8_t b = t.face[f].corner[1];
         const bool first = (inside >> a & 1U) != 0;
         const bool second = (inside >> b & 1U) != 0;
-        if ((boundary >> f & 1U) == 0 || (!first && !second)) continue;
+        if ((faces >> f & 1U) == 0 || (!first && !second)) continue;
         const std::uint8_t edge = edge_between(view.shape, a, b);
         typename ElementContour<dimension, Real>::Locals ends{};
         ends[0] = first ? contour_->node_vertex(a) : contour_->vertex(edge);

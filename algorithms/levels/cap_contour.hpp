@@ -24,10 +24,11 @@ public:
 
     /// Records the sides of the element's caps along closed edges.
     /// \param inside the corners inside the level, one bit each
-    void record(unsigned inside, TransitionContours& record) const;
+    /// \param faces the faces to be capped, one bit each
+    void record(unsigned inside, unsigned faces, TransitionContours& record) const;
     /// Draws the element's caps; contour.begin() must have been called.
     /// \param drawn_below what finer caps recorded, or null
-    void draw(unsigned inside, const TransitionContours* drawn_below);
+    void draw(unsigned inside, unsigned faces, const TransitionContours* drawn_below);
 
 private:
     using Number = std::uint32_t;
@@ -42,7 +43,7 @@ private:
     };
 
     template <class Function>
-    void for_each_polygon(unsigned inside, Function&& function) const;
+    void for_each_polygon(unsigned inside, unsigned faces, Function&& function) const;
     static Polygon polygon_from(Shape shape, const FaceTopology& face, unsigned signs,
                                 const FaceContour& contour, unsigned& left);
     void record_side(const FaceTopology& face, const Polygon& polygon, std::size_t side,
@@ -51,7 +52,7 @@ private:
                      bool forward) const;
     std::vector<Number> chain(const FaceTopology& face, const Polygon& polygon, std::size_t side,
                               const TransitionContours* drawn_below);
-    void draw_segments(unsigned inside);
+    void draw_segments(unsigned inside, unsigned faces);
     void draw_polygon(const FaceTopology& face, const Polygon& polygon,
                       const TransitionContours* drawn_below);
 

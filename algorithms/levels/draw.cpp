@@ -13,11 +13,27 @@ namespace nestgrid {
 namespace engine {
 
 template <class Real>
-void require_drawable(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
-                      const Bounds& bounds) {
+Levels<Real> isosurface_levels(const Hierarchy<Real>& hierarchy,
+                               std::span<const double> isovalues) {
+    Levels<Real> levels{&hierarchy, {}};
     for (const double isovalue : isovalues) {
         if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
+        levels.levels.emplace_back(isovalue);
     }
+    return levels;
+}
+
+template <int dimension>
+void require_options(const IsosurfaceOptions& options) {
+    if (!options.at_nodes) return;
+    if (dimension != 3) throw InvalidInput("vertices at nodes need a grid of dimension 3");
+    if (options.reference) {
+        throw InvalidInput("a surface with vertices at nodes has no reference coordinates");
+    }
+}
+
+template <class Real>
+void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds) {
     if (bounds.epoch() != hierarchy.epoch()) {
         throw GridError("the grid has changed since its indicator was computed");
     }
@@ -38,21 +54,20 @@ void require_saturated(const Criterion& criterion, const Bounds& bounds) {
 }
 
 template <int dimension, class Real>
-std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, double isovalue,
-                                             const Criterion& criterion, const Bounds& bounds,
-                                             std::uint64_t most, const IsosurfaceOptions& options,
+std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const Criterion& criterion,
+                                             const Bounds& bounds, std::uint64_t most,
+                                             const IsosurfaceOptions& options,
                                              const Executor& executor) {
     using Drawing = LevelSet<dimension, Real>;
     require_saturated(criterion, bounds);
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
-    const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
-    const Level<Real> level(isovalue);
-    const LevelSearch<Real> search(walk, std::span(&level, 1), criterion, bounds);
+    const Walk<Real> walk(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
+    const LevelSearch<Real> search(walk, std::span(levels.levels).first(1), criterion, bounds);
     Surface<dimension> nothing;
     const typename Drawing::Builder builder(nothing, false);
-    Drawing drawing(walk, search, std::span(&builder, 1), plain, isosurface_attributes);
+    Drawing drawing(walk, search, std::span(&builder, 1), plain, levels.first_attribute);
     drawing.count_only(most);
     try {
         drawing.run(executor);
@@ -62,95 +77,118 @@ std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, d
     return drawing.simplices();
 }
 
+namespace {
+
+template <int dimension>
+using Targets = nestgrid::detail::SurfaceTargets<dimension>;
+
+template <int dimension>
+void require_targets(const Targets<dimension>& targets, std::size_t levels,
+                     const IsosurfaceOptions& options) {
+    const std::size_t sinks = targets.meshes.size() + targets.soups.size();
+    if (sinks != 0 && sinks != levels) {
+        throw InvalidInput(std::to_string(levels) + " surfaces need as many sinks, not " +
+                           std::to_string(sinks));
+    }
+    if (targets.soups.empty()) return;
+    if (options.normals) throw InvalidInput("a stream of triangles has no normals");
+    if (options.at_nodes) throw InvalidInput("a stream of triangles has no vertices at nodes");
+}
+
+/// Builders that fill sinks, or surfaces where there are no sinks, or where vertices are merged
+/// before a sink takes the surface.
+/// \param chunks memory that the builders fill, one for each surface
+template <int dimension>
+std::vector<SurfaceBuilder<dimension>> make_builders(const Targets<dimension>& targets,
+                                                     std::vector<Surface<dimension>>& chunks,
+                                                     const IsosurfaceOptions& options) {
+    std::vector<SurfaceBuilder<dimension>> builders;
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+        if (!targets.soups.empty()) {
+            builders.emplace_back(*targets.soups[i], chunks[i]);
+        } else if (targets.meshes.empty()) {
+            builders.emplace_back(chunks[i], options.elements);
+        } else if (options.at_nodes) {
+            builders.emplace_back(chunks[i], targets.meshes[i]->keeps_elements());
+        } else {
+            builders.emplace_back(*targets.meshes[i], chunks[i]);
+        }
+    }
+    return builders;
+}
+
+/// Moves the surfaces that were drawn into chunks to where they belong.
+template <int dimension>
+void hand_over(const Targets<dimension>& targets, std::vector<Surface<dimension>>& chunks,
+               const IsosurfaceOptions& options, std::vector<Isosurface<dimension>>& results) {
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+        if (targets.meshes.empty() && targets.soups.empty()) {
+            results[i].surface = std::move(chunks[i]);
+        } else if (options.at_nodes) {
+            targets.meshes[i]->take(chunks[i]);
+            if (options.normals) targets.meshes[i]->set_normals(chunks[i].normals);
+        }
+    }
+}
+
+}  // namespace
+
 template <int dimension, class Real>
-void draw_levels(const Hierarchy<Real>& hierarchy, std::span<const Level<Real>> levels,
-                 std::size_t first_attribute, std::span<const SurfaceBuilder<dimension>> builders,
-                 const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
-                 const Executor& executor, std::vector<Isosurface<dimension>>& results) {
+std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
+                                               const Targets<dimension>& targets,
+                                               const Criterion& criterion, const Bounds& bounds,
+                                               const IsosurfaceOptions& options,
+                                               const Executor& executor) {
     using Drawing = LevelSet<dimension, Real>;
-    const Walk<Real> walk(hierarchy, Drawing::needs, bounds.hanging());
-    const LevelSearch<Real> search(walk, levels, criterion, bounds);
-    Drawing drawing(walk, search, builders, options, first_attribute);
+    const std::size_t count = levels.levels.size();
+    require_same_epoch(*levels.hierarchy, bounds);
+    require_saturated(criterion, bounds);
+    require_options<dimension>(options);
+    require_targets(targets, count, options);
+    std::vector<Surface<dimension>> chunks(count);
+    for (Surface<dimension>& chunk : chunks) chunk.elements = levels.hierarchy->make_elements();
+    const auto builders = make_builders(targets, chunks, options);
+    const Walk<Real> walk(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
+    const LevelSearch<Real> search(walk, levels.levels, criterion, bounds);
+    Drawing drawing(walk, search, builders, options, levels.first_attribute);
     const bool cancelled = run_until_cancelled(drawing, executor);
     drawing.flush();
-    for (std::size_t i = 0; i < results.size(); ++i) {
+    std::vector<Isosurface<dimension>> results(count);
+    for (std::size_t i = 0; i < count; ++i) {
         drawing.report(i, results[i]);
         results[i].cancelled = cancelled;
         if (criterion.insists()) {
             results[i].error_bound = std::numeric_limits<double>::infinity();
         }
     }
+    hand_over(targets, chunks, options, results);
+    return results;
 }
 
 }  // namespace engine
 
 namespace detail {
 
-namespace {
-
-/// Builders that fill sinks, or the surfaces of the results where there are no sinks.
-/// \param chunks memory that the builders fill, one for each surface
-template <int dimension>
-std::vector<engine::SurfaceBuilder<dimension>> make_builders(
-    const SurfaceTargets<dimension>& targets, std::vector<Surface<dimension>>& chunks,
-    bool keeps_elements) {
-    std::vector<engine::SurfaceBuilder<dimension>> builders;
-    for (std::size_t i = 0; i < chunks.size(); ++i) {
-        if (!targets.soups.empty()) {
-            builders.emplace_back(*targets.soups[i], chunks[i]);
-        } else if (!targets.meshes.empty()) {
-            builders.emplace_back(*targets.meshes[i], chunks[i]);
-        } else {
-            builders.emplace_back(chunks[i], keeps_elements);
-        }
-    }
-    return builders;
-}
-
-}  // namespace
-
 template <int dimension, class Real>
 std::vector<Isosurface<dimension>> draw_isosurfaces(
     const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
     const SurfaceTargets<dimension>& targets, const Criterion& criterion, const Bounds& bounds,
     const IsosurfaceOptions& options, const Executor& executor) {
-    engine::require_drawable(hierarchy, isovalues, bounds);
-    engine::require_saturated(criterion, bounds);
-    const std::size_t count = isovalues.size();
-    const std::size_t sinks = targets.meshes.size() + targets.soups.size();
-    if (sinks != 0 && sinks != count) {
-        throw InvalidInput(std::to_string(count) + " isovalues need as many sinks, not " +
-                           std::to_string(sinks));
-    }
-    if (!targets.soups.empty() && options.normals) {
-        throw InvalidInput("a stream of triangles has no normals");
-    }
-    std::vector<Surface<dimension>> chunks(count);
-    for (Surface<dimension>& chunk : chunks) chunk.elements = hierarchy.make_elements();
-    std::vector<Isosurface<dimension>> results(count);
-    std::vector<engine::Level<Real>> levels;
-    for (const double isovalue : isovalues) levels.emplace_back(isovalue);
-    const auto builders = make_builders(targets, chunks, options.elements);
-    engine::draw_levels<dimension, Real>(hierarchy, levels, engine::isosurface_attributes, builders,
-                                         criterion, bounds, options, executor, results);
-    for (std::size_t i = 0; sinks == 0 && i < count; ++i) {
-        results[i].surface = std::move(chunks[i]);
-    }
-    return results;
+    return engine::draw_levels<dimension>(engine::isosurface_levels(hierarchy, isovalues), targets,
+                                          criterion, bounds, options, executor);
 }
 
 }  // namespace detail
 
-#define NESTGRID_INSTANTIATE(dimension, Real)                                                \
-    template std::optional<std::uint64_t> engine::count_simplices<dimension>(                \
-        const Hierarchy<Real>&, double, const Criterion&, const Bounds&, std::uint64_t,      \
-        const IsosurfaceOptions&, const Executor&);                                          \
-    template void engine::draw_levels<dimension>(                                            \
-        const Hierarchy<Real>&, std::span<const engine::Level<Real>>, std::size_t,           \
-        std::span<const engine::SurfaceBuilder<dimension>>, const Criterion&, const Bounds&, \
-        const IsosurfaceOptions&, const Executor&, std::vector<Isosurface<dimension>>&);     \
-    template std::vector<Isosurface<dimension>> detail::draw_isosurfaces<dimension>(         \
-        const Hierarchy<Real>&, std::span<const double>, const SurfaceTargets<dimension>&,   \
+#define NESTGRID_INSTANTIATE(dimension, Real)                                                    \
+    template std::optional<std::uint64_t> engine::count_simplices<dimension>(                    \
+        const engine::Levels<Real>&, const Criterion&, const Bounds&, std::uint64_t,             \
+        const IsosurfaceOptions&, const Executor&);                                              \
+    template std::vector<Isosurface<dimension>> engine::draw_levels<dimension>(                  \
+        const engine::Levels<Real>&, const detail::SurfaceTargets<dimension>&, const Criterion&, \
+        const Bounds&, const IsosurfaceOptions&, const Executor&);                               \
+    template std::vector<Isosurface<dimension>> detail::draw_isosurfaces<dimension>(             \
+        const Hierarchy<Real>&, std::span<const double>, const SurfaceTargets<dimension>&,       \
         const Criterion&, const Bounds&, const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)
@@ -158,9 +196,13 @@ NESTGRID_INSTANTIATE(3, float)
 NESTGRID_INSTANTIATE(3, double)
 #undef NESTGRID_INSTANTIATE
 
-template void engine::require_drawable(const Hierarchy<float>&, std::span<const double>,
-                                       const Bounds&);
-template void engine::require_drawable(const Hierarchy<double>&, std::span<const double>,
-                                       const Bounds&);
+template void engine::require_options<2>(const IsosurfaceOptions&);
+template void engine::require_options<3>(const IsosurfaceOptions&);
+template void engine::require_same_epoch(const Hierarchy<float>&, const Bounds&);
+template void engine::require_same_epoch(const Hierarchy<double>&, const Bounds&);
+template engine::Levels<float> engine::isosurface_levels(const Hierarchy<float>&,
+                                                         std::span<const double>);
+template engine::Levels<double> engine::isosurface_levels(const Hierarchy<double>&,
+                                                          std::span<const double>);
 
 }  // namespace nestgrid

@@ -1,26 +1,40 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Drives a LevelSet, for isosurfaces, series, budgets and other level sets.
+// Drives a LevelSet, for isosurfaces, series, budgets and slices.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <levels/level_set.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
 
 namespace nestgrid::engine {
 
-/// The first component of the field that an isosurface of component 0 carries along.
-inline constexpr std::size_t isosurface_attributes = 1;
+/// The levels that one walk draws. The hierarchy and the functions are borrowed.
+template <class Real>
+struct Levels {
+    const Hierarchy<Real>* hierarchy;
+    std::vector<Level<Real>> levels;
+    /// The first of the components that vertices carry: behind that of an isosurface.
+    std::size_t first_attribute = 1;
+    const PositionFunctions* functions = nullptr;  ///< the first components, or null
+};
 
-/// Draws each level into its builder, and sets all of its result but the surface.
-/// \param bounds on the offsets of the components that the levels use
-/// \param criterion has passed require_saturated()
+/// The isosurfaces of component 0.
+/// \throw InvalidInput where an isovalue is not a number
+template <class Real>
+Levels<Real> isosurface_levels(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues);
+
+/// Draws each level into its target, or into its result where there are no targets.
+/// \param bounds of the data
+/// \throw InvalidInput where the targets, the options or the criterion do not suit
+/// \throw GridError where the grid has changed since the bounds were computed
 template <int dimension, class Real>
-void draw_levels(const Hierarchy<Real>& hierarchy, std::span<const Level<Real>> levels,
-                 std::size_t first_attribute, std::span<const SurfaceBuilder<dimension>> builders,
-                 const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
-                 const Executor& executor, std::vector<Isosurface<dimension>>& results);
+std::vector<Isosurface<dimension>> draw_levels(
+    const Levels<Real>& levels, const nestgrid::detail::SurfaceTargets<dimension>& targets,
+    const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
+    const Executor& executor);
 
 /// Runs a drawing. \return whether options.progress cancelled it
 template <class Drawing>
@@ -33,22 +47,39 @@ bool run_until_cancelled(Drawing& drawing, const Executor& executor) {
     }
 }
 
-/// \throw InvalidInput where an isovalue is not a number
+/// \throw InvalidInput where vertices at nodes are asked for together with what excludes them
+template <int dimension>
+void require_options(const IsosurfaceOptions& options);
+
 /// \throw GridError where the grid has changed since the bounds were computed
 template <class Real>
-void require_drawable(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
-                      const Bounds& bounds);
+void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds);
 
 /// \throw InvalidInput where a criterion is not saturated on the grid of the bounds, and does not
 ///        insist
 void require_saturated(const Criterion& criterion, const Bounds& bounds);
 
-/// The number of triangles (segments) under a criterion, or nothing where it exceeds `most`.
+/// The number of triangles (segments) of the first level under a criterion, or nothing where it
+/// exceeds `most`.
 /// \param options only cap and progress have an effect
 template <int dimension, class Real>
-std::optional<std::uint64_t> count_simplices(const Hierarchy<Real>& hierarchy, double isovalue,
-                                             const Criterion& criterion, const Bounds& bounds,
-                                             std::uint64_t most, const IsosurfaceOptions& options,
+std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const Criterion& criterion,
+                                             const Bounds& bounds, std::uint64_t most,
+                                             const IsosurfaceOptions& options,
                                              const Executor& executor);
+
+/// The least threshold at which the first level keeps within a number of triangles.
+/// \throw InvalidInput where even the coarsest surface has more
+template <int dimension, class Real>
+TriangleBudget find_threshold(const Levels<Real>& levels,
+                              const nestgrid::detail::MakeCriterion& criterion_at,
+                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                              const IsosurfaceOptions& options, const Executor& executor);
+
+/// S from options.threshold or options.max_triangles.
+/// \throw InvalidInput as find_threshold(), and where the threshold is negative or not a number
+template <int dimension, class Real>
+Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator& indicator,
+                        const IsosurfaceOptions& options, const Executor& executor);
 
 }  // namespace nestgrid::engine

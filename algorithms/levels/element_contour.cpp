@@ -224,7 +224,16 @@ auto ElementContour<dimension, Real>::vertex(std::uint8_t edge) -> Number {
         reference = t.reference[a] + fraction * (t.reference[b] - t.reference[a]);
     }
     const Number v = surface_->vertex_between(cuts_->name(edge), [&] { return cuts_->cut(edge); });
+    if (options_->at_nodes) put_at_node(v, cuts_->corner_at_level(edge));
     return on_edge_[edge] = number_of(v, reference);
+}
+
+/// \param corner or no_corner, for a vertex that lies at none
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::put_at_node(Number vertex, std::size_t corner) {
+    if (corner == ElementCuts<Real>::no_corner) return;
+    const SurfaceCut node = cuts_->node(corner);
+    surface_->put_at_node(vertex, {node.node[0], node.x}, node.attributes);
 }
 
 template <int dimension, class Real>
@@ -232,6 +241,7 @@ auto ElementContour<dimension, Real>::node_vertex(std::size_t corner) -> Number 
     if (on_corner_[corner] != none) return on_corner_[corner];
     const NodeKey key = cuts_->keys()[corner];
     const Number v = surface_->vertex_between({key, key}, [&] { return cuts_->node(corner); });
+    if (options_->at_nodes && cuts_->u()[corner] == 0) put_at_node(v, corner);
     return on_corner_[corner] = number_of(v, cuts_->view().topology().reference[corner]);
 }
 

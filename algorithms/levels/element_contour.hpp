@@ -84,6 +84,8 @@ private:
     void put_triangle(const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored);
     void put_boundary(const ContourLoop& loop, const Vertices& v, unsigned boundary);
     Point reference_on_face(const Point& x, const FaceTopology& face) const;
+    /// Tells the surface that a vertex lies at a corner.
+    void put_at_node(Number vertex, std::size_t corner);
     /// Whether vertices need their reference coordinates.
     bool wants_reference() const { return options_->reference || cuts_->attribute_count() > 0; }
     Number number_of(Number vertex, const Point& reference);

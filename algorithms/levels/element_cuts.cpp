@@ -27,7 +27,7 @@ SurfaceCut ElementCuts<Real>::cut(std::uint8_t edge) const {
     const std::size_t high = 1 - low;
     SurfaceCut cut;
     cut.node = {key(low), key(high)};
-    cut.fraction = cut_fraction(level_->value, value(low, component), value(high, component));
+    cut.fraction = level_->fraction(value(low, component), value(high, component));
     cut.x = x[low] + cut.fraction * (x[high] - x[low]);
     for (std::size_t i = 0; i < attributes_.size(); ++i) {
         const double from = value(low, first_attribute_ + i);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <contours/cell_contour.hpp>
-#include <contours/cut_fraction.hpp>
 #include <contours/level.hpp>
 #include <nestgrid/detail/geometry.hpp>
 #include <nestgrid/detail/key_table.hpp>
@@ -48,6 +47,16 @@ public:
     std::size_t attribute_count() const { return attributes_.size(); }
     const std::array<NodeKey, max_corners>& keys() const { return key_; }
     const std::array<Point, max_corners>& positions() const { return x_; }
+    /// A component of the field at the corners.
+    /// \param component 0 is the first behind the functions of position
+    std::array<double, max_corners> data(std::size_t component) const {
+        std::array<double, max_corners> values{};
+        const Real* const value = view_->value + walk_->function_count() + component;
+        for (std::size_t i = 0; i < view_->corner_count(); ++i) {
+            values[i] = static_cast<double>(value[i * components_]);
+        }
+        return values;
+    }
     /// The component less the value of the level, at the corners.
     const std::array<double, max_corners>& u() const { return u_; }
 
@@ -70,6 +79,13 @@ public:
     }
     /// Positions of the cuts of some edges.
     void positions_of(std::span<const std::uint8_t> edges, unsigned inside, Point* out) const;
+    /// The end of a cut edge at which the component has the value of the level, or no_corner. Such
+    /// a node may lie inside the maximal edge around that edge.
+    static constexpr std::size_t no_corner = max_corners;
+    std::size_t corner_at_level(std::uint8_t edge) const {
+        const auto& [a, b] = view_->topology().edge[edge];
+        return u_[a] == 0 ? a : u_[b] == 0 ? b : no_corner;
+    }
     /// A corner as a vertex.
     SurfaceCut node(std::size_t corner) const;
     /// Attributes at a point of the reference element. Valid until the next call, cut() or node().
@@ -97,8 +113,8 @@ private:
     }
     NESTGRID_INLINE double fraction_between(std::size_t low, std::size_t high) const {
         const Real* const value = view_->value + level_->component;
-        return cut_fraction(level_->value, static_cast<double>(value[low * components_]),
-                            static_cast<double>(value[high * components_]));
+        return level_->fraction(static_cast<double>(value[low * components_]),
+                                static_cast<double>(value[high * components_]));
     }
     NESTGRID_INLINE Point between(std::size_t low, std::size_t high, double fraction) const {
         return x_[low] + fraction * (x_[high] - x_[low]);

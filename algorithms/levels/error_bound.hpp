@@ -9,9 +9,9 @@
 
 namespace nestgrid::engine {
 
-/// How far U may be from the level on what is drawn in an element: the bound of what S projected
-/// away below it, the offsets of its interpolated corners, and what the flatness of triangles adds
-/// in shapes other than simplices.
+/// How far U may be from the level on what is drawn in an element, or on a slice from the colour of
+/// component 0: the bound of what S projected away below it, the offsets of its interpolated
+/// corners, and what the flatness of triangles adds in shapes other than simplices.
 /// \param below how far U may leave the range of the corners
 template <class Real>
 double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& search, Real below) {
@@ -24,11 +24,11 @@ double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& se
     // An interpolated parent that was made in the same split adds its own error.
     if (view.made_by != nullptr) corner *= view.made_by->steps;
     const Topology& t = view.topology();
-    const double chord = t.corners == t.dimension + 1U
-                             ? 0.0
-                             : 2 * affine_residual(std::span(element.positions()).first(t.corners),
-                                                   std::span(element.u()).first(t.corners));
-    return static_cast<double>(below) + corner + chord;
+    const double bound = static_cast<double>(below) + corner;
+    if (t.corners == t.dimension + 1U) return bound;
+    const auto u = element.data(0);
+    return bound + 2 * affine_residual(std::span(element.positions()).first(t.corners),
+                                       std::span(u).first(t.corners));
 }
 
 }  // namespace nestgrid::engine

@@ -24,6 +24,7 @@ LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::span<const Level<Rea
     : levels_{levels},
       walk_{&walk},
       components_{walk.components()},
+      functions_{walk.function_count()},
       criterion_{&criterion},
       bounds_{&bounds},
       own_bounds_{dynamic_cast<const HierarchicalIndicator*>(&bounds)},
@@ -78,6 +79,46 @@ NESTGRID_INLINE auto LevelSearch<Real>::range_of(const View& view, std::size_t c
     return range;
 }
 
+/// Whether a level of one component may pass through an element.
+/// \param bound how far the data may leave the range of their corner values
+template <class Real>
+NESTGRID_INLINE bool LevelSearch<Real>::looks_at(const View& view, std::size_t component,
+                                                 Real bound, bool caps) const {
+    if (component < functions_) return looks_at_function(view, component, caps);
+    const Range range = range_of(view, component);
+    return of_interest(range.lo, range.hi, bound, component, caps);
+}
+
+template <class Real>
+std::size_t LevelSearch<Real>::corners_at_zero(const View& view, std::size_t component) const {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < view.corner_count(); ++k) {
+        count += view.value[k * components_ + component] == 0 ? 1 : 0;
+    }
+    return count;
+}
+
+/// The same for a function of position. Elements with a face on the boundary that lies in the slice
+/// count: where no element is below the slice, they draw it.
+template <class Real>
+bool LevelSearch<Real>::looks_at_function(const View& view, std::size_t component,
+                                          bool caps) const {
+    Range range = range_of(view, component);
+    if (range.lo == 0 && corners_at_zero(view, component) >= 3 && walk_->boundary(view) != 0) {
+        range.lo = -range.hi;
+    }
+    if (!view.is_leaf() && !walk_->functions()->affine(component)) {
+        std::array<Point, max_corners> x;
+        walk_->corners(view, nullptr, x.data());
+        const auto first = static_cast<double>(view.value[component]);
+        const double variation = walk_->functions()->variation(
+            component, std::span<const Point>(x).first(view.corner_count()));
+        range.lo = std::min(range.lo, static_cast<Real>(first - variation));
+        range.hi = std::max(range.hi, static_cast<Real>(first + variation));
+    }
+    return of_interest(range.lo, range.hi, 0, component, caps);
+}
+
 /// Does not ask a saturated criterion about an element with a corner at which S > 0, because S is 1
 /// at all its new nodes then. Asks nevertheless where a new node lies outside, because no element
 /// may stop at such a node.
@@ -86,12 +127,10 @@ auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
                              CriterionQuestion& question) const -> Sight {
     const Rule* const rule = split.rule;
     if (rule != nullptr && entries_ != nullptr) prefetch(*entries_, *rule, split.keys);
-    const Range first = range_of(view, 0);
     const Real bound = rule == nullptr ? Real(0) : bound_of(*rule, split.keys);
-    bool interest = of_interest(first.lo, first.hi, bound, 0, caps);
+    bool interest = looks_at(view, 0, bound, caps);
     for (std::size_t component = 1; !interest && component <= last_component_; ++component) {
-        const Range range = range_of(view, component);
-        interest = of_interest(range.lo, range.hi, bound, component, caps);
+        interest = looks_at(view, component, bound, caps);
     }
     if (!interest) return {{Visit::skip, 0}, bound};
     if (rule == nullptr) return {{Visit::stop, 0}, bound};
@@ -104,27 +143,34 @@ auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
 }
 
 template <class Real>
-NodeMask LevelSearch<Real>::cut_leaves(const Rule& rule, const Real* values, NodeMask which) const {
+Leaves LevelSearch<Real>::cut_leaves(const Rule& rule, const Real* values, NodeMask which) const {
     const std::size_t nodes = topology(rule.parent).corners + rule.new_nodes.size();
     NodeMask of_interest = 0;
+    NodeMask lie_in = 0;
     for (const Level<Real>& level : levels_) {
         if (nodes > 64) {
             of_interest |= cut_children(rule, values, level);
+            if (is_slice(level)) lie_in = which;
             continue;
         }
         const Real* const value = values + level.component;
         std::uint64_t inside = 0;
+        std::uint64_t at_level = 0;
         for (std::size_t n = 0; n < nodes; ++n) {
             inside |= std::uint64_t{value[n * components_] >= level.least_inside} << n;
+        }
+        for (std::size_t n = 0; is_slice(level) && n < nodes; ++n) {
+            at_level |= std::uint64_t{value[n * components_] == level.least_inside} << n;
         }
         for (NodeMask left = which; left != 0; left &= left - 1) {
             const auto c = static_cast<std::size_t>(std::countr_zero(left));
             const std::uint64_t all = rule.children[c].nodes;
             const bool cut = (all & inside) != 0 && (all & ~inside) != 0;
             of_interest |= cut ? left & ~(left - 1) : NodeMask{0};
+            lie_in |= std::popcount(all & at_level) >= 3 ? left & ~(left - 1) : NodeMask{0};
         }
     }
-    return of_interest & which;
+    return {of_interest & which, lie_in & which & ~of_interest};
 }
 
 /// The children with corners on both sides of a level, found corner by corner: for rules with more

@@ -21,7 +21,8 @@ class LevelSearch {
 public:
     using View = ElementView<Real>;
 
-    /// A decision about an element, and how far U may leave the range of its corner values in it.
+    /// A decision about an element, and how far the data may leave the range of their corner values
+    /// in it.
     struct Sight {
         Decision decision;
         Real bound;
@@ -31,6 +32,8 @@ public:
                 const Criterion& criterion, const Bounds& bounds);
 
     std::span<const Level<Real>> levels() const { return levels_; }
+    /// Whether a level is that of a function of position.
+    bool is_slice(const Level<Real>& level) const { return level.component < functions_; }
     const Bounds& bounds() const { return *bounds_; }
     /// Whether elements may stop without conforming to their neighbours.
     bool may_stop_apart() const;
@@ -42,10 +45,11 @@ public:
     /// Decides about an element and its split.
     /// \param caps whether the element is of interest also where it is wholly inside
     Sight look(const View& view, const Split& split, bool caps, CriterionQuestion& question) const;
-    /// The leaves with corners on both sides of a level, one bit each.
+    /// The leaves to be extracted: those with corners on both sides of a level. To be inspected:
+    /// those with a face that may lie in a slice.
     /// \param values of the father's split, corners first
     /// \param which the children that are leaves, one bit each
-    NodeMask cut_leaves(const Rule& rule, const Real* values, NodeMask which) const;
+    Leaves cut_leaves(const Rule& rule, const Real* values, NodeMask which) const;
     /// The corners of an element that are inside a level, one bit each.
     NESTGRID_INLINE unsigned inside(const Real* value, std::size_t corners,
                                     const Level<Real>& level) const;
@@ -81,6 +85,9 @@ private:
     };
 
     Range range_of(const View& view, std::size_t component) const;
+    bool looks_at(const View& view, std::size_t component, Real bound, bool caps) const;
+    std::size_t corners_at_zero(const View& view, std::size_t component) const;
+    bool looks_at_function(const View& view, std::size_t component, bool caps) const;
     bool of_interest(Real lo, Real hi, Real bound, std::size_t component, bool also_below) const;
     Real bound_of(const Rule& rule, std::span<const NodeKey> nodes) const;
     NodeMask holds(const NewNodes& nodes) const;
@@ -89,6 +96,7 @@ private:
     std::span<const Level<Real>> levels_;
     const Walk<Real>* walk_;
     std::size_t components_;
+    std::size_t functions_;  // the first components are functions of position
     const Criterion* criterion_;
     const Bounds* bounds_;
     const HierarchicalIndicator* own_bounds_;   // bounds_ where it has this type, else null

@@ -61,8 +61,8 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     at_hand_.plainly = draws_plainly();
     bisects_ = at_hand_.plainly && search.fits_patches() && !records && !surfaces_.empty() &&
                walk_->hierarchy().facts().knows_patches;
-    at_hand_.loads_keys =
-        options_->normals || options_->cap || (!surfaces_.empty() && surfaces_[0].names_vertices());
+    at_hand_.loads_keys = options_->normals || options_->cap || options_->at_nodes ||
+                          (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
 
 /// Makes a task do as `leader` does: takes over its pass and its limit, and adopts what all its
@@ -89,7 +89,7 @@ void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::draws_plainly() const {
     return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->normals &&
-           !options_->reference;
+           !options_->reference && !options_->at_nodes;
 }
 
 template <int dimension, class Real>
@@ -107,6 +107,7 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
         fill_gaps(i);
         surfaces_[i].builder().flush();
         surfaces_[i].set_normals();
+        if (options_->at_nodes && !surfaces_[i].counts_only()) surfaces_[i].merge_at_nodes();
     }
 }
 
@@ -166,12 +167,12 @@ Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values, N
     const bool records_only = walks_.is_recording() && !walks_.draws_finest();
     if (records_only && !tally_.limited() && !closed) return {};
     if (options_->cap) return {0, which};
-    const NodeMask cut = search_->cut_leaves(rule, values, which);
+    const Leaves leaves = search_->cut_leaves(rule, values, which);
     const std::uint64_t before = counts_.calls;
-    add(static_cast<std::uint64_t>(std::popcount(which)),
-        static_cast<std::uint64_t>(std::popcount(cut)));
+    add(static_cast<std::uint64_t>(std::popcount(which & ~leaves.inspect)),
+        static_cast<std::uint64_t>(std::popcount(leaves.extract)));
     if ((before >> 16U) != (counts_.calls >> 16U)) report_progress(0, 0);
-    return {cut, 0};
+    return leaves;
 }
 
 /// Reports the sum of the counts so far and these.
@@ -207,15 +208,36 @@ void LevelSet<dimension, Real>::extract(const View& view) {
     const unsigned boundary = options_->cap ? walk_->boundary(view) : 0U;
     at_hand_.loaded = false;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        const unsigned inside = search_->inside(view.value, corners, search_->levels()[i]);
+        const Level<Real>& level = search_->levels()[i];
+        const unsigned inside = search_->inside(view.value, corners, level);
         const bool whole = inside == all_corners(corners);
-        if (inside == 0 || (whole && boundary == 0)) continue;
+        const bool lies_in = whole && !options_->cap && search_->is_slice(level);
+        const unsigned faces = lies_in ? boundary_in_slice(view, level) : boundary;
+        if (inside == 0 || (whole && faces == 0)) continue;
         if (shown && !draws) {
             if (!whole) tally_.add_later(1);
             walks_.leave_for_later(view);
         }
-        if (draws || view.closed.any) extract(i, view, inside, boundary, draws);
+        if (draws || view.closed.any) extract(i, view, inside, faces, draws);
     }
+}
+
+/// The faces on the boundary of the domain that lie in a slice, one bit each, in an element that is
+/// wholly inside. No element beyond them draws the slice there.
+template <int dimension, class Real>
+unsigned LevelSet<dimension, Real>::boundary_in_slice(const View& view,
+                                                      const Level<Real>& level) const {
+    unsigned above = 0;
+    for (std::size_t k = 0; k < view.corner_count(); ++k) {
+        const Real value = view.value[k * walk_->components() + level.component];
+        above |= unsigned{value > level.least_inside} << k;
+    }
+    const Topology& t = view.topology();
+    unsigned faces = 0;
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        faces |= unsigned{signs_of(t.face[f], above) == 0} << f;
+    }
+    return faces == 0 ? 0 : faces & walk_->boundary(view);
 }
 
 /// Records and draws one level in an element.
@@ -250,7 +272,7 @@ void LevelSet<dimension, Real>::record(std::size_t level, unsigned inside, unsig
         const unsigned cut_faces = at_hand_.contour.table(view.shape).cut_faces(inside);
         record_transitions(at_hand_.cuts, cut_faces, inside, record);
     }
-    if (boundary != 0) at_hand_.cap.record(inside, record);
+    if (boundary != 0) at_hand_.cap.record(inside, boundary, record);
 }
 
 template <int dimension, class Real>
@@ -274,7 +296,7 @@ void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigne
         return end_element(surface);
     }
     if (inside != all_corners(view.corner_count())) contour.draw(inside, joins);
-    if (boundary != 0) at_hand_.cap.draw(inside, below);
+    if (boundary != 0) at_hand_.cap.draw(inside, boundary, below);
     if (contour.begun()) end_element(surface);
     if (surface.counts_only()) surface.forget_element();
 }

@@ -75,6 +75,7 @@ private:
     void end_element(LevelSurface<dimension>& surface);
     void fill_gaps(std::size_t level);
     void load(const View& view, bool draws);
+    unsigned boundary_in_slice(const View& view, const Level<Real>& level) const;
     bool draws_plainly() const;
     void report_progress(std::uint64_t calls, std::uint64_t visited) const;
     void tick(std::uint64_t calls, std::uint64_t visited) override {

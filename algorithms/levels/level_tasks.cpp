@@ -82,7 +82,7 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
             leader.transitions_[i].record.append(drawn.transitions_[i].record);
         }
         if (surface.counts_only()) continue;
-        surface.add_part(task.parts[i]);
+        surface.add_part(task.parts[i], drawn.surfaces_[i].at_nodes());
         surface.builder().flush_if_full();
     }
     leader.report_progress(0, 0);

@@ -23,11 +23,11 @@ public:
     const Isosurface<dimension>& draw(const HierarchicalIndicator& indicator, double isovalue,
                                       const IsosurfaceOptions& options,
                                       const Executor& executor) override {
-        const std::span<const double> isovalues(&isovalue, 1);
-        engine::require_drawable(*hierarchy_, isovalues, indicator);
-        criterion_ = criterion_for<dimension>(*hierarchy_, isovalue, indicator, options, executor);
-        level_ = engine::Level<Real>(isovalue);
-        search_.emplace(walk_, std::span(&level_, 1), criterion_, indicator);
+        engine::require_same_epoch(*hierarchy_, indicator);
+        engine::require_options<dimension>(options);
+        levels_ = engine::isosurface_levels(*hierarchy_, std::span<const double>(&isovalue, 1));
+        criterion_ = engine::criterion_for<dimension>(levels_, indicator, options, executor);
+        search_.emplace(walk_, levels_.levels, criterion_, indicator);
         options_ = options;
         result_.surface.clear();
         const typename Drawing::Builder builder(result_.surface, options.elements);
@@ -36,7 +36,7 @@ public:
             drawing_->begin(*search_, builders);
         } else {
             drawing_ = std::make_unique<Drawing>(walk_, *search_, builders, options_,
-                                                 engine::isosurface_attributes);
+                                                 levels_.first_attribute);
         }
         result_.cancelled = engine::run_until_cancelled(*drawing_, executor);
         drawing_->report(0, result_);
@@ -48,7 +48,7 @@ private:
     Threshold criterion_;
     IsosurfaceOptions options_;
     engine::Walk<Real> walk_;
-    engine::Level<Real> level_{0};
+    engine::Levels<Real> levels_{};
     std::optional<engine::LevelSearch<Real>> search_;
     std::unique_ptr<Drawing> drawing_;
     Isosurface<dimension> result_;

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <string>
 
+#include <surfaces/merge_at_nodes.hpp>
+
 namespace nestgrid::engine {
 
 template <int dimension>
@@ -18,6 +20,8 @@ void LevelSurface<dimension>::begin(Builder builder, NodeGradients* gradients, b
     within_.begin_again(0);
     where_.clear();
     areas_.clear();
+    at_nodes_.clear();
+    is_at_node_.clear();
     sums_areas_ = gradients != nullptr && builder_.target() == nullptr;
     extracted_ = 0;
     error_bound_ = 0;
@@ -59,7 +63,8 @@ void LevelSurface<dimension>::verify(Number number, const Point& x) const {
 }
 
 template <int dimension>
-void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part) {
+void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
+                                       const VerticesAtNodes& at_nodes) {
     const Surface<dimension>& surface = part.surface;
     if (!builder_.shares_vertices()) return builder_.hand_over(surface);
     constexpr std::size_t ahead = 16;
@@ -92,6 +97,10 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part) {
     for (auto ridge : surface.boundary) {
         for (Number& v : ridge) v = number[v];
         builder_.add_boundary(ridge);
+    }
+    for (std::size_t i = 0; i < at_nodes.vertex.size(); ++i) {
+        put_at_node(number[at_nodes.vertex[i]], at_nodes.node[i],
+                    std::span(at_nodes.attributes).subspan(i * stride, stride));
     }
     builder_.add_part(surface, number);
     if (!sums_areas_) return;
@@ -155,6 +164,13 @@ void LevelSurface<dimension>::set_normals() {
         if (length > 0) n = (1 / length) * n;
     }
     builder_.set_normals(std::move(normals));
+}
+
+template <>
+void LevelSurface<2>::merge_at_nodes() {}
+template <>
+void LevelSurface<3>::merge_at_nodes() {
+    builder_.change([&](Surface<3>& surface) { engine::merge_at_nodes(surface, at_nodes_); });
 }
 
 template class LevelSurface<2>;

@@ -83,7 +83,22 @@ public:
     }
     /// Appends a part. Numbers its vertices in their order; those that earlier parts have keep
     /// their numbers.
-    void add_part(const SurfacePart<dimension>& part);
+    void add_part(const SurfacePart<dimension>& part, const VerticesAtNodes& at_nodes);
+
+    /// Notes that a vertex lies at a node, unless this is known.
+    void put_at_node(Number vertex, const NodePlace& node, std::span<const double> attributes) {
+        if (is_at_node_.size() <= vertex) is_at_node_.resize(vertex + std::size_t{1}, false);
+        if (is_at_node_[vertex]) return;
+        is_at_node_[vertex] = true;
+        at_nodes_.vertex.push_back(vertex);
+        at_nodes_.node.push_back(node);
+        at_nodes_.attributes.insert(at_nodes_.attributes.end(), attributes.begin(),
+                                    attributes.end());
+    }
+    const VerticesAtNodes& at_nodes() const { return at_nodes_; }
+    /// Merges the vertices at each node (merge_at_nodes.hpp). Requires that everything is drawn,
+    /// normals included, into a surface of triangles.
+    void merge_at_nodes();
 
     /// Counts elements that contribute to the surface.
     void add_extracted(std::uint64_t more) { extracted_ += more; }
@@ -96,7 +111,7 @@ public:
     void set_normals();
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
-               areas_.capacity() * sizeof(Point);
+               areas_.capacity() * sizeof(Point) + at_nodes_.node.capacity() * sizeof(NodePlace);
     }
 
 private:
@@ -118,7 +133,9 @@ private:
     VertexNumbers numbers_;
     SubtreeVertices within_;  // vertices in subtrees of bisections
     NodeGradients* gradients_ = nullptr;
-    std::deque<Where> where_;   // by vertex, where normals are wanted
+    std::deque<Where> where_;  // by vertex, where normals are wanted
+    VerticesAtNodes at_nodes_;
+    std::vector<bool> is_at_node_;  // by vertex: whether it is among at_nodes_
     std::vector<Point> areas_;  // area vectors around each vertex, where a sink takes the simplices
     std::uint64_t extracted_ = 0;
     double error_bound_ = 0;

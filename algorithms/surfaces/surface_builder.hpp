@@ -31,6 +31,25 @@ struct SharedVertex {
     double fraction;              ///< of the way from the first node to the second
 };
 
+/// The node at which a vertex lies.
+struct NodePlace {
+    NodeKey key;
+    Point x;
+};
+
+/// Vertices that lie at nodes where the level passes through them, each listed once.
+struct VerticesAtNodes {
+    std::vector<std::uint32_t> vertex;
+    std::vector<NodePlace> node;     ///< of each
+    std::vector<double> attributes;  ///< at each node, one after the other
+
+    void clear() {
+        vertex.clear();
+        node.clear();
+        attributes.clear();
+    }
+};
+
 /// An element that contributes to a surface.
 struct ExtractedElement {
     Handle element;
@@ -96,6 +115,11 @@ public:
     /// The surface that is filled, or null where a sink takes it in chunks.
     const Target* target() const {
         return mesh_ == nullptr && soup_ == nullptr ? surface_ : nullptr;
+    }
+    /// Calls function(surface) to change the surface that is filled. Requires target() != nullptr.
+    template <class Function>
+    void change(Function&& function) {
+        function(*surface_);
     }
     /// Whether elements share vertices.
     bool shares_vertices() const { return shares_vertices_; }

@@ -44,13 +44,10 @@ bool is_among(std::size_t node, NodeMask nodes, std::size_t corners) {
 
 template <class Real>
 FixedNodes<Real>::FixedNodes(const Hierarchy<Real>& hierarchy, const CrossingNodes& crossing,
-                             bool with_values)
-    : crossing_{&crossing}, components_{static_cast<std::size_t>(hierarchy.facts().components)} {
-    if (hierarchy.facts().affine_components != 0) {
-        throw InvalidInput(
-            "components that are affine functions of position are not supported where divisions of "
-            "a face cross");
-    }
+                             bool with_values, const PositionFunctions* functions)
+    : crossing_{&crossing},
+      components_{static_cast<std::size_t>(hierarchy.facts().components)},
+      function_count_{functions == nullptr ? 0 : functions->count()} {
     const std::vector<FixedNode>& nodes = crossing.nodes();
     const std::unique_ptr<Task> task = hierarchy.open();
     std::vector<Real> values((max_corners + max_new_nodes) * components_);
@@ -63,6 +60,7 @@ FixedNodes<Real>::FixedNodes(const Hierarchy<Real>& hierarchy, const CrossingNod
         Real* const to = value_.data() + i * components_;
         if (!node.hangs) {
             ask_field(hierarchy, crossing, node, task.get(), values, to);
+            if (functions != nullptr) functions->put(node.position, to);
             continue;
         }
         for (std::size_t p = 0; p < node.stencil.count; ++p) {
@@ -71,6 +69,8 @@ FixedNodes<Real>::FixedNodes(const Hierarchy<Real>& hierarchy, const CrossingNod
         }
         for (std::size_t c = 0; c < components_; ++c) {
             to[c] = detail::interpolate(node.stencil, values.data() + c, components_);
+            if (c >= function_count_) continue;
+            to[c] = static_cast<Real>(functions->rounded(c, static_cast<double>(to[c])));
         }
     }
     nodes_.key = key_.data();
@@ -95,6 +95,12 @@ void FixedNodes<Real>::put_values(const Split& split, Real* value) const {
         const std::size_t number = *crossing_->find(split.keys[n]);
         std::copy_n(value_.data() + number * components_, components_, value + n * components_);
     }
+}
+
+template <class Real>
+void FixedNodes<Real>::put_functions(NodeKey key, Real* out) const {
+    const std::size_t number = *crossing_->find(key);
+    std::copy_n(value_.data() + number * components_, function_count_, out);
 }
 
 template <class Real>

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <walk/closed_parts.hpp>
+#include <walk/position_functions.hpp>
 #include <walk/visitor.hpp>
 
 namespace nestgrid::engine {
@@ -76,9 +77,10 @@ template <class Real>
 class FixedNodes {
 public:
     /// \param with_values whether the walk has values; asks the field for them
+    /// \param functions that the first components are, or null
     /// \throw GridError where the field has no value at a fixed node that does not hang
-    /// \throw InvalidInput where some components are affine functions of position
-    FixedNodes(const Hierarchy<Real>& hierarchy, const CrossingNodes& crossing, bool with_values);
+    FixedNodes(const Hierarchy<Real>& hierarchy, const CrossingNodes& crossing, bool with_values,
+               const PositionFunctions* functions);
     FixedNodes(const FixedNodes&) = delete;
     FixedNodes& operator=(const FixedNodes&) = delete;
     ~FixedNodes() = default;
@@ -89,6 +91,8 @@ public:
     /// Puts the values of crossing nodes behind those of the corners.
     /// \param value of the first new node
     void put_values(const Split& split, Real* value) const;
+    /// Puts the functions of position at one fixed node.
+    void put_functions(NodeKey key, Real* out) const;
     /// Puts the positions of fixed nodes where those of the new nodes are.
     /// \return these nodes, one bit each
     NodeMask put_positions(std::span<const NodeKey> keys, Point* x) const;
@@ -108,6 +112,7 @@ private:
 
     const CrossingNodes* crossing_;
     std::size_t components_;
+    std::size_t function_count_;
     // By number of the fixed node.
     std::vector<Real> value_;
     std::vector<NodeKey> key_;

@@ -40,12 +40,13 @@ template <class Real>
 }  // namespace
 
 template <class Real>
-Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const HangingNodes* hanging)
+Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const HangingNodes* hanging,
+                 const PositionFunctions* functions)
     : hierarchy_{&hierarchy},
       hanging_{hanging},
       needs_{needs},
       components_{static_cast<std::size_t>(hierarchy.facts().components)},
-      affine_{static_cast<std::size_t>(hierarchy.facts().affine_components)},
+      functions_{functions},
       boundary_faces_{hierarchy.offers(Feature::boundary_faces)},
       own_keys_{hierarchy.offers(Feature::own_keys)},
       own_positions_{hierarchy.offers(Feature::own_positions)},
@@ -55,7 +56,8 @@ Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const Han
       carries_positions_{needs.positions && !own_positions_} {
     if (!boundary_faces_) boundary_ = coarse_boundary(hierarchy);
     if (hanging != nullptr && hanging->crossing() != nullptr) {
-        fixed_ = std::make_unique<FixedNodes<Real>>(hierarchy, *hanging->crossing(), needs.values);
+        fixed_ = std::make_unique<FixedNodes<Real>>(hierarchy, *hanging->crossing(), needs.values,
+                                                    functions);
     }
 }
 
@@ -114,6 +116,9 @@ bool Walk<Real>::make_coarse(std::size_t i, Stack& stack, View& view) const {
         Real* const value = with_room(stack.value, corners * components_);
         const NodeMask missing = hierarchy_->coarse_values(stack.task.get(), i, corners, value);
         if (missing != 0) throw_missing(missing, i);
+        for (std::size_t k = 0; functions_ != nullptr && k < corners; ++k) {
+            functions_->put(coarse.corners[k], value + k * components_);
+        }
     }
     if (carries_keys_) {
         for (std::size_t k = 0; k < corners; ++k) stack.key[k] = coarse_key(coarse.ids[k]);
@@ -197,6 +202,8 @@ void Walk<Real>::descend(const View& view, const Split& split, const Decision& d
     const NodeMask mean = (interpolated | split.constrained) & rule.all();
     const NodeMask wanted = visitor.children(view);
     project(view, split, mean, wanted, frame);
+    if (carries_positions_) project_positions(view, split, mean, frame);
+    if (functions_ != nullptr) put_functions(view, split, mean, frame);
     if (!decision.weights.empty()) {
         blend(rule, mean, decision.weights, frame.value.data());
         for (std::size_t n = 0; n < decision.weights.size(); ++n) {
@@ -204,7 +211,6 @@ void Walk<Real>::descend(const View& view, const Split& split, const Decision& d
         }
     }
     if (!rule.new_nodes.empty()) visitor.entered(view, split, frame.value.data());
-    if (carries_positions_) project_positions(view, split, mean, frame);
     const ClosingSplit<Real>* closing = nullptr;
     if (needs_.closed &&
         (view.closed.any || (mean | split.crossing) != 0 || rule.divides_bare_faces)) {
@@ -233,8 +239,7 @@ void Walk<Real>::blend(const Rule& rule, NodeMask mean, std::span<const float> w
     }
 }
 
-/// Enters the element, and puts P_S U at its corners and new nodes into the frame, eq. (2). Affine
-/// components are interpolated at every new node, whatever S says.
+/// Enters the element, and puts P_S U at its corners and new nodes into the frame, eq. (2).
 template <class Real>
 void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
                          Frame<Real>& frame) const {
@@ -249,12 +254,46 @@ void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, No
     if (!needs_.values) return;
     std::copy_n(view.value, corners * stride, value);
     if (split.crossing != 0) fixed_->put_values(split, value + corners * stride);
-    for (NodeMask left = affine_ != 0 ? rule.all() : mean; left != 0; left &= left - 1) {
+    for (NodeMask left = mean; left != 0; left &= left - 1) {
         const auto n = static_cast<std::size_t>(std::countr_zero(left));
-        const std::size_t count = (mean >> n & 1U) != 0 ? stride : affine_;
-        for (std::size_t c = 0; c < count; ++c) {
+        for (std::size_t c = 0; c < stride; ++c) {
             value[(corners + n) * stride + c] =
                 detail::interpolate(rule.new_nodes[n], value + c, stride);
+        }
+    }
+}
+
+/// Puts the functions of position at the new nodes into the frame, in the order of the rule: an
+/// earlier node may be a parent of a later one. Requires the positions of the nodes there, where
+/// the walk carries them.
+template <class Real>
+void Walk<Real>::put_functions(const View& view, const Split& split, NodeMask mean,
+                               Frame<Real>& frame) const {
+    const Rule& rule = *split.rule;
+    const std::size_t corners = view.corner_count();
+    const NodeMask fixed = fixed_ == nullptr ? 0 : fixed_->mask(split.keys);
+    const NodeMask interpolated = functions_->affine() ? rule.all() : mean;
+    std::array<Point, max_new_nodes> own;
+    std::span<const Point> x(own);
+    if (carries_positions_) {
+        x = std::span(frame.position).subspan(corners);
+    } else if ((interpolated | fixed) != rule.all()) {
+        new_positions(view, rule, std::span(own).first(rule.new_nodes.size()));
+    }
+    Real* const value = frame.value.data();
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        Real* const at = value + (corners + n) * components_;
+        if ((fixed >> n & 1U) != 0) {
+            fixed_->put_functions(split.keys[n], at);
+            continue;
+        }
+        for (std::size_t c = 0; c < functions_->count(); ++c) {
+            if ((mean >> n & 1U) != 0 || functions_->affine(c)) {
+                const Real between = detail::interpolate(rule.new_nodes[n], value + c, components_);
+                at[c] = static_cast<Real>(functions_->rounded(c, static_cast<double>(between)));
+            } else {
+                at[c] = functions_->template at<Real>(c, x[n]);
+            }
         }
     }
 }

@@ -20,6 +20,7 @@
 
 #include <nestgrid/detail/hanging.hpp>
 #include <walk/crossed_parts.hpp>
+#include <walk/position_functions.hpp>
 #include <walk/visitor.hpp>
 
 namespace nestgrid::engine {
@@ -75,12 +76,18 @@ public:
     using View = ElementView<Real>;
 
     /// \param hanging nodes that hang, where the grid does not say so itself; may be null
+    /// \param functions that the walk sets the first components to, where the hierarchy leaves
+    ///        them undefined (WidenedHierarchy); or null. The walk must carry values and positions.
     /// \throw GridError where a coarse element has a shape of another dimension than the grid
     Walk(const Hierarchy<Real>& hierarchy, const Needs& needs,
-         const HangingNodes* hanging = nullptr);
+         const HangingNodes* hanging = nullptr, const PositionFunctions* functions = nullptr);
 
     const Hierarchy<Real>& hierarchy() const { return *hierarchy_; }
     std::size_t components() const { return components_; }
+    /// The functions of position that are the first components, or null.
+    const PositionFunctions* functions() const { return functions_; }
+    /// The number of these components.
+    std::size_t function_count() const { return functions_ == nullptr ? 0 : functions_->count(); }
 
     void run(Visitor<Real>& visitor) const { run(visitor, 0, hierarchy_->coarse_count()); }
     /// Visits the coarse elements first ... last - 1 and all below them, in order.
@@ -114,6 +121,8 @@ private:
                  Frame<Real>& frame) const;
     void project_positions(const View& view, const Split& split, NodeMask mean,
                            Frame<Real>& frame) const;
+    void put_functions(const View& view, const Split& split, NodeMask mean,
+                       Frame<Real>& frame) const;
     const ClosingSplit<Real>* close(const View& view, const Split& split, NodeMask mean,
                                     Frame<Real>& frame) const;
     void mark_crossing(const View& view, Split& split) const;
@@ -135,7 +144,7 @@ private:
     const HangingNodes* hanging_;
     Needs needs_;
     std::size_t components_;
-    std::size_t affine_;                  // how many of them are affine functions of position
+    const PositionFunctions* functions_;
     std::vector<std::uint8_t> boundary_;  // of each coarse element, where the grid does not say
     bool boundary_faces_;
     bool own_keys_;

@@ -80,7 +80,6 @@ struct Coarse {
 struct HierarchyFacts {
     int dimension = 0;
     int components = 1;                 ///< of the field
-    int affine_components = 0;          ///< the first ones, given at coarse corners only
     unsigned features = 0;              ///< the optional operations it has, by Feature
     std::size_t node_count = 0;         ///< number of dense keys; 0 where keys are not dense
     bool conforming = false;            ///< no node hangs

@@ -1,84 +1,225 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A level set of a function of position, coarsened where the data allow it: closed, planar, and
-// coloured by the data, on every family.
+// Slices: closed, planar, each point once, coloured by the data, on every family, in general and in
+// degenerate positions.
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 
 #include "closedness.hpp"
+#include "cut_cube.hpp"
 #include "families.hpp"
-#include "plane_level.hpp"
+#include "refusal.hpp"
+#include "same_surface.hpp"
 #include "sample_fields.hpp"
+#include "thread_executor.hpp"
 
 using namespace nestgrid_test;
 
 namespace {
 
-struct Plane {
+struct PlaneAt {
+    const char* name;
+    Point through;
     Point normal;
-    double offset;
-    double tolerance;
 };
 
-/// In general position, and through nodes, edges and whole faces: cuts keep away from nodes by
-/// 2^-20 of an edge.
-constexpr double rounding = 1e-13;
-constexpr double from_nodes = 2 * 0x1p-20;
-const std::vector<Plane> planes{{{0.3, 0.5, 0.81}, 0.7713, rounding},
-                                {{0, 0, 1}, 0.37, rounding},
-                                {{1, 0, 0}, 0.5, from_nodes},
-                                {{1, 1, 0}, 1, from_nodes},
-                                {{0, 1, -1}, 0.25, from_nodes}};
+/// In general position, and through nodes, edges and faces, of elements and of the domain.
+const std::vector<PlaneAt> planes{
+    {"oblique", {0.4, 0.5, 0.49}, {0.3, 0.5, 0.81}},
+    {"z = 0.37", {0, 0, 0.37}, {0, 0, 1}},
+    {"x = 1/2", {0.5, 0, 0}, {1, 0, 0}},
+    {"-x = -1/4", {0.25, 0, 0}, {-2, 0, 0}},
+    {"x + y = 1", {0.5, 0.5, 0.5}, {1, 1, 0}},
+    {"y = z + 1/4", {0, 0.25, 0}, {0, 1, -1}},
+    {"x + y + z = 1", {1, 0, 0}, {1, 1, 1}},
+    {"z = 0", {0, 0, 0}, {0, 0, 1}},
+    {"-z = 0", {0, 0, 0}, {0, 0, -1}},
+    {"y = 1", {0, 1, 0}, {0, 1, 0}},
+};
 
 template <class Family>
 class Slices : public testing::Test {};
 TYPED_TEST_SUITE(Slices, Families);
 
-template <class Grid>
-void expect_slices(const Grid& grid, const NodalSamples& samples, double threshold) {
-    const NodeField<Grid, double> field(grid, samples.values);
-    const HierarchicalIndicator indicator(grid, field);
-    for (const auto& [normal, offset, tolerance] : planes) {
-        SCOPED_TRACE(samples.name + " at threshold " + std::to_string(threshold));
-        const Surface<3> surface =
-            slice(grid, field, normal, offset, Threshold(&indicator, threshold), indicator);
-        expect_closed(surface);
-        EXPECT_GT(surface.simplices.size(), 0U);
-        for (const Point& x : surface.vertices) EXPECT_NEAR(dot(normal, x), offset, tolerance);
-    }
+double height_of(const Point& a, const Point& b, const Point& c) {
+    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    return norm(cross(b - a, c - a)) / longest;
 }
 
-TYPED_TEST(Slices, AreClosedAndPlanarAtEveryThreshold) {
+/// Whether both points lie on one side of the unit cube.
+bool on_one_side(const Point& a, const Point& b) {
+    for (std::size_t d = 0; d < 3; ++d) {
+        for (const double side : {0.0, 1.0}) {
+            if (std::abs(a[d] - side) < 1e-12 && std::abs(b[d] - side) < 1e-12) return true;
+        }
+    }
+    return false;
+}
+
+/// Whether each element is an affine image of its reference element, so that its faces are plane.
+template <class Grid>
+bool is_affine(const Grid& grid) {
+    for (std::size_t i = 0; i < grid.coarse_count(); ++i) {
+        const auto coarse = grid.coarse(i);
+        if (coarse.shape != Shape::hexahedron) continue;
+        const auto& x = coarse.corners;
+        for (std::size_t k = 0; k < 8; ++k) {
+            Point sum = x[0];
+            for (std::size_t d = 0; d < 3; ++d) {
+                if ((k >> d & 1U) != 0) sum = sum + (x[std::size_t{1} << d] - x[0]);
+            }
+            if (norm(sum - x[k]) > 1e-12) return false;
+        }
+    }
+    return true;
+}
+
+/// Expects the plane's part in the unit cube, once where faces of elements are plane: on others the
+/// sides of polygons are chords, and polygons may fold.
+void expect_plane(const Surface<3>& surface, const PlaneAt& plane, bool affine) {
+    expect_closed(surface);
+    const Point n = (1 / norm(plane.normal)) * plane.normal;
+    for (const Point& x : surface.vertices) EXPECT_NEAR(dot(n, x - plane.through), 0, 1e-12);
+    for (const auto& [a, b] : surface.boundary) {
+        EXPECT_TRUE(on_one_side(surface.vertices[a], surface.vertices[b]));
+    }
+    double area = 0;
+    for (const auto& [a, b, c] : surface.simplices) {
+        const Point& x = surface.vertices[a];
+        const Point twice = cross(surface.vertices[b] - x, surface.vertices[c] - x);
+        EXPECT_TRUE(!affine || dot(twice, n) < 0) << "a triangle is turned over";
+        EXPECT_GT(height_of(x, surface.vertices[b], surface.vertices[c]), 1e-9 / 64);
+        area += norm(twice) / 2;
+    }
+    EXPECT_NEAR(area, area_in_cube(plane.through, n), affine ? 1e-12 : 0.01);
+}
+
+TYPED_TEST(Slices, TakeEachPointOfThePlaneOnce) {
     if constexpr (TypeParam::Grid::dimension == 3) {
         for_each_field_at_sphere<TypeParam>(2, 7, [](const auto& grid, const auto& samples) {
-            for (const double threshold : {0.0, 0.1, 1.0}) expect_slices(grid, samples, threshold);
+            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
+            const HierarchicalIndicator indicator(grid, field);
+            for (const double threshold : six_thresholds) {
+                const Threshold criterion(&indicator, threshold);
+                for (const PlaneAt& plane : planes) {
+                    SCOPED_TRACE(std::string(plane.name) + " at threshold " +
+                                 std::to_string(threshold));
+                    const Plane at(plane.through, plane.normal);
+                    const Slice slice = nestgrid::slice(grid, field, at, criterion, indicator);
+                    expect_plane(slice.surface, plane, is_affine(grid));
+                }
+            }
         });
     }
 }
 
 /// A linear function has no offsets but rounding: a slice is that of the coarse grid at any
-/// threshold above it, and of the leaves at one below 0. Both have the colours of the function.
+/// threshold above it, and of the leaves without a criterion. Both have the colours of the
+/// function.
 TYPED_TEST(Slices, CarryALinearFunctionExactly) {
     if constexpr (TypeParam::Grid::dimension == 3) {
+        const auto f = [](const Point& x) { return 2 * x[0] - 3 * x[1] + x[2] + 0.125; };
         for (auto& grid : TypeParam::grids()) {
             refine_at_sphere(grid, 2 * TypeParam::steps);
-            const auto f = [](const Point& x) { return 2 * x[0] - 3 * x[1] + x[2] + 0.125; };
             std::vector<double> values;
             for (const Point& x : grid.node_positions()) values.push_back(f(x));
             const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
-            const HierarchicalIndicator indicator(grid, field);
-            for (const double threshold : {-1.0, 1e-9}) {
-                const Threshold criterion(&indicator, threshold);
-                const auto& [normal, offset, tolerance] = planes[0];
-                const auto s = slice(grid, field, normal, offset, criterion, indicator);
-                ASSERT_EQ(s.attributes.size(), s.vertices.size());
-                for (std::size_t v = 0; v < s.vertices.size(); ++v) {
-                    EXPECT_NEAR(s.attributes[v], f(s.vertices[v]), 1e-12);
+            for (const double threshold : {0.0, 1e-9}) {
+                for (const PlaneAt& plane : planes) {
+                    const Plane at(plane.through, plane.normal);
+                    const Slice s = nestgrid::slice(grid, field, at, {.threshold = threshold});
+                    ASSERT_EQ(s.surface.attributes.size(), s.surface.vertices.size());
+                    for (std::size_t v = 0; v < s.surface.vertices.size(); ++v) {
+                        EXPECT_NEAR(s.surface.attributes[v], f(s.surface.vertices[v]), 1e-12);
+                    }
                 }
             }
         }
+    }
+}
+
+TYPED_TEST(Slices, AreClosedOnCurvedFunctions) {
+    if constexpr (TypeParam::Grid::dimension == 3) {
+        const Sphere round({0.5, 0.5, 0.5}, 0.25);
+        const Sphere large({0.4, 0.5, 0.6}, 0.7);
+        const Cylinder upright({0.5, 0.5, 0.5}, {0, 0, 1}, 0.3);
+        for_each_field_at_sphere<TypeParam>(2, 7, [&](const auto& grid, const auto& samples) {
+            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
+            const HierarchicalIndicator indicator(grid, field);
+            for (const double threshold : {0.0, 0.1, 1.0}) {
+                const Threshold criterion(&indicator, threshold);
+                for (const LevelFunction* f : {static_cast<const LevelFunction*>(&round),
+                                               static_cast<const LevelFunction*>(&large),
+                                               static_cast<const LevelFunction*>(&upright)}) {
+                    expect_closed(nestgrid::slice(grid, field, *f, criterion, indicator).surface);
+                }
+            }
+        });
+    }
+}
+
+void expect_same_triangles(const Slice& a, const Slice& b) {
+    expect_same_bits(a.surface.vertices, b.surface.vertices, "vertices");
+    expect_same_bits(a.surface.attributes, b.surface.attributes, "attributes");
+    expect_same_bits(a.surface.simplices, b.surface.simplices, "simplices");
+}
+
+/// One walk draws what several do, and threads change no bit.
+TYPED_TEST(Slices, AreTheSameTogetherAndByThreads) {
+    if constexpr (TypeParam::Grid::dimension == 3) {
+        const Plane first(planes[2].through, planes[2].normal);
+        const Sphere second({0.5, 0.5, 0.5}, 0.4);
+        for (auto& grid : TypeParam::grids()) {
+            refine_at_sphere(grid, 2 * TypeParam::steps);
+            const auto samples = catching_fields(grid.node_positions(), 3)[1];
+            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
+            const HierarchicalIndicator indicator(grid, field);
+            const Threshold criterion(&indicator, 0.1);
+            const auto together =
+                slices(grid, field, {{&first, &second}, {0.0}}, criterion, indicator);
+            const auto threaded = slices(grid, field, {{&first, &second}, {0.0}}, criterion,
+                                         indicator, {}, ThreadExecutor(3));
+            ASSERT_EQ(together.size(), 3U);
+            for (std::size_t i = 0; i < 3; ++i) expect_same(together[i], threaded[i]);
+            expect_same_triangles(together[0], slice(grid, field, first, criterion, indicator));
+            expect_same_triangles(together[1], slice(grid, field, second, criterion, indicator));
+        }
+    }
+}
+
+/// Planes through faces of cells of an octree take two triangles from each.
+TEST(SlicesOfBoxes, TakeTwoTrianglesOfEachFace) {
+    for (auto& grid : BalancedOctree::grids()) {
+        if (!is_affine(grid)) continue;
+        const std::size_t coarse = grid.coarse_count();
+        const auto cells = static_cast<std::size_t>(std::llround(std::cbrt(coarse)));
+        const std::vector<double> values(grid.node_count(), 1.0);
+        const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
+        for (std::size_t k = 0; k <= cells; ++k) {
+            const double z = static_cast<double>(k) / static_cast<double>(cells);
+            const Slice s = slice(grid, field, Plane({0, 0, z}, {0, 0, 1}));
+            EXPECT_EQ(s.surface.simplices.size(), 2 * cells * cells);
+            EXPECT_EQ(s.surface.vertices.size(), (cells + 1) * (cells + 1));
+        }
+    }
+}
+
+TEST(SlicesOfBoxes, RefuseWrongInput) {
+    expect_refused([] { Plane({0, 0, 0}, {0, 0, 0}); }, "the normal of the plane is 0");
+    expect_refused([] { Plane({0, NAN, 0}, {0, 0, 1}); }, "the point on the plane has a coord");
+    expect_refused([] { Sphere({0, 0, 0}, -1); }, "the radius of the sphere is not a positive");
+    expect_refused([] { Cylinder({0, 0, 0}, {0, 0, 0}, 1); }, "the axis of the cylinder is 0");
+    for (auto& grid : BalancedQuadtree::grids()) {
+        const std::vector<double> values(grid.node_count(), 1.0);
+        const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
+        expect_refused(
+            [&] {
+                slice(grid, field, Plane({0, 0, 0}, {0, 0, 1}));
+            },
+            "the hierarchy has dimension 2, not 3");
     }
 }
 

@@ -36,6 +36,20 @@ struct SurfaceTargets {
     std::vector<SimplexSink<dimension>*> soups;
 };
 
+/// \tparam Sink a MeshSink or a SimplexSink
+template <int dimension, class Sink>
+SurfaceTargets<dimension> targets_of(std::vector<Sink>& sinks) {
+    SurfaceTargets<dimension> targets;
+    for (Sink& sink : sinks) {
+        if constexpr (std::is_convertible_v<Sink*, MeshSink<dimension>*>) {
+            targets.meshes.push_back(&sink);
+        } else {
+            targets.soups.push_back(&sink);
+        }
+    }
+    return targets;
+}
+
 /// Draws isosurfaces of a hierarchy of the same dimension. Defined for dimensions 2 and 3, float
 /// and double.
 template <int dimension, class Real>
@@ -97,16 +111,9 @@ std::vector<Isosurface<dimension>> extract_isosurfaces(
     const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options = {},
     const Executor& executor = SequentialExecutor{}) {
     hierarchy.facts().require_dimension(dimension);
-    detail::SurfaceTargets<dimension> targets;
-    for (auto& sink : sinks) {
-        if constexpr (std::is_convertible_v<Sink*, MeshSink<dimension>*>) {
-            targets.meshes.push_back(&sink);
-        } else {
-            targets.soups.push_back(&sink);
-        }
-    }
-    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues, targets, criterion, bounds,
-                                               options, executor);
+    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues,
+                                               detail::targets_of<dimension>(sinks), criterion,
+                                               bounds, options, executor);
 }
 template <class Grid, class Field, class Sink>
 auto extract_isosurfaces(const Grid& grid, const Field& field, std::span<const double> isovalues,

@@ -35,6 +35,10 @@ struct IsosurfaceOptions {
     /// Keep where the corners of each triangle lie in its element, in reference coordinates; not a
     /// number for the few that fill a gap in a face between two directions of refinement.
     bool reference = false;
+    /// Put vertices at nodes where U = C there, in the place of slivers around the node, as far as
+    /// the surface stays a manifold. Needs memory of the order of the surface; not for streams of
+    /// triangles, nor together with `reference`.
+    bool at_nodes = false;
     /// Compute every shared vertex again from every element and throw a GridError where one bit
     /// differs: finds keys and positions that do not belong together.
     bool verify = false;

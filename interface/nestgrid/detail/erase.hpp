@@ -264,9 +264,6 @@ private:
     static HierarchyFacts facts_of(const Grid& grid, const Field& field) {
         HierarchyFacts facts = facts_of_grid(grid);
         facts.components = components_of<Field>();
-        if constexpr (requires { Field::affine_components; }) {
-            facts.affine_components = Field::affine_components;
-        }
         if constexpr (may_have_gradients_) {
             if (offers_gradients<Grid>(field)) {
                 facts.features |= static_cast<unsigned>(Feature::gradients);

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/slice.hpp>
+
+#include <levels/draw.hpp>
+#include <walk/hanging_nodes.hpp>
+
+namespace nestgrid::detail {
+
+namespace {
+
+/// What a walk at full resolution needs to know of a grid: the nodes that hang.
+template <class Real>
+class LeafBounds final : public Bounds {
+public:
+    explicit LeafBounds(const Hierarchy<Real>& hierarchy) : epoch_{hierarchy.epoch()} {
+        derived_ = engine::hanging_nodes_unknown(hierarchy);
+        if (derived_) hanging_ = engine::derive_hanging_nodes(hierarchy);
+    }
+    double offset_bound(NodeKey) const override { return 0; }
+    double bound(const Rule&, std::span<const NodeKey>) const override { return 0; }
+    const HangingNodes* hanging() const override {
+        return derived_ && !hanging_.empty() ? &hanging_ : nullptr;
+    }
+    std::uint64_t epoch() const override { return epoch_; }
+    bool one_level_a_node() const override { return false; }
+
+private:
+    std::uint64_t epoch_;
+    bool derived_;
+    HangingNodes hanging_;
+};
+
+/// Calls draw(levels) with the levels of a request.
+template <class Real, class Draw>
+auto with_levels(const Hierarchy<Real>& hierarchy, const SliceRequest& request, Draw&& draw) {
+    hierarchy.facts().require_dimension(3);
+    const std::size_t functions = request.functions.size();
+    const engine::WidenedHierarchy<Real> widened(hierarchy, functions);
+    const engine::PositionFunctions placed(request.functions, widened);
+    engine::Levels<double> levels = engine::isosurface_levels<double>(widened, request.isovalues);
+    for (auto& level : levels.levels) level = engine::Level<double>(level.value, functions);
+    for (std::size_t i = functions; i-- > 0;) {
+        levels.levels.insert(levels.levels.begin(), engine::Level<double>(0, i, 0));
+    }
+    levels.first_attribute = functions;
+    levels.functions = &placed;
+    return draw(levels);
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
+                               const SurfaceTargets<3>& targets, const Criterion& criterion,
+                               const Bounds* bounds, IsosurfaceOptions options,
+                               const Executor& executor) {
+    options.at_nodes = targets.soups.empty();
+    std::optional<LeafBounds<Real>> of_leaves;
+    if (bounds == nullptr) bounds = &of_leaves.emplace(hierarchy);
+    return with_levels(hierarchy, request, [&](const engine::Levels<double>& levels) {
+        return engine::draw_levels<3>(levels, targets, criterion, *bounds, options, executor);
+    });
+}
+
+template <class Real>
+Slice draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                 const HierarchicalIndicator* indicator, const IsosurfaceOptions& options,
+                 const Executor& executor) {
+    const SliceRequest request{{&function}};
+    const auto draw = [&](const Criterion& criterion, const Bounds* bounds) {
+        return std::move(
+            draw_slices(hierarchy, request, {}, criterion, bounds, options, executor).front());
+    };
+    hierarchy.facts().require_dimension(3);
+    if (indicator == nullptr && options.threshold == 0 && options.max_triangles == 0) {
+        return draw(Exact{}, nullptr);
+    }
+    std::optional<HierarchicalIndicator> own;
+    if (indicator == nullptr) indicator = &own.emplace(hierarchy, LeafErrors{}, executor);
+    const Threshold criterion =
+        with_levels(hierarchy, request, [&](const engine::Levels<double>& levels) {
+            return engine::criterion_for<3>(levels, *indicator, options, executor);
+        });
+    return draw(criterion, indicator);
+}
+
+#define NESTGRID_INSTANTIATE(Real)                                                              \
+    template std::vector<Slice> draw_slices(const Hierarchy<Real>&, const SliceRequest&,        \
+                                            const SurfaceTargets<3>&, const Criterion&,         \
+                                            const Bounds*, IsosurfaceOptions, const Executor&); \
+    template Slice draw_slice(const Hierarchy<Real>&, const LevelFunction&,                     \
+                              const HierarchicalIndicator*, const IsosurfaceOptions&,           \
+                              const Executor&);
+NESTGRID_INSTANTIATE(float)
+NESTGRID_INSTANTIATE(double)
+#undef NESTGRID_INSTANTIATE
+
+}  // namespace nestgrid::detail

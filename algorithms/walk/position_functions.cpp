@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <walk/position_functions.hpp>
+
+#include <algorithm>
+
+#include <nestgrid/detail/geometry.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid::engine {
+
+PositionFunctions::PositionFunctions(std::span<const LevelFunction* const> functions,
+                                     const Hierarchy<double>& hierarchy)
+    : functions_(functions.begin(), functions.end()), tolerance_(functions.size(), 0.0) {
+    bounded_ = !hierarchy.offers(Feature::new_positions);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<double> least(functions.size(), infinity);
+    std::vector<double> greatest(functions.size(), -infinity);
+    double magnitude = 0;
+    const std::unique_ptr<Task> task = hierarchy.open();
+    Coarse coarse;
+    Family family;
+    for (std::size_t i = 0; i < hierarchy.coarse_count(); ++i) {
+        hierarchy.coarse(task.get(), i, coarse, family);
+        for (std::size_t k = 0; k < topology(coarse.shape).corners; ++k) {
+            magnitude = std::max(magnitude, norm(coarse.corners[k]));
+            for (std::size_t f = 0; f < functions_.size(); ++f) {
+                const double at = value(f, coarse.corners[k]);
+                least[f] = std::min(least[f], at);
+                greatest[f] = std::max(greatest[f], at);
+            }
+        }
+    }
+    for (std::size_t f = 0; f < functions_.size() && hierarchy.coarse_count() > 0; ++f) {
+        const double rounding = 0x1p-50 * functions_[f]->variation({0, 0, 0}, magnitude);
+        tolerance_[f] =
+            0x1p-40 * (greatest[f] - least[f]) + (std::isfinite(rounding) ? rounding : 0);
+    }
+}
+
+bool PositionFunctions::affine() const {
+    return bounded_ && std::ranges::all_of(functions_, [](auto* f) { return f->affine(); });
+}
+
+double PositionFunctions::value(std::size_t i, const Point& x) const {
+    const double value = functions_[i]->value(x);
+    if (std::isfinite(value)) return value;
+    throw InvalidInput("the function of the slice has no finite value at " + text_of(x));
+}
+
+double PositionFunctions::variation(std::size_t component, std::span<const Point> corners) const {
+    if (!bounded_) return std::numeric_limits<double>::infinity();
+    double radius = 0;
+    for (const Point& x : corners.subspan(1)) radius = std::max(radius, norm(x - corners[0]));
+    return functions_[component]->variation(corners[0], radius);
+}
+
+template <class Real>
+struct WidenedHierarchy<Real>::WidenedTask final : Task {
+    std::unique_ptr<Task> inner;
+    std::vector<Real> values;  // of the inner hierarchy, before they are spread
+};
+
+namespace {
+
+HierarchyFacts widened(HierarchyFacts facts, std::size_t front) {
+    facts.components += static_cast<int>(front);
+    facts.features &= ~static_cast<unsigned>(Feature::gradients);
+    facts.knows_stars = facts.knows_star_positions = facts.knows_patches = false;
+    return facts;
+}
+
+}  // namespace
+
+template <class Real>
+WidenedHierarchy<Real>::WidenedHierarchy(const Hierarchy<Real>& inner,
+                                         std::size_t components_in_front)
+    : Hierarchy<double>(widened(inner.facts(), components_in_front)),
+      inner_{&inner},
+      front_{components_in_front},
+      inner_components_{static_cast<std::size_t>(inner.facts().components)} {}
+
+template <class Real>
+auto WidenedHierarchy<Real>::own(Task* task) -> WidenedTask& {
+    return static_cast<WidenedTask&>(*task);
+}
+
+template <class Real>
+std::unique_ptr<Task> WidenedHierarchy<Real>::open() const {
+    auto task = std::make_unique<WidenedTask>();
+    task->inner = inner_->open();
+    task->values.resize((max_corners + max_new_nodes) * inner_components_);
+    return task;
+}
+
+/// Spreads the values at some nodes.
+template <class Real>
+void WidenedHierarchy<Real>::copy(const Real* from, std::size_t nodes, double* to) const {
+    for (std::size_t n = 0; n < nodes; ++n) {
+        to += front_;
+        for (std::size_t c = 0; c < inner_components_; ++c) *to++ = static_cast<double>(*from++);
+    }
+}
+
+template <class Real>
+void WidenedHierarchy<Real>::coarse(Task* task, std::size_t i, Coarse& coarse,
+                                    Family& family) const {
+    inner_->coarse(own(task).inner.get(), i, coarse, family);
+}
+
+template <class Real>
+NodeMask WidenedHierarchy<Real>::coarse_values(Task* task, std::size_t i, std::size_t corners,
+                                               double* out) const {
+    WidenedTask& t = own(task);
+    const NodeMask missing = inner_->coarse_values(t.inner.get(), i, corners, t.values.data());
+    copy(t.values.data(), corners, out);
+    return missing;
+}
+
+template <class Real>
+NodeMask WidenedHierarchy<Real>::enter(Task* task, const Handle& element, const Rule& rule,
+                                       NodeMask which, double* values, NodeMask wanted,
+                                       Family& children) const {
+    WidenedTask& t = own(task);
+    const NodeMask missing =
+        inner_->enter(t.inner.get(), element, rule, which, t.values.data(), wanted, children);
+    if (which != 0) copy(t.values.data(), rule.new_nodes.size(), values);
+    return missing;
+}
+
+template <class Real>
+NodeMask WidenedHierarchy<Real>::new_values(Task* task, const Handle& element, const Rule& rule,
+                                            NodeMask which, double* values) const {
+    WidenedTask& t = own(task);
+    const NodeMask missing =
+        inner_->new_values(t.inner.get(), element, rule, which, t.values.data());
+    copy(t.values.data(), rule.new_nodes.size(), values);
+    return missing;
+}
+
+template <class Real>
+void WidenedHierarchy<Real>::corners(Task* task, const Handle& element, std::size_t count,
+                                     NodeKey* keys, Point* positions, unsigned* boundary) const {
+    inner_->corners(own(task).inner.get(), element, count, keys, positions, boundary);
+}
+
+template <class Real>
+void WidenedHierarchy<Real>::new_positions(Task* task, const Handle& element, NodeMask which,
+                                           std::span<Point> out) const {
+    inner_->new_positions(own(task).inner.get(), element, which, out);
+}
+
+template class WidenedHierarchy<float>;
+template class WidenedHierarchy<double>;
+
+}  // namespace nestgrid::engine
