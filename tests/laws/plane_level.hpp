@@ -73,14 +73,16 @@ private:
 };
 
 /// The slice by dot(normal, x) = offset, coloured by all components of the field.
+/// \param elements whether to keep the extracted elements
 template <class Grid, class Field>
 Surface<3> slice(const Grid& grid, const Field& field, const Point& normal, double offset,
-                 const Criterion& criterion, const Bounds& bounds) {
+                 const Criterion& criterion, const Bounds& bounds, bool elements = false) {
     const PlaneField plane(grid, field, normal, offset);
     const auto hierarchy = erase(grid, plane);
     std::vector<Isosurface<3>> result(1);
     const engine::Level<double> level(0);
-    const engine::SurfaceBuilder<3> builder(result[0].surface, false);
+    result[0].surface.elements = hierarchy.make_elements();
+    const engine::SurfaceBuilder<3> builder(result[0].surface, elements);
     engine::draw_levels<3, double>(hierarchy, std::span(&level, 1), 1, std::span(&builder, 1),
                                    criterion, AffineBounds(bounds), {.verify = true},
                                    SequentialExecutor{}, result);
