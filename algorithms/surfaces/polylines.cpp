@@ -72,9 +72,8 @@ public:
     void add(std::vector<std::uint32_t>& line, double value) {
         const auto& x = from_->vertices;
         const bool ring = line.front() == line.back();
-        const auto repeats =
-            std::ranges::unique(line, {}, [&](std::uint32_t v) -> const Point& { return x[v]; });
-        line.erase(repeats.begin(), repeats.end());
+        const auto same = [&](std::uint32_t a, std::uint32_t b) { return x[a] == x[b]; };
+        line.erase(std::unique(line.begin(), line.end(), same), line.end());
         if (line.size() < 2) return;
         if (ring) line.back() = line.front();
         for (const std::uint32_t v : line) to_->points.push_back(number_of(v));

@@ -272,23 +272,29 @@ double chord(const Point& a, double s, const Point& b, double t) {
 TYPED_TEST(IsolinesOn, SlicesOfALinearFunctionAreStraight) {
     if constexpr (TypeParam::Grid::dimension == 3) {
         const Point gradient{2, -3, 1};
+        const Point other{1, 1, -2};
         for (auto& grid : TypeParam::grids()) {
             refine_at_sphere(grid, 2 * TypeParam::steps);
             const auto values =
                 sample_nodes(grid, [&](const Point& x) { return dot(gradient, x); });
-            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
+            const auto others = sample_nodes(grid, [&](const Point& x) { return dot(other, x); });
+            const PairField field(grid, others, values);
             const HierarchicalIndicator indicator(grid, field);
             for (const double threshold : {-1.0, 1e-9}) {
                 const auto s = slice(grid, field, oblique, 0.7713, Threshold(&indicator, threshold),
                                      indicator);
-                const Polylines lines = isolines(s, 0, std::array{0.1234, -0.777});
+                const Polylines lines = isolines(s, 1, std::array{0.1234, -0.777});
                 ASSERT_EQ(lines.count(), 2U);
+                ASSERT_EQ(lines.attribute_count, 2U);
                 for (std::size_t i = 0; i < 2; ++i) {
                     EXPECT_FALSE(lines.closed(i));
                     EXPECT_NEAR(lines.length(i), chord(oblique, 0.7713, gradient, lines.value[i]),
                                 1e-12);
                     for (const auto v : lines.line(i)) {
-                        EXPECT_NEAR(dot(gradient, lines.vertices[v]), lines.value[i], 1e-12);
+                        const Point& x = lines.vertices[v];
+                        EXPECT_NEAR(dot(gradient, x), lines.value[i], 1e-12);
+                        EXPECT_NEAR(lines.attributes[2 * v], dot(other, x), 1e-12);
+                        EXPECT_EQ(lines.attributes[2 * v + 1], lines.value[i]);
                     }
                 }
             }
@@ -449,6 +455,19 @@ TEST(Polylines, UsesEachSegmentOnceWhereLinesTouch) {
     EXPECT_EQ(count_open(lines), 2U);
     EXPECT_EQ(segments_of(lines).size(), segments.simplices.size());
     EXPECT_EQ(lines.vertices.size(), segments.vertices.size());
+}
+
+/// A line that meets its beginning again is a ring there, and the rest is a line of its own.
+TEST(Polylines, BeginsLinesWhereTheyBranchOff) {
+    Surface<2> segments;
+    for (int i = 0; i < 6; ++i) segments.vertices.push_back({1.0 * i, 0, 0});
+    add_line(segments, {4, 3, 5, 4, 0, 1, 2});
+    const Polylines lines = polylines(segments, 0);
+    ASSERT_EQ(lines.count(), 2U);
+    EXPECT_TRUE(lines.closed(0));
+    EXPECT_EQ(lines.line(0).size(), 4U);
+    EXPECT_FALSE(lines.closed(1));
+    EXPECT_EQ(lines.line(1).size(), 4U);
 }
 
 TEST(Isolines, RefusesWrongInput) {
