@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/isolines.hpp>
+
+#include <algorithm>
+
+namespace nestgrid::detail {
+
+template <class Real>
+Isolines draw_isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                       const Criterion& criterion, const Bounds& bounds,
+                       const IsosurfaceOptions& options, const Executor& executor) {
+    IsosurfaceOptions kept = options;
+    kept.normals = kept.elements = kept.reference = false;
+    auto drawn = isosurfaces<2>(hierarchy, values, criterion, bounds, kept, executor);
+    Isolines result;
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+        append_polylines(result.lines, drawn[i].surface, values[i]);
+        drawn[i].surface = {};  // its memory is needed for the lines
+        result.counts.calls = drawn[i].counts.calls;
+        result.counts.visited = drawn[i].counts.visited;
+        result.counts.extracted += drawn[i].counts.extracted;
+        result.error_bound = std::max(result.error_bound, drawn[i].error_bound);
+        result.cancelled = drawn[i].cancelled;
+    }
+    return result;
+}
+
+template Isolines draw_isolines(const Hierarchy<float>&, std::span<const double>, const Criterion&,
+                                const Bounds&, const IsosurfaceOptions&, const Executor&);
+template Isolines draw_isolines(const Hierarchy<double>&, std::span<const double>, const Criterion&,
+                                const Bounds&, const IsosurfaceOptions&, const Executor&);
+
+}  // namespace nestgrid::detail

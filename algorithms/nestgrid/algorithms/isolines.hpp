@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Isolines of two-dimensional grids as joined lines (paper, sections 3 and 8). Those on surfaces
+// are in surface_isolines.hpp, which this header includes.
+#pragma once
+
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/surface_isolines.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
+
+/// Isolines of a two-dimensional grid.
+struct Isolines {
+    Polylines lines;
+    TraversalCounts counts;  ///< elements are counted as extracted once for each value
+    double error_bound = 0;  ///< on every line U differs from its value by at most this
+    bool cancelled = false;  ///< by options.progress; the lines are then a part
+};
+
+namespace detail {
+
+/// Draws isolines of a hierarchy of dimension 2. Defined for float and double.
+template <class Real>
+Isolines draw_isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                       const Criterion& criterion, const Bounds& bounds,
+                       const IsosurfaceOptions& options, const Executor& executor);
+
+}  // namespace detail
+
+/// The isolines of component 0 of a field under the projection with `criterion`, in one traversal.
+/// They end on the boundary of the domain only. Vertices carry components 1 ... of the field. Like
+/// isosurfaces(), each function takes a hierarchy in the place of the grid and the field.
+/// \param options as of isosurfaces(); normals, elements and references are not kept
+/// \throw GridError, InvalidInput as isosurfaces()
+template <class Real>
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const Criterion& criterion, const Bounds& bounds,
+                  const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{}) {
+    return detail::draw_isolines(hierarchy, values, criterion, bounds, options, executor);
+}
+template <class Grid, class Field>
+    requires(Grid::dimension == 2)
+Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
+                  const Criterion& criterion, const Bounds& bounds,
+                  const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{}) {
+    return isolines(erase(grid, field), values, criterion, bounds, options, executor);
+}
+
+/// The same with S from options.threshold.
+/// \throw InvalidInput also for options.max_triangles, which is for one isoline
+template <class Real>
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{}) {
+    if (options.max_triangles != 0) throw InvalidInput("a limit of segments is for one isoline");
+    const auto s = detail::criterion_for<2>(hierarchy, 0, indicator, options, executor);
+    return isolines(hierarchy, values, s, indicator, options, executor);
+}
+template <class Grid, class Field>
+    requires(Grid::dimension == 2)
+Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
+                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{}) {
+    return isolines(erase(grid, field), values, indicator, options, executor);
+}
+
+/// The same with its own preroll.
+template <class Real>
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{}) {
+    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
+    return isolines(hierarchy, values, indicator, options, executor);
+}
+template <class Grid, class Field>
+    requires(Grid::dimension == 2)
+Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
+                  const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{}) {
+    return isolines(erase(grid, field), values, options, executor);
+}
+
+}  // namespace nestgrid
