@@ -205,14 +205,17 @@ auto ElementPolygon<Real>::add_centre() -> Number {
     return surface_->add_unnamed(std::span(&x, 1), values_);
 }
 
-/// Where the element is no parallelogram, the difference is at most twice what remains at the
-/// corners when the best affine function is subtracted.
+/// With the best affine function subtracted, |U| is at most some r at the corners, so also where it
+/// is interpolated, whatever the shapes; the difference is at most 2 r. In a parallelogram that is
+/// divided into quadrilaterals it is at most r = twist, and a quarter of that around a centre.
 template <class Real>
-double ElementPolygon<Real>::chord() const {
+double ElementPolygon<Real>::chord(bool nested) const {
     if (view_->corner_count() != 4) return 0;
-    const Point skew = (x_[0] - x_[1]) - (x_[2] - x_[3]);
     constexpr double rounding = 1e-12;
-    if (norm(skew) <= rounding * norm(x_[3] - x_[0])) return centred_ ? twist(0) / 4 : twist(0);
+    const Point skew = (x_[0] - x_[1]) - (x_[2] - x_[3]);
+    if (nested && norm(skew) <= rounding * norm(x_[3] - x_[0])) {
+        return centred_ ? twist(0) / 4 : twist(0);
+    }
     const std::array<double, 4> at{u(0), u(1), u(2), u(3)};
     return 2 * affine_residual(std::span(x_).template first<4>(), std::span<const double, 4>(at));
 }

@@ -40,8 +40,9 @@ public:
     /// Draws the loaded element.
     /// \param nodes that finer sides recorded, or null
     void draw(const EdgeNodes* nodes, LevelSurface<3>& surface);
-    /// How far component 0, interpolated from the corners, and the drawn triangles differ.
-    double chord() const;
+    /// How far component 0, interpolated from the corners, and the triangles drawn last differ.
+    /// \param nested whether all leaves below the element have its shape
+    double chord(bool nested) const;
     const std::array<NodeKey, max_corners>& keys() const { return key_; }
 
     /// Adds a triangle; contours/contour_filling.hpp calls it.

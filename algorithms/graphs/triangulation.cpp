@@ -159,8 +159,9 @@ void Triangulation<Real>::raise_error_bound(const View& view) {
     }
     // An interpolated parent that was made in the same split adds its own error.
     if (view.made_by != nullptr) corner *= view.made_by->steps;
-    const double below = view.is_leaf() ? 0 : below_;
-    surface_.raise_error_bound(below + corner + polygon_.chord());
+    const bool quadrilaterals = graph_.walk->hierarchy().facts().only_shape == Shape::quadrilateral;
+    const double chord = polygon_.chord(view.is_leaf() || quadrilaterals);
+    surface_.raise_error_bound((view.is_leaf() ? 0 : below_) + corner + chord);
 }
 
 template class Triangulation<float>;
