@@ -11,6 +11,7 @@
 #include <nestgrid/adapters/red_green.hpp>
 #include <nestgrid/algorithms/derived_field.hpp>
 #include <nestgrid/algorithms/hanging_nodes.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
 #include <nestgrid/algorithms/node_levels.hpp>
@@ -55,6 +56,35 @@ void isosurface_figure(const std::string& file) {
     picture.look(0, from_above);
     draw(picture, surface, true, by_level(surface));
     draw_slice(picture, grid, 0.0);
+    picture.write(file);
+}
+
+/// Left: colours in the plane; right: the graph. Quadrilaterals of several sizes meet.
+void height_field_figure(const std::string& file) {
+    const auto rim = [](const Point& x) {
+        const double r = std::hypot(x[0], x[1]) - 0.55;
+        return 0.5 * std::exp(-60 * r * r) + 0.1 * x[0];
+    };
+    OctreeGrid<2> grid(box(2), {.balanced = false});
+    refine(grid, rim, 2, 5, 0.004);
+    const std::vector<double> u = values(grid, rim);
+    const NodeField<OctreeGrid<2>, double> field(grid, u);
+    Picture picture(480, 440, 2);
+    for (const int view : {0, 1}) {
+        const auto graph = height_field(grid, field, view, {.threshold = 0.004});
+        const Surface<3>& s = graph.surface;
+        if (view == 0) {
+            picture.look(0, {.height = 2.1});
+        } else {
+            picture.look(1, {.towards_eye = {0.3, -1, 0.9}, .up = {0, 0, 1}, .height = 2.5});
+        }
+        draw(picture, s, true, [&](std::size_t t) {
+            double sum = 0;
+            for (const std::uint32_t v : s.simplices[t]) sum += s.attributes[v];
+            return ramp((sum / 3 + 0.1) / 0.65);
+        });
+        std::printf("%zu triangles, at most %g off\n", s.simplices.size(), graph.error_bound);
+    }
     picture.write(file);
 }
 
@@ -346,12 +376,19 @@ void families_figure(const std::string& file) {
 
 int main(int argc, char** argv) {
     const std::map<std::string, void (*)(const std::string&)> figures{
-        {"bucky_ball", bucky_figure},      {"isosurface", isosurface_figure},
-        {"isoband", isoband_figure},       {"isosurface_series", series_figure},
-        {"budget", budget_figure},         {"region", region_figure},
-        {"criteria", criteria_figure},     {"levels", levels_figure},
-        {"measures", measures_figure},     {"hanging_nodes", hanging_figure},
-        {"derived_field", derived_figure}, {"families", families_figure}};
+        {"bucky_ball", bucky_figure},
+        {"isosurface", isosurface_figure},
+        {"isoband", isoband_figure},
+        {"isosurface_series", series_figure},
+        {"budget", budget_figure},
+        {"region", region_figure},
+        {"criteria", criteria_figure},
+        {"levels", levels_figure},
+        {"measures", measures_figure},
+        {"hanging_nodes", hanging_figure},
+        {"derived_field", derived_figure},
+        {"families", families_figure},
+        {"height_field", height_field_figure}};
     const auto figure = argc == 3 ? figures.find(argv[1]) : figures.end();
     if (figure == figures.end()) {
         std::fprintf(stderr, "usage: figures NAME FILE.png, where NAME is one of");

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/height_field.hpp>
+
+#include <cmath>
+
+#include <graphs/triangulation.hpp>
+#include <levels/draw.hpp>
+#include <levels/level_search.hpp>
+#include <levels/level_set.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
+
+namespace {
+
+template <class Real>
+Threshold threshold_of(const Hierarchy<Real>& hierarchy, const HierarchicalIndicator& indicator,
+                       const ShadingOptions& options) {
+    hierarchy.facts().require_dimension(2);
+    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
+    return {&indicator, options.threshold};
+}
+
+/// \throw InvalidInput, GridError as shading() and height_field() say
+template <class Real>
+void require_drawable(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                      const Bounds& bounds, const ShadingOptions& options) {
+    hierarchy.facts().require_dimension(2);
+    if (!std::isfinite(scale))
+        throw InvalidInput("the scale of the heights is not a finite number");
+    if (!(options.flatness >= 0)) throw InvalidInput("the flatness is negative or not a number");
+    engine::require_drawable(hierarchy, {}, bounds);
+    engine::require_saturated(criterion, bounds);
+}
+
+template <class Real>
+Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                    const Bounds& bounds, const ShadingOptions& options, const Executor& executor) {
+    using engine::Triangulation;
+    require_drawable(hierarchy, scale, criterion, bounds, options);
+    const engine::Walk<Real> walk(hierarchy, Triangulation<Real>::needs, bounds.hanging());
+    const bool stops_apart =
+        engine::LevelSearch<Real>(walk, {}, criterion, bounds).may_stop_apart();
+    const engine::Graph<Real> graph{
+        &walk, &criterion, &bounds, {scale, options.flatness}, options.elements, stops_apart};
+    Shading result;
+    result.surface.elements = hierarchy.make_elements();
+    Triangulation<Real> drawing(graph, {result.surface, options.elements});
+    try {
+        drawing.run(executor, options.progress);
+    } catch (const engine::Cancelled&) {
+        result.cancelled = true;
+    }
+    drawing.report(result);
+    if (criterion.insists()) result.error_bound = std::numeric_limits<double>::infinity();
+    return result;
+}
+
+/// Makes the preroll first.
+template <class Real>
+Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const ShadingOptions& options,
+                    const Executor& executor) {
+    hierarchy.facts().require_dimension(2);
+    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
+    return triangulate(hierarchy, scale, threshold_of(hierarchy, indicator, options), indicator,
+                       options, executor);
+}
+
+}  // namespace
+
+template <class Real>
+Shading shading(const Hierarchy<Real>& hierarchy, const Criterion& criterion, const Bounds& bounds,
+                const ShadingOptions& options, const Executor& executor) {
+    return triangulate(hierarchy, 0, criterion, bounds, options, executor);
+}
+template <class Real>
+Shading shading(const Hierarchy<Real>& hierarchy, const HierarchicalIndicator& indicator,
+                const ShadingOptions& options, const Executor& executor) {
+    return triangulate(hierarchy, 0, threshold_of(hierarchy, indicator, options), indicator,
+                       options, executor);
+}
+template <class Real>
+Shading shading(const Hierarchy<Real>& hierarchy, const ShadingOptions& options,
+                const Executor& executor) {
+    return triangulate(hierarchy, 0, options, executor);
+}
+template <class Real>
+Shading height_field(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                     const Bounds& bounds, const ShadingOptions& options,
+                     const Executor& executor) {
+    return triangulate(hierarchy, scale, criterion, bounds, options, executor);
+}
+template <class Real>
+Shading height_field(const Hierarchy<Real>& hierarchy, double scale,
+                     const HierarchicalIndicator& indicator, const ShadingOptions& options,
+                     const Executor& executor) {
+    return triangulate(hierarchy, scale, threshold_of(hierarchy, indicator, options), indicator,
+                       options, executor);
+}
+template <class Real>
+Shading height_field(const Hierarchy<Real>& hierarchy, double scale, const ShadingOptions& options,
+                     const Executor& executor) {
+    return triangulate(hierarchy, scale, options, executor);
+}
+
+#define NESTGRID_INSTANTIATE(Real)                                                                 \
+    template Shading shading(const Hierarchy<Real>&, const Criterion&, const Bounds&,              \
+                             const ShadingOptions&, const Executor&);                              \
+    template Shading shading(const Hierarchy<Real>&, const HierarchicalIndicator&,                 \
+                             const ShadingOptions&, const Executor&);                              \
+    template Shading shading(const Hierarchy<Real>&, const ShadingOptions&, const Executor&);      \
+    template Shading height_field(const Hierarchy<Real>&, double, const Criterion&, const Bounds&, \
+                                  const ShadingOptions&, const Executor&);                         \
+    template Shading height_field(const Hierarchy<Real>&, double, const HierarchicalIndicator&,    \
+                                  const ShadingOptions&, const Executor&);                         \
+    template Shading height_field(const Hierarchy<Real>&, double, const ShadingOptions&,           \
+                                  const Executor&);
+NESTGRID_INSTANTIATE(float)
+NESTGRID_INSTANTIATE(double)
+#undef NESTGRID_INSTANTIATE
+
+}  // namespace nestgrid

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Triangulates the elements at which a criterion stops on a two-dimensional hierarchy.
+//
+// Where elements may stop without conforming there are two walks: the first one records the nodes
+// inside closed edges (edge_nodes.hpp), the second one draws. Tasks of several threads record and
+// draw parts; the leader puts these together in the order of one thread, so that no bit depends on
+// the number of threads.
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include <graphs/element_polygon.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <walk/criterion_question.hpp>
+#include <walk/frontier.hpp>
+
+namespace nestgrid::engine {
+
+/// What is drawn, and where the walks stop. All is borrowed, and shared by the tasks.
+template <class Real>
+struct Graph {
+    const Walk<Real>* walk;
+    const Criterion* criterion;
+    const Bounds* bounds;
+    GraphShape shape;
+    bool elements;     ///< whether to keep the elements
+    bool stops_apart;  ///< whether elements may stop without conforming
+};
+
+template <class Real>
+class Triangulation final : public TaskVisitor<Real> {
+public:
+    using View = ElementView<Real>;
+    static constexpr Needs needs{.positions = true, .closed = true};
+
+    Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder);
+
+    /// Records and draws everything.
+    /// \param progress as in ShadingOptions
+    /// \throw Cancelled where progress says so
+    void run(const Executor& executor, const std::function<bool(const TraversalCounts&)>& progress);
+    /// Puts everything but the surface into a result.
+    void report(Shading& result) const;
+
+    bool sees_hidden() const override { return records_; }
+    Decision inspect(const View& view, const Split& split) override;
+    Decision look(const View& view, const Split& split) override;
+    Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
+    void extract(const View& view) override;
+    void undo() override {
+        --counts_.calls;
+        --counts_.visited;
+    }
+    void restart() override { counts_ = {}; }
+
+private:
+    struct Task {
+        SurfacePart<3> part;
+        std::unique_ptr<Triangulation> draws;
+    };
+
+    void walk(const Executor& executor);
+    std::unique_ptr<Task> begin_task() const;
+    void add(const Task& task);
+    void count(std::uint64_t elements);
+    void raise_error_bound(const View& view);
+
+    Graph<Real> graph_;
+    ElementPolygon<Real> polygon_;
+    LevelSurface<3> surface_;
+    CriterionQuestion question_;
+    EdgeNodes own_nodes_;               // recorded in the first walk
+    const EdgeNodes* nodes_ = nullptr;  // recorded by all tasks
+    bool records_ = false;              // in the first walk
+    double below_ = 0;                  // how far U may leave the corner values in an element
+    TraversalCounts counts_;
+    const std::function<bool(const TraversalCounts&)>* progress_ = nullptr;
+};
+
+}  // namespace nestgrid::engine
