@@ -53,8 +53,10 @@ namespace {
 
 /// Calls function(number, reference coordinates, face distance) for the points in an element.
 template <class Function>
-void for_each_point_in(const PointBins& bins, Shape shape, std::span<const Point> corners,
-                       double margin, Function&& function) {
+void for_each_point_in(const PointBins& bins, const InverseMap& inverse, double margin,
+                       Function&& function) {
+    const Shape shape = inverse.shape();
+    const std::span<const Point> corners = inverse.corners();
     const double tolerance = std::max(margin, face_tolerance(corners));
     const double size = extent(corners);
     Point low = corners[0];
@@ -67,8 +69,8 @@ void for_each_point_in(const PointBins& bins, Shape shape, std::span<const Point
     }
     const bool on_surface = topology(shape).dimension < 3 && margin == 0;
     bins.for_each_in(low, high, [&](std::uint32_t p, const Point& x) {
-        Point s = reference_middle(shape);
-        if (!invert(shape, corners, x, s)) return;
+        Point s;
+        if (!inverse(x, s)) return;
         const double distance = face_distance(shape, s);
         if (!(distance >= -tolerance)) return;
         if (on_surface && !(norm(x - place_of(shape, corners, s)) <= off_surface * size)) return;
@@ -117,8 +119,9 @@ CoarseSearch search_coarse(const Hierarchy<Real>& hierarchy, std::span<const Poi
         hierarchy.coarse(task.get(), i, coarse, family);
         if (((family.split | family.leaves) & ~family.hidden) == 0) continue;
         const auto corners = std::span(coarse.corners).first(topology(coarse.shape).corners);
-        result.any_deformed = result.any_deformed || !is_affine(coarse.shape, corners);
-        for_each_point_in(bins, coarse.shape, corners, margin,
+        const InverseMap inverse(coarse.shape, corners);
+        result.any_deformed = result.any_deformed || !inverse.affine();
+        for_each_point_in(bins, inverse, margin,
                           [&](std::uint32_t p, const Point& s, double distance) {
                               const PointInElement in{s, p, static_cast<std::uint32_t>(i)};
                               if (margin != 0) {

@@ -155,7 +155,7 @@ void Descent<Real>::hand_to_deepest(const ChildMaps& maps, const PointInElement&
     double greatest = -infinity;
     for (std::size_t c = 0; c < maps.child.size() && greatest < 0; ++c) {
         Point s;
-        if (!maps.child[c].enter(point.at, s)) continue;
+        if (!maps.child[c](point.at, s)) continue;
         const double distance = face_distance(maps.child[c].shape(), s);
         if (!(distance > greatest)) continue;
         greatest = distance;
@@ -168,7 +168,7 @@ template <class Real>
 void Descent<Real>::hand_to_all(const ChildMaps& maps, const PointInElement& point, double margin) {
     for (std::size_t c = 0; c < maps.child.size(); ++c) {
         Point s;
-        if (!maps.child[c].enter(point.at, s)) continue;
+        if (!maps.child[c](point.at, s)) continue;
         if (!(face_distance(maps.child[c].shape(), s) >= -margin)) continue;
         handed_.push_back({s, point.point, static_cast<std::uint32_t>(c)});
     }
@@ -178,7 +178,7 @@ template <class Real>
 NodeMask Descent<Real>::sort_by_child(Level& level) {
     const std::size_t count = level.maps->child.size();
     NodeMask some = 0;
-    level.first.fill(0);
+    std::fill_n(level.first.begin(), count + 1, 0U);
     for (const auto& in : handed_) {
         some |= NodeMask{1} << in.element;
         ++level.first[in.element + 1U];

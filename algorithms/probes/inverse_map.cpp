@@ -111,4 +111,23 @@ bool invert(Shape shape, std::span<const Point> corners, const Point& x, Point& 
     return false;
 }
 
+InverseMap::InverseMap(Shape shape, std::span<const Point> corners)
+    : shape_{shape}, affine_{is_affine(shape, corners)} {
+    std::ranges::copy(corners, corner_.begin());
+    const auto dimension = static_cast<std::size_t>(topology(shape).dimension);
+    std::array<Point, 3> a{};
+    for (std::size_t d = 0; d < dimension; ++d) {
+        a[d] = derivative(shape, corners, {0, 0, 0}, corners[0], d);
+    }
+    if (dimension == 1) {
+        row_[0] = (1 / dot(a[0], a[0])) * a[0];
+        return;
+    }
+    if (dimension == 2) a[2] = cross(a[0], a[1]);
+    const double determinant = dot(a[0], cross(a[1], a[2]));
+    row_[0] = (1 / determinant) * cross(a[1], a[2]);
+    row_[1] = (1 / determinant) * cross(a[2], a[0]);
+    if (dimension == 3) row_[2] = (1 / determinant) * cross(a[0], a[1]);
+}
+
 }  // namespace nestgrid::engine

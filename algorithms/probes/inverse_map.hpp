@@ -62,4 +62,27 @@ double face_tolerance(std::span<const Point> corners);
 /// \return whether it converged, within a few diameters of the element
 bool invert(Shape shape, std::span<const Point> corners, const Point& x, Point& s);
 
+/// The inverse of the map of an element: a matrix where that is affine, else Newton's method.
+class InverseMap {
+public:
+    InverseMap(Shape shape, std::span<const Point> corners);
+
+    Shape shape() const { return shape_; }
+    bool affine() const { return affine_; }
+    std::span<const Point> corners() const { return {corner_.data(), topology(shape_).corners}; }
+    /// Finds reference coordinates. \return whether there are any
+    bool operator()(const Point& x, Point& s) const {
+        if (!affine_) return invert(shape_, corners(), x, s = reference_middle(shape_));
+        const Point d = x - corner_[0];
+        s = {dot(row_[0], d), dot(row_[1], d), dot(row_[2], d)};
+        return true;
+    }
+
+private:
+    Shape shape_;
+    bool affine_;
+    std::array<Point, max_corners> corner_{};
+    std::array<Point, 3> row_{};  // of the inverse of the derivative
+};
+
 }  // namespace nestgrid::engine
