@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Values of P_S U at points and along lines, by descent through the hierarchy (paper, section 3).
+//
+// Each point descends in reference coordinates, where children lie as their rule says, so that no
+// search structure is needed and deformed elements are treated exactly; all points descend in one
+// walk. The functions below take a Hierarchy in the place of grid and field, too.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
+
+namespace nestgrid {
+
+struct ProbeResult {
+    std::size_t components = 1;
+    /// P_S U: component c at point i is values[i * components + c]; not a number outside the grid.
+    std::vector<double> values;
+    std::vector<int> level;  ///< of the element around each point; -1 outside the grid
+    TraversalCounts counts;
+
+    bool found(std::size_t i) const { return level[i] >= 0; }
+};
+
+struct LineProbe : ProbeResult {
+    std::vector<Point> points;
+    std::vector<double> distance;  ///< from the first point, in units of the grid
+};
+
+namespace detail {
+
+/// Defined for float and double. Without criterion and bounds: at full resolution.
+template <class Real>
+ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
+                  const Criterion& criterion, const Bounds& bounds);
+template <class Real>
+ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points);
+
+LineProbe make_line(const Point& from, const Point& to, std::size_t count);
+std::vector<double> only_values(ProbeResult result, const Point& x);
+
+}  // namespace detail
+
+/// The field at points.
+/// \param s nothing, for the data on the finest grid: no preroll is needed, and the grid is walked
+///        once only to find hanging nodes that it does not name; or a criterion, and Bounds of the
+///        same grid and field, such as a HierarchicalIndicator
+/// \throw InvalidInput where a coordinate is not finite, and for a criterion that is not saturated
+/// \throw GridError where the field has no value, or where the grid has changed since the bounds
+///        were computed
+template <class Real, class... S>
+ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points, const S&... s) {
+    return detail::probe<Real>(hierarchy, points, s...);
+}
+template <class Grid, class Field, class... S>
+    requires NodalField<Field, Grid> ProbeResult probe(const Grid& grid, const Field& field,
+                                                       std::span<const Point> points,
+                                                       const S&... s) {
+        return probe<typename Field::value_type>(erase(grid, field), points, s...);
+    }
+
+/// The field at one point.
+/// \return its components
+/// \throw InvalidInput also where the point lies outside the grid
+template <class Real, class... S>
+std::vector<double> probe_point(const Hierarchy<Real>& hierarchy, const Point& x, const S&... s) {
+    return detail::only_values(probe<Real>(hierarchy, std::span(&x, 1), s...), x);
+}
+template <class Grid, class Field, class... S>
+    requires NodalField<Field, Grid> std::vector<double> probe_point(const Grid& grid,
+                                                                     const Field& field,
+                                                                     const Point& x,
+                                                                     const S&... s) {
+        return probe_point<typename Field::value_type>(erase(grid, field), x, s...);
+    }
+
+/// The field at `count` points from one to another, equally spaced, both included.
+/// \throw InvalidInput also where count is below 2
+template <class Real, class... S>
+LineProbe probe_line(const Hierarchy<Real>& hierarchy, const Point& from, const Point& to,
+                     std::size_t count, const S&... s) {
+    LineProbe line = detail::make_line(from, to, count);
+    static_cast<ProbeResult&>(line) = probe<Real>(hierarchy, line.points, s...);
+    return line;
+}
+template <class Grid, class Field, class... S>
+    requires NodalField<Field, Grid> LineProbe probe_line(const Grid& grid, const Field& field,
+                                                          const Point& from, const Point& to,
+                                                          std::size_t count, const S&... s) {
+        return probe_line<typename Field::value_type>(erase(grid, field), from, to, count, s...);
+    }
+
+}  // namespace nestgrid

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which points lie in which coarse elements. The points are sorted into bins, so that one look at
+// each coarse element finds those in its box, and nothing is kept of coarse elements.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <nestgrid/hierarchy.hpp>
+
+namespace nestgrid::engine {
+
+/// A point in an element.
+struct PointInElement {
+    Point at;             ///< in the reference coordinates of the element
+    std::uint32_t point;  ///< its number
+    /// Number of the coarse element; below it, number of the child in its family.
+    std::uint32_t element;
+};
+
+/// Some of many points, in the cells of a box, about one in each.
+class PointBins {
+public:
+    /// \param which the numbers of the points that are to be found
+    PointBins(std::span<const Point> points, std::span<const std::uint32_t> which);
+
+    /// Calls function(number, point) for the points in a box, ends included.
+    template <class Function>
+    void for_each_in(const Point& low, const Point& high, Function&& function) const {
+        for (std::size_t d = 0; d < 3; ++d) {
+            if (!(low[d] <= high_[d] && high[d] >= low_[d])) return;
+        }
+        const auto from = cell_of(low);
+        const auto to = cell_of(high);
+        for (std::size_t z = from[2]; z <= to[2]; ++z) {
+            for (std::size_t y = from[1]; y <= to[1]; ++y) {
+                const std::size_t row = (z * cells_[1] + y) * cells_[0];
+                for (std::size_t i = first_[row + from[0]]; i < first_[row + to[0] + 1]; ++i) {
+                    const Point& x = points_[sorted_[i]];
+                    bool in = true;
+                    for (std::size_t d = 0; d < 3; ++d) in &= x[d] >= low[d] && x[d] <= high[d];
+                    if (in) function(sorted_[i], x);
+                }
+            }
+        }
+    }
+
+private:
+    std::array<std::size_t, 3> cell_of(const Point& x) const;
+    std::size_t bin_of(const Point& x) const;
+
+    std::span<const Point> points_;
+    Point low_{};
+    Point high_{};
+    std::array<std::size_t, 3> cells_{1, 1, 1};
+    std::vector<std::uint32_t> sorted_;  // numbers of points, by bin
+    std::vector<std::uint32_t> first_;   // of each bin, in sorted_
+};
+
+struct CoarseSearch {
+    std::vector<PointInElement> found;  ///< by coarse element
+    bool any_deformed = false;          ///< the map of some coarse element is not affine
+};
+
+/// Finds the coarse elements around points, where one is shown.
+/// \param margin by how much, in reference coordinates, a point may lie outside its element; 0
+///        stands for rounding, and then each point is found in the element that it is deepest in,
+///        else in all
+template <class Real>
+CoarseSearch search_coarse(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
+                           std::span<const std::uint32_t> which, double margin);
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <probes/descent.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include <nestgrid/detail/shape_functions.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using Corners = std::array<Point, max_corners>;
+
+template <class Real>
+std::span<const Point> corners_of(const Walk<Real>& walk, const ElementView<Real>& view,
+                                  Corners& out) {
+    walk.corners(view, nullptr, out.data());
+    return std::span(out).first(view.corner_count());
+}
+
+}  // namespace
+
+template <class Real>
+Descent<Real>::Descent(const Walk<Real>& walk, const Criterion& criterion,
+                       std::span<const Point> points, double margin, ProbeResult& result)
+    : walk_{&walk},
+      criterion_{&criterion},
+      points_{points},
+      margin_{margin},
+      curved_{walk.hierarchy().offers(Feature::new_positions)},
+      result_{&result},
+      distance_(points.size(), -infinity) {}
+
+template <class Real>
+void Descent<Real>::run(Group found) {
+    coarse_ = found;
+    for (std::size_t i = 0; i < found.size();) {
+        const std::size_t first = found[i].element;
+        std::size_t last = first;
+        while (i < found.size() && found[i].element <= last) {
+            last = std::size_t{found[i].element} + 1;
+            ++i;
+        }
+        walk_->run(*this, first, last);
+    }
+}
+
+template <class Real>
+Decision Descent<Real>::inspect(const View& view, const Split& split) {
+    ++result_->counts.calls;
+    arrive(view);
+    if (at_level(view.level).group.empty()) return {Visit::skip};
+    ++result_->counts.visited;
+    if (split.rule == nullptr) return {Visit::stop};
+    return question_.ask(*walk_, *criterion_, view, split);
+}
+
+template <class Real>
+void Descent<Real>::extract(const View& view) {
+    ++result_->counts.extracted;
+    const std::size_t corners = view.corner_count();
+    const std::size_t components = result_->components;
+    Corners x;
+    double least = -infinity;
+    if (margin_ != 0) least = -face_tolerance(corners_of(*walk_, view, x));
+    for (const PointInElement& in : at_level(view.level).group) {
+        const double distance = face_distance(view.shape, in.at);
+        if (!(distance >= least) || !(distance > distance_[in.point])) continue;
+        if (margin_ != 0) {
+            const Point place = place_of(view.shape, x, in.at);
+            const double size = extent(std::span(x).first(corners));
+            if (!(norm(points_[in.point] - place) <= off_surface * size)) continue;
+        }
+        distance_[in.point] = distance;
+        result_->level[in.point] = view.level;
+        const auto weight = shape_functions(view.shape, in.at);
+        for (std::size_t c = 0; c < components; ++c) {
+            double sum = 0;
+            for (std::size_t k = 0; k < corners; ++k) {
+                sum += weight[k] * static_cast<double>(view.value[k * components + c]);
+            }
+            result_->values[in.point * components + c] = sum;
+        }
+    }
+}
+
+/// Hands the points of an element to its children. \return the children that have any
+template <class Real>
+NodeMask Descent<Real>::children(const View& view) {
+    const Rule& rule = *view.member->rule;
+    if (rule.new_nodes.empty()) arrive(view);  // inspect() was not called
+    Level& level = at_level(view.level);
+    if (level.rule != &rule) {
+        level.rule = &rule;
+        level.maps = &maps_.of(rule);
+    }
+    level.nested = !curved_ && (level.affine || level.maps->nested);
+    handed_.clear();
+    if (margin_ != 0) {
+        for (const auto& in : level.group) hand_to_all(*level.maps, in, 2 * margin(view.level));
+    } else if (level.nested) {
+        for (const auto& in : level.group) hand_to_deepest(*level.maps, in);
+    }
+    return sort_by_child(level);
+}
+
+template <class Real>
+auto Descent<Real>::at_level(int level) -> Level& {
+    const auto at = static_cast<std::size_t>(level);
+    while (levels_.size() <= at) levels_.emplace_back();
+    return levels_[at];
+}
+
+/// Sets the group of an element from what its father handed to it.
+template <class Real>
+void Descent<Real>::arrive(const View& view) {
+    Level& level = at_level(view.level);
+    if (view.father == nullptr) {
+        const auto of = std::ranges::equal_range(coarse_, static_cast<std::uint32_t>(view.coarse),
+                                                 {}, &PointInElement::element);
+        level.group = Group(of.begin(), of.end());
+        Corners x;
+        level.affine = is_affine(view.shape, corners_of(*walk_, view, x));
+    } else {
+        Level& father = at_level(view.level - 1);
+        const std::size_t first = father.first[view.child];
+        level.group = Group(father.handed).subspan(first, father.first[view.child + 1U] - first);
+        const bool affine = father.affine && father.maps->child[view.child].affine();
+        level.affine = is_simplex(view.shape) || (father.nested && affine);
+        if (margin_ != 0) refine(view, level);
+    }
+}
+
+/// Makes the reference coordinates those of the element's own map, in the wide descent, and leaves
+/// out points that are too far away.
+template <class Real>
+void Descent<Real>::refine(const View& view, Level& level) {
+    const bool nested = at_level(view.level - 1).nested;
+    Corners x;
+    const auto corners = nested ? std::span<const Point>{} : corners_of(*walk_, view, x);
+    const auto left = std::ranges::remove_if(level.group, [&](PointInElement& in) {
+        const bool converged = nested || invert(view.shape, corners, points_[in.point], in.at);
+        return !converged || !(face_distance(view.shape, in.at) >= -margin(view.level));
+    });
+    level.group = level.group.first(level.group.size() - left.size());
+}
+
+template <class Real>
+void Descent<Real>::hand_to_deepest(const ChildMaps& maps, const PointInElement& point) {
+    PointInElement deepest = point;
+    double greatest = -infinity;
+    for (std::size_t c = 0; c < maps.child.size() && greatest < 0; ++c) {
+        Point s;
+        if (!maps.child[c](point.at, s)) continue;
+        const double distance = face_distance(maps.child[c].shape(), s);
+        if (!(distance > greatest)) continue;
+        greatest = distance;
+        deepest = {s, point.point, static_cast<std::uint32_t>(c)};
+    }
+    if (greatest > -infinity) handed_.push_back(deepest);
+}
+
+template <class Real>
+void Descent<Real>::hand_to_all(const ChildMaps& maps, const PointInElement& point, double margin) {
+    for (std::size_t c = 0; c < maps.child.size(); ++c) {
+        Point s;
+        if (!maps.child[c](point.at, s)) continue;
+        if (!(face_distance(maps.child[c].shape(), s) >= -margin)) continue;
+        handed_.push_back({s, point.point, static_cast<std::uint32_t>(c)});
+    }
+}
+
+template <class Real>
+NodeMask Descent<Real>::sort_by_child(Level& level) {
+    const std::size_t count = level.maps->child.size();
+    NodeMask some = 0;
+    std::fill_n(level.first.begin(), count + 1, 0U);
+    for (const auto& in : handed_) {
+        some |= NodeMask{1} << in.element;
+        ++level.first[in.element + 1U];
+    }
+    for (std::size_t c = 0; c < count; ++c) level.first[c + 1] += level.first[c];
+    std::array<std::size_t, max_children> next;
+    std::copy_n(level.first.begin(), count, next.begin());
+    if (level.handed.size() < handed_.size()) level.handed.resize(handed_.size());
+    for (const auto& in : handed_) level.handed[next[in.element]++] = in;
+    return some;
+}
+
+template class Descent<float>;
+template class Descent<double>;
+
+}  // namespace nestgrid::engine
