@@ -88,7 +88,7 @@ ProbeResult answer(const Question<Real>& question) {
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
                   const Criterion& criterion, const Bounds& bounds) {
-    engine::require_drawable(hierarchy, {}, bounds);
+    engine::require_same_epoch(hierarchy, bounds);
     engine::require_saturated(criterion, bounds);
     return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true});
 }

@@ -83,7 +83,7 @@ public:
     }
     /// Appends a part. Numbers its vertices in their order; those that earlier parts have keep
     /// their numbers.
-    void add_part(const SurfacePart<dimension>& part, const VerticesAtNodes& at_nodes);
+    void add_part(const SurfacePart<dimension>& part, const VerticesAtNodes& at_nodes = {});
 
     /// Notes that a vertex lies at a node, unless this is known.
     void put_at_node(Number vertex, const NodePlace& node, std::span<const double> attributes) {
