@@ -8,21 +8,25 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include <vtkActor.h>
 #include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 #include <vtkWindowToImageFilter.h>
 
+#include <nestgrid/detail/geometry.hpp>
 #include <nestgrid/error.hpp>
 
 #include "surface_file.hpp"
@@ -37,58 +41,150 @@ constexpr int whole_height = 600;
 constexpr int detail_height = 420;
 constexpr double magnification = 10;
 
-vtkSmartPointer<vtkRenderer> make_view(const Panel& panel, bool whole) {
-    const vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(panel.surface);
+/// Black to violet, green and yellow, of even steps in lightness (Smith and van der Walt's viridis,
+/// through nine of its colours).
+vtkSmartPointer<vtkColorTransferFunction> make_colours(const ColourBy& colour) {
+    constexpr std::array<std::array<double, 3>, 9> viridis{{{0.267, 0.005, 0.329},
+                                                            {0.283, 0.141, 0.458},
+                                                            {0.229, 0.322, 0.546},
+                                                            {0.173, 0.449, 0.558},
+                                                            {0.128, 0.567, 0.551},
+                                                            {0.158, 0.684, 0.502},
+                                                            {0.369, 0.789, 0.383},
+                                                            {0.678, 0.864, 0.190},
+                                                            {0.993, 0.906, 0.144}}};
+    auto colours = vtkSmartPointer<vtkColorTransferFunction>::New();
+    colours->SetColorSpaceToLab();
+    const double least = colour.least;
+    const double greatest = colour.greatest > least ? colour.greatest : least + 1;
+    for (std::size_t i = 0; i < viridis.size(); ++i) {
+        const double at = double(i) / double(viridis.size() - 1);
+        const auto& [r, g, b] = viridis[i];
+        colours->AddRGBPoint(least + at * (greatest - least), r, g, b);
+    }
+    return colours;
+}
+
+vtkSmartPointer<vtkPolyDataMapper> make_mapper(vtkPolyData* data) {
+    auto mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
+    mapper->SetInputData(data);
     mapper->ScalarVisibilityOff();
-    const vtkNew<vtkActor> actor;
+    return mapper;
+}
+
+vtkSmartPointer<vtkActor> make_surface(const Panel& panel, bool whole) {
+    const auto mapper = make_mapper(panel.surface);
+    auto actor = vtkSmartPointer<vtkActor>::New();
     actor->SetMapper(mapper);
     vtkProperty* look = actor->GetProperty();
     look->SetColor(0.86, 0.80, 0.70);
     look->SetAmbient(0.28);
     look->SetDiffuse(0.75);
     look->SetSpecular(0.1);
+    if (!panel.colour.array.empty()) {
+        mapper->ScalarVisibilityOn();
+        mapper->SetScalarModeToUsePointFieldData();
+        mapper->SelectColorArray(panel.colour.array.c_str());
+        mapper->SetLookupTable(make_colours(panel.colour));
+        mapper->InterpolateScalarsBeforeMappingOn();  // colours are a function of the value
+        if (panel.across) look->LightingOff();
+    }
     if (!whole) {
         look->SetInterpolationToFlat();
         look->EdgeVisibilityOn();
         look->SetEdgeColor(0.25, 0.30, 0.40);
         look->SetLineWidth(1);
     }
-    auto view = vtkSmartPointer<vtkRenderer>::New();
-    view->AddActor(actor);
-    view->SetBackground(1, 1, 1);
+    return actor;
+}
+
+vtkSmartPointer<vtkActor> make_lines(const Panel& panel) {
+    const auto mapper = make_mapper(panel.lines);
+    mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0, -8);
+    auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(0.08, 0.08, 0.10);
+    actor->GetProperty()->SetLineWidth(1);
+    actor->GetProperty()->LightingOff();
+    return actor;
+}
+
+void set_camera(const Panel& panel, vtkRenderer* view, double zoom) {
     vtkCamera* camera = view->GetActiveCamera();
-    camera->SetPosition(1.1, 1.5, 0.7);
+    nestgrid::Point from{1.1, 1.5, 0.7};
+    nestgrid::Point up{0, 0, 1};
+    if (panel.across) {
+        from = *panel.across;
+        if (std::abs(from[2]) > 0.9 * nestgrid::norm(from)) up = {0, 1, 0};
+    }
+    camera->SetPosition(from.data());
     camera->SetFocalPoint(0, 0, 0);
-    camera->SetViewUp(0, 0, 1);
+    camera->SetViewUp(up.data());
     camera->ParallelProjectionOn();
     view->ResetCamera();
-    camera->Zoom(whole ? 1.22 : magnification);
-    if (whole) {
-        const vtkNew<vtkTextActor> text;
-        text->SetInput(panel.caption.c_str());
-        text->GetTextProperty()->SetColor(0.1, 0.1, 0.1);
-        text->GetTextProperty()->SetFontSize(22);
-        text->GetTextProperty()->SetJustificationToCentered();
-        text->SetPosition(panel_width / 2.0, whole_height - 64.0);
-        view->AddActor2D(text);
+    camera->Zoom(zoom);
+}
+
+void add_caption(const Panel& panel, vtkRenderer* view) {
+    const vtkNew<vtkTextActor> text;
+    text->SetInput(panel.caption.c_str());
+    text->GetTextProperty()->SetColor(0.1, 0.1, 0.1);
+    text->GetTextProperty()->SetFontSize(22);
+    text->GetTextProperty()->SetJustificationToCentered();
+    text->SetPosition(panel_width / 2.0, whole_height - 64.0);
+    view->AddActor2D(text);
+}
+
+void add_scalar_bar(const Panel& panel, vtkRenderer* view) {
+    const vtkNew<vtkScalarBarActor> bar;
+    bar->SetLookupTable(make_colours(panel.colour));
+    bar->SetTitle(panel.colour.array.c_str());
+    bar->SetNumberOfLabels(5);
+    bar->SetLabelFormat("%.4g");
+    bar->SetOrientationToHorizontal();
+    bar->UnconstrainedFontSizeOn();
+    for (vtkTextProperty* text : {bar->GetLabelTextProperty(), bar->GetTitleTextProperty()}) {
+        text->SetColor(0.1, 0.1, 0.1);
+        text->SetFontSize(18);
+        text->ItalicOff();
+        text->BoldOff();
+        text->ShadowOff();
     }
+    bar->SetPosition(0.1, 0.01);
+    bar->SetWidth(0.8);
+    bar->SetHeight(0.11);
+    view->AddActor2D(bar);
+}
+
+vtkSmartPointer<vtkRenderer> make_view(const Panel& panel, bool whole) {
+    auto view = vtkSmartPointer<vtkRenderer>::New();
+    view->AddActor(make_surface(panel, whole));
+    if (panel.lines != nullptr) view->AddActor(make_lines(panel));
+    view->SetBackground(1, 1, 1);
+    const bool coloured = !panel.colour.array.empty();
+    set_camera(panel, view, whole ? (coloured ? 1.12 : 1.22) : magnification);
+    if (whole) add_caption(panel, view);
+    if (whole && coloured) add_scalar_bar(panel, view);
     return view;
 }
 
 void draw(const std::vector<Panel>& panels, const fs::path& path) {
     const auto count = static_cast<double>(panels.size());
-    constexpr double split = double(detail_height) / (whole_height + detail_height);
+    const bool detailed = panels.front().detail;
+    const int height = whole_height + (detailed ? detail_height : 0);
+    const double split = detailed ? double(detail_height) / height : 0;
     const vtkNew<vtkRenderWindow> window;
     window->SetOffScreenRendering(1);
     window->SetMultiSamples(4);
-    window->SetSize(panel_width * static_cast<int>(panels.size()), whole_height + detail_height);
+    window->SetSize(panel_width * static_cast<int>(panels.size()), height);
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const double left = double(i) / count;
         const double right = double(i + 1) / count;
         const auto whole = make_view(panels[i], true);
         whole->SetViewport(left, split, right, 1);
         window->AddRenderer(whole);
+        if (!detailed) continue;
         const auto detail = make_view(panels[i], false);
         detail->SetViewport(left, 0, right, split);
         window->AddRenderer(detail);
