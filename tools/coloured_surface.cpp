@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coloured_surface.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -13,6 +14,7 @@
 #include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
+#include <nestgrid/detail/geometry.hpp>
 
 #include "extract.hpp"
 #include "input_hierarchy.hpp"
@@ -20,6 +22,10 @@
 #include "surface_file.hpp"
 
 namespace {
+
+using nestgrid::dot;
+using nestgrid::operator*;
+using nestgrid::operator-;
 
 /// One surface and what it cost.
 struct Drawn {
@@ -46,6 +52,10 @@ public:
     Drawing(const nestgrid::Hierarchy<Real>& hierarchy, const SurfaceOptions& options,
             const ColouredSurface& what)
         : hierarchy_{hierarchy}, options_{options}, what_{what}, executor_{options.threads} {
+        if (what.function == nullptr && hierarchy.facts().dimension == 3) {
+            throw nestgrid::InvalidInput(
+                "the field is one in space: give a slice, for isolines, or use 'isosurface'");
+        }
         hierarchy.facts().require_dimension(what.function == nullptr ? 2 : 3);
         if (what.function == nullptr && !options.budgets.empty()) {
             throw nestgrid::InvalidInput("--max-triangles is for grids of dimension 3");
@@ -75,9 +85,7 @@ private:
         Drawn drawn;
         drawn.threshold = options.threshold;
         const double start = now();
-        drawn.slice = indicator_
-                          ? slice(hierarchy_, *what_.function, *indicator_, options, executor_)
-                          : slice(hierarchy_, *what_.function, options, executor_);
+        drawn.slice = what_.function == nullptr ? triangles(options.threshold) : slice_at(options);
         drawn.seconds = now() - start;
         drawn.report = nestgrid::surface_report(drawn.slice.surface);
         return drawn;
@@ -168,6 +176,26 @@ void find_range(DrawnField& field) {
     }
 }
 
+/// Whether the surface lies in a plane across the z axis.
+bool is_level(const nestgrid::Surface<3>& surface) {
+    return std::ranges::all_of(surface.vertices, [&](const nestgrid::Point& x) {
+        return x[2] == surface.vertices.front()[2];
+    });
+}
+
+/// Looks across a flat surface, or, where it is closed to a solid, onto the cut.
+void set_view(Panel& panel, const ColouredSurface& what, const nestgrid::Surface<3>& surface) {
+    const nestgrid::Point normal = what.flat ? what.normal : nestgrid::Point{0, 0, 1};
+    if (!what.flat && !is_level(surface)) return;
+    if (!what.cap) {
+        panel.from = normal;
+        panel.lit = false;
+        return;
+    }
+    const double side = dot(panel.from, normal);
+    if (side > 0) panel.from = panel.from - 2 * side / dot(normal, normal) * normal;
+}
+
 Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
     nestgrid::PolyDataSink<3> sink({field.name});
     sink.take(d.slice.surface);
@@ -177,13 +205,17 @@ Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface&
                   d.threshold, d.report.triangles);
     panel.caption = text;
     panel.colour = {field.name, field.least, field.greatest};
-    if (!field.values.empty()) panel.lines = make_poly_data(d.isolines, {field.name});
+    if (!field.values.empty()) {
+        panel.lines = make_poly_data(d.isolines, {field.name});
+        panel.line_width = 2;
+        panel.detail = false;
+    }
     if (what.outlines) {
         nestgrid::PolyDataSink<2> edges({field.name});
         edges.take(nestgrid::outlines(d.slice.surface));
         panel.lines = edges.data();
     }
-    if (what.flat) panel.across = what.normal;
+    set_view(panel, what, d.slice.surface);
     return panel;
 }
 

@@ -35,10 +35,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using nestgrid::IoError;
+using nestgrid::operator+;
+using nestgrid::operator*;
 
 constexpr int panel_width = 640;
 constexpr int whole_height = 600;
 constexpr int detail_height = 420;
+constexpr int caption_height = 72;
+constexpr int bar_height = 84;
 constexpr double magnification = 10;
 
 /// Black to violet, green and yellow, of even steps in lightness (Smith and van der Walt's viridis,
@@ -87,7 +91,7 @@ vtkSmartPointer<vtkActor> make_surface(const Panel& panel, bool whole) {
         mapper->SelectColorArray(panel.colour.array.c_str());
         mapper->SetLookupTable(make_colours(panel.colour));
         mapper->InterpolateScalarsBeforeMappingOn();  // colours are a function of the value
-        if (panel.across) look->LightingOff();
+        if (!panel.lit) look->LightingOff();
     }
     if (!whole) {
         look->SetInterpolationToFlat();
@@ -105,25 +109,58 @@ vtkSmartPointer<vtkActor> make_lines(const Panel& panel) {
     auto actor = vtkSmartPointer<vtkActor>::New();
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(0.08, 0.08, 0.10);
-    actor->GetProperty()->SetLineWidth(1);
+    actor->GetProperty()->SetLineWidth(panel.line_width);
     actor->GetProperty()->LightingOff();
     return actor;
 }
 
-void set_camera(const Panel& panel, vtkRenderer* view, double zoom) {
-    vtkCamera* camera = view->GetActiveCamera();
-    nestgrid::Point from{1.1, 1.5, 0.7};
-    nestgrid::Point up{0, 0, 1};
-    if (panel.across) {
-        from = *panel.across;
-        if (std::abs(from[2]) > 0.9 * nestgrid::norm(from)) up = {0, 1, 0};
+/// The extent of the points along a direction.
+std::pair<double, double> extent(vtkPolyData* data, const nestgrid::Point& direction) {
+    std::pair<double, double> range{INFINITY, -INFINITY};
+    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+        nestgrid::Point x;
+        data->GetPoint(i, x.data());
+        const double at = nestgrid::dot(direction, x);
+        range = {std::min(range.first, at), std::max(range.second, at)};
     }
+    return range;
+}
+
+/// Looks at the whole surface from outside, so that it leaves the places of the caption and the
+/// scalar bar free.
+void set_camera(const Panel& panel, vtkRenderer* view) {
+    const nestgrid::Point& from = panel.from;
+    nestgrid::Point up{0, 0, 1};
+    if (std::abs(from[2]) > 0.9 * nestgrid::norm(from)) up = {0, 1, 0};
+    vtkCamera* camera = view->GetActiveCamera();
     camera->SetPosition(from.data());
     camera->SetFocalPoint(0, 0, 0);
     camera->SetViewUp(up.data());
+    camera->OrthogonalizeViewUp();
     camera->ParallelProjectionOn();
     view->ResetCamera();
-    camera->Zoom(zoom);
+    nestgrid::Point vertical;
+    nestgrid::Point towards;
+    nestgrid::Point centre;
+    nestgrid::Point position;
+    camera->GetViewUp(vertical.data());
+    camera->GetDirectionOfProjection(towards.data());
+    camera->GetFocalPoint(centre.data());
+    camera->GetPosition(position.data());
+    const nestgrid::Point sideways = nestgrid::cross(towards, vertical);
+    const auto [low, high] = extent(panel.surface, vertical);
+    const auto [left, right] = extent(panel.surface, sideways);
+    const double free_height = 1 - double(caption_height + bar_height) / whole_height;
+    const double aspect = double(panel_width) / whole_height;
+    const double scale = 0.5 * std::max((high - low) / free_height, (right - left) / aspect) / 0.96;
+    camera->SetParallelScale(scale);
+    const double lift = scale * double(bar_height - caption_height) / whole_height;
+    const nestgrid::Point shift =
+        ((low + high) / 2 - nestgrid::dot(centre, vertical) - lift) * vertical +
+        ((left + right) / 2 - nestgrid::dot(centre, sideways)) * sideways;
+    camera->SetFocalPoint((centre + shift).data());
+    camera->SetPosition((position + shift).data());
+    view->ResetCameraClippingRange();
 }
 
 void add_caption(const Panel& panel, vtkRenderer* view) {
@@ -132,7 +169,7 @@ void add_caption(const Panel& panel, vtkRenderer* view) {
     text->GetTextProperty()->SetColor(0.1, 0.1, 0.1);
     text->GetTextProperty()->SetFontSize(22);
     text->GetTextProperty()->SetJustificationToCentered();
-    text->SetPosition(panel_width / 2.0, whole_height - 64.0);
+    text->SetPosition(panel_width / 2.0, double(whole_height - caption_height + 8));
     view->AddActor2D(text);
 }
 
@@ -153,7 +190,7 @@ void add_scalar_bar(const Panel& panel, vtkRenderer* view) {
     }
     bar->SetPosition(0.1, 0.01);
     bar->SetWidth(0.8);
-    bar->SetHeight(0.11);
+    bar->SetHeight(double(bar_height - 10) / whole_height);
     view->AddActor2D(bar);
 }
 
@@ -163,7 +200,8 @@ vtkSmartPointer<vtkRenderer> make_view(const Panel& panel, bool whole) {
     if (panel.lines != nullptr) view->AddActor(make_lines(panel));
     view->SetBackground(1, 1, 1);
     const bool coloured = !panel.colour.array.empty();
-    set_camera(panel, view, whole ? (coloured ? 1.12 : 1.22) : magnification);
+    set_camera(panel, view);
+    if (!whole) view->GetActiveCamera()->Zoom(magnification);
     if (whole) add_caption(panel, view);
     if (whole && coloured) add_scalar_bar(panel, view);
     return view;

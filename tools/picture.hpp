@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +22,11 @@ struct Panel {
     vtkSmartPointer<vtkPolyData> surface;
     std::string caption;
     ColourBy colour{};
-    vtkSmartPointer<vtkPolyData> lines{};     ///< drawn over it, or null
-    std::optional<nestgrid::Point> across{};  ///< the direction against which it is looked at
-    bool detail = true;                       ///< magnified with its triangles below
+    vtkSmartPointer<vtkPolyData> lines{};  ///< drawn over it, or null
+    float line_width = 1;                  ///< in pixels
+    nestgrid::Point from{1.1, 1.5, 0.7};   ///< the direction from which it is looked at
+    bool lit = true;
+    bool detail = true;  ///< magnified with its triangles below
 };
 
 /// Writes a PNG with the surfaces side by side, each whole above and, where asked for, magnified

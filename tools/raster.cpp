@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
@@ -25,8 +26,35 @@ namespace fs = std::filesystem;
 using nestgrid::InvalidInput;
 using nestgrid::IoError;
 
+/// \throw IoError where a portable grey map holds fewer bytes than its header says, which VTK does
+///        not notice
+void check_grey_map(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string magic;
+    std::array<std::uintmax_t, 3> header{};  // width, height, greatest value
+    file >> magic;
+    if (magic != "P5") return;
+    for (std::uintmax_t& number : header) {
+        while (file >> std::ws && file.peek() == '#') std::getline(file, magic);
+        file >> number;
+    }
+    file.get();
+    const auto begin = static_cast<std::uintmax_t>(file.tellg());
+    const auto& [width, height, greatest] = header;
+    if (!file || width > 1U << 20U || height > 1U << 20U) {
+        throw IoError(path.string() + " has a damaged header");
+    }
+    const std::uintmax_t needed = width * height * (greatest > 255 ? 2 : 1);
+    if (fs::file_size(path) - begin < needed) {
+        throw IoError(path.string() + " is cut off: it has " +
+                      std::to_string(fs::file_size(path) - begin) + " bytes of pixels, not " +
+                      std::to_string(needed));
+    }
+}
+
 /// Puts the geometry and the samples of a picture into a parcel.
 void read_picture(const fs::path& path, Parcel& parcel) {
+    check_grey_map(path);
     const auto reader = vtkSmartPointer<vtkImageReader2>::Take(
         vtkImageReader2Factory::CreateImageReader2(path.c_str()));
     if (reader == nullptr) throw IoError(path.string() + " is no picture that can be read");

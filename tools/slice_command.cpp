@@ -24,7 +24,7 @@ void run_slice(Options& o) {
                   {.function = f.function.get(),
                    .cap = o.cap,
                    .outlines = o.outlines,
-                   .flat = f.flat && !o.cap,
+                   .flat = f.flat,
                    .normal = f.normal,
                    .empty = "the slice does not meet the domain"});
 }
