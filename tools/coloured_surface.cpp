@@ -201,8 +201,8 @@ Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface&
     sink.take(d.slice.surface);
     Panel panel{sink.data(), {}};
     char text[200];
-    std::snprintf(text, sizeof(text), "%s, threshold %.4g\n%zu triangles", field.name.c_str(),
-                  d.threshold, d.report.triangles);
+    std::snprintf(text, sizeof(text), "%s, threshold %.4g\n%zu triangles",
+                  short_name(field.name).c_str(), d.threshold, d.report.triangles);
     panel.caption = text;
     panel.colour = {field.name, field.least, field.greatest};
     if (!field.values.empty()) {
@@ -214,7 +214,9 @@ Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface&
         nestgrid::PolyDataSink<2> edges({field.name});
         edges.take(nestgrid::outlines(d.slice.surface));
         panel.lines = edges.data();
+        panel.detail = false;
     }
+    if (what.cap) panel.detail = false;
     set_view(panel, what, d.slice.surface);
     return panel;
 }

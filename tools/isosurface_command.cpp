@@ -20,6 +20,7 @@ struct Options {
     double box_threshold = 0;
     bool cap = false;
     bool flat = false;
+    bool at_nodes = false;
     bool against_vtk = false;
 };
 
@@ -39,7 +40,8 @@ FineBox fine_box(const Options& o) {
 }
 
 void run_isosurface(Options& o) {
-    ExtractionRequest request{.isovalue = o.value, .cap = o.cap, .normals = !o.flat};
+    ExtractionRequest request{
+        .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     SurfaceOptions& s = o.surface;
     check(s);
     if (s.thresholds.empty() && s.budgets.empty()) s.thresholds = {"0"};
@@ -111,6 +113,9 @@ Command add_isosurface(CLI::App& program) {
         ->needs("--box");
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume");
     isosurface->add_flag("--no-normals", o->flat, "leave out the normals");
+    isosurface->add_flag("--at-nodes", o->at_nodes,
+                         "put vertices at samples that equal the isovalue, in the place of slivers "
+                         "around them");
     isosurface->add_flag("--against-vtk", o->against_vtk,
                          "add VTK's own contour of the same samples to the table");
     return {isosurface, [o] { run_isosurface(*o); }};

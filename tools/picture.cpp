@@ -45,6 +45,15 @@ constexpr int caption_height = 72;
 constexpr int bar_height = 84;
 constexpr double magnification = 10;
 
+/// The range with ends that have short names: no wider by more than a ten-thousandth.
+std::pair<double, double> rounded(const ColourBy& colour) {
+    const double range = colour.greatest - colour.least;
+    if (!(range > 0)) return {colour.least, colour.least + 1};
+    const double unit = std::pow(10, std::floor(std::log10(range)) - 4);
+    return {unit * std::floor(colour.least / unit + 1e-6),
+            unit * std::ceil(colour.greatest / unit - 1e-6)};
+}
+
 /// Black to violet, green and yellow, of even steps in lightness (Smith and van der Walt's viridis,
 /// through nine of its colours).
 vtkSmartPointer<vtkColorTransferFunction> make_colours(const ColourBy& colour) {
@@ -59,8 +68,7 @@ vtkSmartPointer<vtkColorTransferFunction> make_colours(const ColourBy& colour) {
                                                             {0.993, 0.906, 0.144}}};
     auto colours = vtkSmartPointer<vtkColorTransferFunction>::New();
     colours->SetColorSpaceToLab();
-    const double least = colour.least;
-    const double greatest = colour.greatest > least ? colour.greatest : least + 1;
+    const auto [least, greatest] = rounded(colour);
     for (std::size_t i = 0; i < viridis.size(); ++i) {
         const double at = double(i) / double(viridis.size() - 1);
         const auto& [r, g, b] = viridis[i];
@@ -176,7 +184,7 @@ void add_caption(const Panel& panel, vtkRenderer* view) {
 void add_scalar_bar(const Panel& panel, vtkRenderer* view) {
     const vtkNew<vtkScalarBarActor> bar;
     bar->SetLookupTable(make_colours(panel.colour));
-    bar->SetTitle(panel.colour.array.c_str());
+    bar->SetTitle(short_name(panel.colour.array).c_str());
     bar->SetNumberOfLabels(5);
     bar->SetLabelFormat("%.4g");
     bar->SetOrientationToHorizontal();
@@ -234,6 +242,7 @@ void draw(const std::vector<Panel>& panels, const fs::path& path) {
     const vtkNew<vtkPNGWriter> writer;
     writer->SetInputConnection(image->GetOutputPort());
     writer->SetFileName(path.c_str());
+    writer->SetCompressionLevel(9);
     writer->Write();
 }
 
@@ -296,6 +305,11 @@ private:
 };
 
 }  // namespace
+
+std::string short_name(const std::string& name) {
+    constexpr std::size_t most = 30;
+    return name.size() <= most ? name : name.substr(0, most - 3) + "...";
+}
 
 void write_picture(const std::vector<Panel>& panels, const fs::path& path) {
     const fs::path temporary = temporary_beside(path);

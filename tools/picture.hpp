@@ -29,6 +29,9 @@ struct Panel {
     bool detail = true;  ///< magnified with its triangles below
 };
 
+/// The name of a field, cut off where it is too long for a picture.
+std::string short_name(const std::string& name);
+
 /// Writes a PNG with the surfaces side by side, each whole above and, where asked for, magnified
 /// with its triangles below. Coloured surfaces have a scalar bar. Debian's VTK draws through an X
 /// display; where none can be used, an Xvfb is started for the time of drawing. The drawing happens

@@ -34,6 +34,12 @@ done
 "$program" isosurface v.vti --value 130 --threshold 4.8 >out && b=$(value triangles)
 [ "$a" = "$b" ] || fail "percent: $a, $b"
 
+# Samples of whole numbers that equal the isovalue.
+"$program" isosurface v.vti --value 130 --threshold 2 >out && a=$(value triangles)
+"$program" isosurface v.vti --value 130 --threshold 2 --at-nodes >out && b=$(value triangles)
+[ "$b" -lt "$a" ] || fail "at nodes: $a, $b"
+[ "$(value open_edges) $(value nonmanifold_edges) $(value nonmanifold_vertices)" = "0 0 0" ] || fail "at nodes: $(cat out)"
+
 # Budgets, boxes and threads.
 "$program" isosurface v.vti --value 130 --threshold 0 --threads 1 -o one.vtp >out &&
     finest=$(value triangles)
