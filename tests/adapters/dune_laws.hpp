@@ -102,6 +102,7 @@ std::size_t expect_closed_at_all_thresholds(const Grid& grid, const std::vector<
         const auto result = isosurface(grid, field, 0, indicator, options);
         SCOPED_TRACE(threshold);
         expect_closed(result.surface);
+        expect_slices_or_shading<Grid::dimension>(erase(grid, field), 0, indicator, threshold);
         triangles.push_back(result.surface.simplices.size());
     }
     EXPECT_GT(triangles.front(), triangles.back());

@@ -115,6 +115,7 @@ void expect_closed_surfaces(
         } else {
             expect_closed(result.surface);
         }
+        expect_slices_or_shading<dim>(hierarchy, 0, indicator, threshold, expected.orientable);
         const bool crossed = indicator.least() < 0 && indicator.greatest() > 0;
         EXPECT_TRUE(threshold > 0 || !crossed || !result.surface.simplices.empty());
         const Elements& elements = result.surface.elements;

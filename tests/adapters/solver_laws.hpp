@@ -11,6 +11,7 @@
 #include <walk/project.hpp>
 
 #include "closedness.hpp"
+#include "slice_laws.hpp"
 
 namespace nestgrid_test {
 
@@ -42,7 +43,8 @@ void expect_single_valued(const Grid& grid, const Field& field,
 }
 
 /// Capped and not: no open edge inside the domain, a manifold, shared vertices equal to the last
-/// bit, and one value per node. Returns the lesser number of triangles.
+/// bit, and one value per node; and the laws of slices or shading. Returns the lesser number of
+/// triangles.
 template <class Grid, class Field>
 std::size_t expect_closed_level(const Grid& grid, const Field& field, double isovalue,
                                 const HierarchicalIndicator& indicator, double threshold) {
@@ -55,6 +57,7 @@ std::size_t expect_closed_level(const Grid& grid, const Field& field, double iso
         expect_closed(result.surface, cap);
         triangles = std::min(triangles, result.surface.simplices.size());
     }
+    expect_slices_or_shading<Grid::dimension>(erase(grid, field), isovalue, indicator, threshold);
     return triangles;
 }
 
@@ -72,7 +75,7 @@ void expect_closed_levels(const Grid& grid, const Field& field, double isovalue,
 }
 
 /// A linear function, and where it has a value in the unit cube, square or segment.
-struct Plane {
+struct LinearFunction {
     Point slope;  ///< no component 0, but the last of the plane
     double isovalue;
 
@@ -95,10 +98,10 @@ struct Plane {
 };
 
 /// A plane through the unit cube, and a line through the unit square, that pass by all nodes.
-inline constexpr Plane slanted_plane{{1, -2, 0.5}, -0.9 + 1 / 7.7};
-inline constexpr Plane slanted_line{{1, -2, 0}, -0.9 + 1 / 7.7};
+inline constexpr LinearFunction slanted_plane{{1, -2, 0.5}, -0.9 + 1 / 7.7};
+inline constexpr LinearFunction slanted_line{{1, -2, 0}, -0.9 + 1 / 7.7};
 template <int dim>
-constexpr const Plane& slanted = dim == 2 ? slanted_line : slanted_plane;
+constexpr const LinearFunction& slanted = dim == 2 ? slanted_line : slanted_plane;
 
 inline double size_of(const Surface<3>& surface) { return surface_report(surface).area; }
 inline double size_of(const Surface<2>& lines) {
@@ -109,10 +112,11 @@ inline double size_of(const Surface<2>& lines) {
 }
 
 /// On a grid that fills the unit cube or square, with the plane's values at the nodes: a linear
-/// function is its own projection, so its surface is the plane, at any threshold.
+/// function is its own projection, so its surface is the plane, at any threshold, and slices and
+/// height fields have its values.
 template <class Grid, class Field>
 void expect_linear_exact(const Grid& grid, const Field& field) {
-    const Plane& plane = slanted<Grid::dimension>;
+    const LinearFunction& plane = slanted<Grid::dimension>;
     const HierarchicalIndicator indicator(grid, field);
     for (const double threshold : {0.0, 1e-12, 1.0}) {
         const auto surface =
@@ -123,6 +127,7 @@ void expect_linear_exact(const Grid& grid, const Field& field) {
         }
         EXPECT_LE(off, 1e-14);
         EXPECT_NEAR(size_of(surface), plane.area(Grid::dimension), 1e-12);
+        expect_exact_values<Grid::dimension>(erase(grid, field), indicator, threshold, plane);
     }
 }
 

@@ -112,7 +112,7 @@ TEST(HyperTreeGrid, ReproducesLinearFunctionsInside) {
     everywhere(everywhere, cursor, 4, next);
 
     const HyperTreeGrid<3> grid(*trees);
-    const Plane& plane = slanted<3>;
+    const LinearFunction& plane = slanted<3>;
     const auto values = at_centres(grid, static_cast<std::size_t>(next), plane);
     const CellAverages field(grid, [&](const HyperTreeGrid<3>::Element& e) {
         return values[static_cast<std::size_t>(grid.index(e))];

@@ -11,7 +11,7 @@
 
 namespace nestgrid_test {
 
-using nestgrid::Point;
+using namespace nestgrid;
 
 /// Clips a polygon by the half-space dot(normal, x) >= offset.
 inline std::vector<Point> clipped(const std::vector<Point>& polygon, const Point& normal,

@@ -30,11 +30,13 @@ namespace nestgrid {
 
 /// A sink (surface.hpp): triangles become polygons, segments lines. Cells have the number of their
 /// element in the order of extraction ("element") and its level ("level"); points have the
-/// attributes, and normals where they are asked for ("Normals").
+/// attributes, each an array of its own name, and normals where they are asked for ("Normals").
 template <int dimension>
 class PolyDataSink final : public MeshSink<dimension> {
 public:
-    /// \param attributes names of components 1 ... of the field
+    /// \param attributes names of the attributes: of components 1 ... of the field on isosurfaces,
+    /// 0
+    ///        ... on slices; the others are called "attribute 0", "attribute 1", ...
     explicit PolyDataSink(std::vector<std::string> attributes = {})
         : names_{std::move(attributes)} {
         points_->SetDataTypeToDouble();
@@ -88,7 +90,7 @@ private:
         for (std::size_t i = attributes_.size(); i < count; ++i) {
             attributes_.push_back(vtkSmartPointer<vtkDoubleArray>::New());
             const std::string name =
-                i < names_.size() ? names_[i] : "component " + std::to_string(i + 1);
+                i < names_.size() ? names_[i] : "attribute " + std::to_string(i);
             attributes_[i]->SetName(name.c_str());
             data_->GetPointData()->AddArray(attributes_[i]);
         }
@@ -108,9 +110,11 @@ private:
 };
 
 /// The surface as vtkPolyData with copies of its arrays.
+/// \param attributes names, as of the PolyDataSink
 template <int dimension>
-vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension>& surface) {
-    PolyDataSink<dimension> sink;
+vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension>& surface,
+                                            std::vector<std::string> attributes = {}) {
+    PolyDataSink<dimension> sink(std::move(attributes));
     sink.take(surface);
     if (!surface.normals.empty()) sink.set_normals(surface.normals);
     return sink.data();
