@@ -5,13 +5,14 @@
 // grid gives, surfaces are closed; where they do not, check_grid and the preroll refuse the grid.
 #include <gtest/gtest.h>
 
-#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/node_levels.hpp>
+#include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/check_grid.hpp>
 
 #include "anisotropic_grids.hpp"
 #include "anisotropic_judge.hpp"
 #include "closedness.hpp"
+#include "cut_cube.hpp"
 #include "refusal.hpp"
 
 using namespace nestgrid_test;
@@ -63,17 +64,90 @@ void expect_closed_surfaces(const Grid& grid, const ForestField<3>& field) {
     }
 }
 
+struct PlaneAt {
+    const char* name;
+    Point through;
+    Point normal;
+    int cubes = 1;  // of the coarse grid that have each point of the plane
+};
+
+/// In general position, and through nodes, edges and faces, of elements and of the domain.
+const std::vector<PlaneAt> planes{
+    {"oblique", {0.9, 0.45, 0.52}, {0.3, 0.5, 0.81}},
+    {"z = 1/2", {0, 0, 0.5}, {0, 0, 1}},
+    {"y = 1/2", {0, 0.5, 0}, {0, -1, 0}},
+    {"x = 1", {1, 0, 0}, {1, 0, 0}, 2},
+    {"x = 3/4", {0.75, 0, 0}, {-1, 0, 0}},
+    {"y = z", {0, 0, 0}, {0, 1, -1}},
+    {"x + y + z = 2", {1, 0.5, 0.5}, {1, 1, 1}},
+    {"z = 0", {0, 0, 0}, {0, 0, 1}},
+};
+
+/// The area of a plane in the cubes that random grids divide.
+double area_in_cubes(const Forest<3>& forest, const PlaneAt& plane) {
+    double rows = 0;
+    for (const Point& x : forest.positions) rows = std::max(rows, x[1]);
+    double area = 0;
+    for (int i = 0; i < 2 * static_cast<int>(rows); ++i) {
+        const Point corner{double(i % 2), double(i / 2), 0};
+        area += area_in_cube(plane.through - corner, plane.normal);
+    }
+    return area / plane.cubes;
+}
+
+double area_of(const Surface<3>& surface) {
+    double area = 0;
+    for (const auto& [a, b, c] : surface.simplices) {
+        const Point& x = surface.vertices[a];
+        area += norm(cross(surface.vertices[b] - x, surface.vertices[c] - x)) / 2;
+    }
+    return area;
+}
+
+/// With every shared vertex computed from every element around it.
+/// \param area of a plane in the grid, or a negative number where it is not known
+template <class Grid, class Area>
+void expect_closed_slices(const Grid& grid, const ForestField<3>& field, Area&& area) {
+    const HierarchicalIndicator indicator(grid, field);
+    const Sphere ball({0.9, 0.4, 0.45}, 0.6);
+    for (const double epsilon : {0.0, 0.1, 1.0}) {
+        SCOPED_TRACE(epsilon);
+        const Threshold criterion(&indicator, epsilon);
+        const IsosurfaceOptions options{.verify = true};
+        for (const PlaneAt& at : planes) {
+            SCOPED_TRACE(at.name);
+            const Plane plane(at.through, at.normal);
+            const Slice s = slice(grid, field, plane, criterion, indicator, options);
+            expect_closed(s.surface);
+            for (const Point& x : s.surface.vertices) EXPECT_NEAR(plane.value(x), 0, 1e-12);
+            if (const double exact = area(at); exact >= 0) {
+                EXPECT_NEAR(area_of(s.surface), exact, 1e-12);
+            }
+        }
+        expect_closed(slice(grid, field, ball, criterion, indicator, options).surface);
+    }
+}
+template <class Grid>
+void expect_closed_slices(const Grid& grid, const ForestField<3>& field) {
+    expect_closed_slices(grid, field, [](const PlaneAt&) { return -1.0; });
+}
+
 /// The same grid with coarse corners moved at random.
 struct Deformed : ParentsByPlace {
-    explicit Deformed(const Forest<3>& forest) : ParentsByPlace(forest) {}
-    CoarseElement<Element> coarse(std::size_t i) const {
-        CoarseElement<Element> c = ParentsByPlace::coarse(i);
-        for (std::size_t k = 0; k < topology(c.shape).corners; ++k) {
-            std::mt19937 random(static_cast<unsigned>(c.ids[k]));
-            for (double& x : c.corners[k]) x += 0.2 * uniform(random);
+    explicit Deformed(const Forest<3>& forest) : ParentsByPlace(forest) {
+        for (std::size_t i = 0; i < coarse_count(); ++i) {
+            moved_.push_back(ParentsByPlace::coarse(i));
+            CoarseElement<Element>& c = moved_.back();
+            for (std::size_t k = 0; k < topology(c.shape).corners; ++k) {
+                std::mt19937 random(static_cast<unsigned>(c.ids[k]));
+                for (double& x : c.corners[k]) x += 0.2 * uniform(random);
+            }
         }
-        return c;
     }
+    CoarseElement<Element> coarse(std::size_t i) const { return moved_[i]; }
+
+private:
+    std::vector<CoarseElement<Element>> moved_;
 };
 
 template <class Grid>
@@ -256,6 +330,11 @@ TEST(Anisotropic, GridsThatGiveParentsDrawClosedSurfaces) {
         ++crossing;
         expect_closed_surfaces(grid, field);
         expect_closed_surfaces(Deformed(forest), field);
+        if (crossing % 10 != 0) return;
+        const auto area = [&](const PlaneAt& plane) { return area_in_cubes(forest, plane); };
+        expect_closed_slices(grid, field, area);
+        SCOPED_TRACE("deformed");
+        expect_closed_slices(Deformed(forest), field);
     });
     EXPECT_GT(supported, 2500U);
     EXPECT_GT(crossing, 300U);
@@ -282,6 +361,9 @@ TEST(Anisotropic, SupportedGridsDrawClosedSurfaces) {
         }
         expect_closed_surfaces(forest, field);
         expect_closed_surfaces(keyed, field);
+        if (supported % 10 != 0) return;
+        const auto area = [&](const PlaneAt& plane) { return area_in_cubes(forest, plane); };
+        expect_closed_slices(forest, field, area);
     });
     EXPECT_EQ(supported, 900U);
     EXPECT_GT(hanging, 300U);

@@ -117,9 +117,22 @@ inline Expected between(const std::vector<Stopped>& elements) {
     return result;
 }
 
+/// Whether a point lies in the box of an element, up to rounding. The element lies in it, too: its
+/// points are means of its corners.
+inline bool is_in_box(const Stopped& e, const Point& x) {
+    const std::span corners = std::span(e.corner).first(topology(e.shape).corners);
+    for (std::size_t d = 0; d < 3; ++d) {
+        const auto [low, high] =
+            std::ranges::minmax(corners, {}, [d](const Point& corner) { return corner[d]; });
+        if (!(x[d] >= low[d] - 1e-9 && x[d] <= high[d] + 1e-9)) return false;
+    }
+    return true;
+}
+
 /// Whether a value is that of an element around a point.
 inline bool is_value_around(const std::vector<Stopped>& elements, const Point& x, double value) {
     return std::ranges::any_of(elements, [&](const Stopped& e) {
+        if (!is_in_box(e, x)) return false;
         const std::span corners = std::span(e.corner).first(topology(e.shape).corners);
         Point s = engine::reference_middle(e.shape);
         return engine::invert(e.shape, corners, x, s) &&
@@ -130,13 +143,14 @@ inline bool is_value_around(const std::vector<Stopped>& elements, const Point& x
 
 /// What is found is what is expected; between elements it may be what another element around the
 /// point has, because a quadrilateral that is divided into triangles without a node has other
-/// values than one that is not.
+/// values than one that is not. Gives up after ten wrong values, each of which takes a look at all
+/// elements.
 inline void expect_values(const ProbeResult& result, const Expected& expected,
                           const std::vector<Stopped>& elements) {
     ASSERT_EQ(result.values.size(), expected.points.size());
     std::size_t missed = 0;
     std::size_t wrong = 0;
-    for (std::size_t i = 0; i < expected.points.size(); ++i) {
+    for (std::size_t i = 0; i < expected.points.size() && wrong < 10; ++i) {
         missed += result.found(i) ? 0U : 1U;
         if (result.found(i) && !(std::abs(result.values[i] - expected.values[i]) < exact)) {
             wrong += is_value_around(elements, expected.points[i], result.values[i]) ? 0U : 1U;
