@@ -11,7 +11,9 @@ cd "$(dirname "$0")/.."
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}" clang-tidy
 
 # OpenMPI keeps memory in plugins that it unloads, so that nobody can name who leaks.
-export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
+# What cannot be allocated throws std::bad_alloc, as it does without the sanitizers.
+export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1
+export TSAN_OPTIONS="halt_on_error=1:allocator_may_return_null=1:suppressions='$PWD/tests/tsan.supp'"
 presets=("$@")
 [ ${#presets[@]} -gt 0 ] || presets=(asan tsan tidy)
 report=()

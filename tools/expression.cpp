@@ -43,7 +43,7 @@ Expression::Expression(const std::string& text)
         parser_->SetExpr(formula);
         parser_->Eval();
     } catch (const mu::Parser::exception_type& error) {
-        throw nestgrid::InvalidInput("the field '" + text +
+        throw nestgrid::InvalidInput("the expression '" + text +
                                      "' is no expression in x, y and z: " + message(error));
     }
 }
@@ -54,7 +54,7 @@ double Expression::operator()(const nestgrid::Point& x) const {
     x_ = x;
     const double value = parser_->Eval();
     if (!std::isfinite(value)) {
-        throw nestgrid::InvalidInput("the field '" + text_ + "' is no finite number at " +
+        throw nestgrid::InvalidInput("the expression '" + text_ + "' is no finite number at " +
                                      nestgrid::text_of(x));
     }
     return value;

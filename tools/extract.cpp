@@ -30,7 +30,8 @@ Extraction extract_one(const Grid& grid, const Field& field, const MakeCriterion
     Extraction e;
     e.threshold = threshold;
     e.budget = budget;
-    nestgrid::IsosurfaceOptions options{.normals = request.normals, .cap = request.cap};
+    nestgrid::IsosurfaceOptions options{
+        .normals = request.normals, .cap = request.cap, .at_nodes = request.at_nodes};
     if (request.progress) {
         options.progress = [&](const nestgrid::TraversalCounts& counts) {
             request.progress("looked at " + millions(counts.calls) + " elements");

@@ -39,6 +39,7 @@ struct ExtractionRequest {
     int threads = 0;  ///< 0: all
     bool cap = false;
     bool normals = true;
+    bool at_nodes = false;
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
 };

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <optional>
 
-#include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
@@ -25,28 +24,13 @@
 #include "end_checks.hpp"
 #include "sample_layout.hpp"
 #include "text_header.hpp"
+#include "vtk_errors.hpp"
 
 namespace {
 
 using nestgrid::InvalidInput;
 using nestgrid::IoError;
 namespace fs = std::filesystem;
-
-/// Collects what VTK would print.
-class ErrorCollector : public vtkCommand {
-public:
-    static ErrorCollector* New() { return new ErrorCollector; }  // NOLINT(*-naming)
-    void Execute(vtkObject*, unsigned long, void* data) override {
-        if (!message.empty()) return;
-        const std::string text = data == nullptr ? "" : static_cast<const char*>(data);
-        const std::size_t start = text.find("): ");
-        message = start == std::string::npos ? text : text.substr(start + 3);
-        std::replace(message.begin(), message.end(), '\n', ' ');
-        message.erase(message.find_last_not_of(' ') + 1);
-        if (message.empty()) message = "it cannot be read";
-    }
-    std::string message;
-};
 
 struct NamedType {
     const char* name;

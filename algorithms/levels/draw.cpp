@@ -13,13 +13,19 @@ namespace nestgrid {
 namespace engine {
 
 template <class Real>
-Levels<Real> isosurface_levels(const Hierarchy<Real>& hierarchy,
-                               std::span<const double> isovalues) {
-    Levels<Real> levels{&hierarchy, {}};
+void set_isovalues(Levels<Real>& levels, std::span<const double> isovalues) {
+    levels.levels.clear();
     for (const double isovalue : isovalues) {
         if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
         levels.levels.emplace_back(isovalue);
     }
+}
+
+template <class Real>
+Levels<Real> isosurface_levels(const Hierarchy<Real>& hierarchy,
+                               std::span<const double> isovalues) {
+    Levels<Real> levels{&hierarchy, {}};
+    set_isovalues(levels, isovalues);
     return levels;
 }
 
@@ -200,6 +206,8 @@ template void engine::require_options<2>(const IsosurfaceOptions&);
 template void engine::require_options<3>(const IsosurfaceOptions&);
 template void engine::require_same_epoch(const Hierarchy<float>&, const Bounds&);
 template void engine::require_same_epoch(const Hierarchy<double>&, const Bounds&);
+template void engine::set_isovalues(engine::Levels<float>&, std::span<const double>);
+template void engine::set_isovalues(engine::Levels<double>&, std::span<const double>);
 template engine::Levels<float> engine::isosurface_levels(const Hierarchy<float>&,
                                                          std::span<const double>);
 template engine::Levels<double> engine::isosurface_levels(const Hierarchy<double>&,

@@ -21,8 +21,10 @@ struct Levels {
     const PositionFunctions* functions = nullptr;  ///< the first components, or null
 };
 
-/// The isosurfaces of component 0.
+/// Replaces the levels by isosurfaces of component 0, and keeps the memory.
 /// \throw InvalidInput where an isovalue is not a number
+template <class Real>
+void set_isovalues(Levels<Real>& levels, std::span<const double> isovalues);
 template <class Real>
 Levels<Real> isosurface_levels(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues);
 

@@ -17,6 +17,7 @@ public:
         : hierarchy_{std::move(hierarchy)},
           criterion_{&indicator, 0},
           walk_{*hierarchy_, Drawing::needs, indicator.hanging()} {
+        levels_.hierarchy = hierarchy_.get();
         result_.surface.elements = hierarchy_->make_elements();
     }
 
@@ -25,7 +26,7 @@ public:
                                       const Executor& executor) override {
         engine::require_same_epoch(*hierarchy_, indicator);
         engine::require_options<dimension>(options);
-        levels_ = engine::isosurface_levels(*hierarchy_, std::span<const double>(&isovalue, 1));
+        engine::set_isovalues(levels_, std::span<const double>(&isovalue, 1));
         criterion_ = engine::criterion_for<dimension>(levels_, indicator, options, executor);
         search_.emplace(walk_, levels_.levels, criterion_, indicator);
         options_ = options;

@@ -120,9 +120,10 @@ template <class Real>
 void Descent<Real>::arrive(const View& view) {
     Level& level = at_level(view.level);
     if (view.father == nullptr) {
-        const auto of = std::ranges::equal_range(coarse_, static_cast<std::uint32_t>(view.coarse),
-                                                 {}, &PointInElement::element);
-        level.group = Group(of.begin(), of.end());
+        const auto coarse = static_cast<std::uint32_t>(view.coarse);
+        level.group =
+            Group(std::ranges::lower_bound(coarse_, coarse, {}, &PointInElement::element),
+                  std::ranges::upper_bound(coarse_, coarse, {}, &PointInElement::element));
         Corners x;
         level.affine = is_affine(view.shape, corners_of(*walk_, view, x));
     } else {
@@ -142,11 +143,12 @@ void Descent<Real>::refine(const View& view, Level& level) {
     const bool nested = at_level(view.level - 1).nested;
     Corners x;
     const auto corners = nested ? std::span<const Point>{} : corners_of(*walk_, view, x);
-    const auto left = std::ranges::remove_if(level.group, [&](PointInElement& in) {
+    const auto is_far = [&](PointInElement& in) {
         const bool converged = nested || invert(view.shape, corners, points_[in.point], in.at);
         return !converged || !(face_distance(view.shape, in.at) >= -margin(view.level));
-    });
-    level.group = level.group.first(level.group.size() - left.size());
+    };
+    const auto end = std::remove_if(level.group.begin(), level.group.end(), is_far);
+    level.group = Group(level.group.begin(), end);
 }
 
 template <class Real>

@@ -156,7 +156,7 @@ void NodeMerge::remove_collapsed_fans() {
     Vertex apex = none;
     for (std::size_t i = 0; i < uses.size(); ++i) {
         NumberedTriangle& t = triangles_[uses[i].triangle];
-        while (t.v[0] != uses[i].centre) std::ranges::rotate(t.v, t.v.begin() + 1);
+        while (t.v[0] != uses[i].centre) std::rotate(t.v.begin(), t.v.begin() + 1, t.v.end());
         const bool first = i == 0 || uses[i - 1].centre != uses[i].centre;
         if (first) apex = t.v[1];
         t.v[0] = apex;
@@ -176,7 +176,7 @@ void NodeMerge::cancel_pairs() {
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         auto v = triangles_[t].v;
         if (!merged_[v[0]] || !merged_[v[1]] || !merged_[v[2]]) continue;
-        std::ranges::rotate(v, std::ranges::min_element(v));
+        std::rotate(v.begin(), std::ranges::min_element(v), v.end());
         const bool turned = v[1] > v[2];
         if (turned) std::swap(v[1], v[2]);
         (turned ? backwards : forwards).push_back({v, t});
@@ -304,9 +304,10 @@ void NodeMerge::rewrite() {
     Vertex next = 0;
     for (Vertex v = 0; v < number.size(); ++v) {
         if (number[v] == none) continue;
-        const auto attributes = merged_[v] ? at_nodes_.attributes.begin() + entry_[v] * stride
-                                           : surface_.attributes.begin() + v * stride;
-        std::copy_n(attributes, stride, surface_.attributes.begin() + next * stride);
+        const double* const attributes = merged_[v]
+                                             ? at_nodes_.attributes.data() + entry_[v] * stride
+                                             : surface_.attributes.data() + v * stride;
+        std::copy_n(attributes, stride, surface_.attributes.data() + next * stride);
         surface_.vertices[next] = position(v);
         if (!surface_.normals.empty()) surface_.normals[next] = surface_.normals[v];
         number[v] = next++;

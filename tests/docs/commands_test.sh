@@ -4,6 +4,7 @@
 #
 # Commands of the README and the pages, each line of a block of code marked "sh":
 #   nestgrid ...                        is run, with small files in the place of the reader's
+#                                       its pictures in docs/figures are shown by the same page
 #   build/release/docs/examples/figures is run, and makes a figure that the same page shows
 #   other programs of build/release     are programs of this build, with a test or benchmark of their own
 #   cmake -B ...                        configures
@@ -81,12 +82,23 @@ figure() {
     echo "$file" >>made
 }
 
+# A figure that the program makes, which the page shows.
+picture() {
+    [ -s "$source/$1" ] || fail "$page: $1 is missing"
+    grep -qF "(${1#"$base/"})" "$page" || fail "$page does not show $1"
+    echo "$1" >>made
+}
+
 nestgrid() {
     local arguments=() skip=
     for argument in "$@"; do
         [ -z "$skip" ] || { skip= && continue; }
         # Pictures need a display.
         if [ "$argument" = --image ] && ! command -v Xvfb >/dev/null; then skip=1 && continue; fi
+        case "$argument" in
+        docs/figures/*) picture "$argument" && argument=${argument##*/} ;;
+        docs/examples/grids/*) argument=$source/$argument ;;
+        esac
         arguments+=("$argument")
     done
     run "$program" "${arguments[@]}"
@@ -134,7 +146,7 @@ for page in "$source"/README.md "$source"/docs/*.md; do
 done
 for file in "$source"/docs/figures/*.png; do
     grep -qxF "docs/figures/${file##*/}" made || fail "no page has the command that makes ${file##*/}"
-    [ "$(stat -c %s "$file")" -lt 122880 ] || fail "${file##*/} is larger than 120 KiB"
+    [ "$(stat -c %s "$file")" -lt 262144 ] || fail "${file##*/} is larger than 256 KiB"
 done
 [ $ran -gt 20 ] || fail "only $ran commands were found"
 [ $failures = 0 ] && echo "$ran commands were run"

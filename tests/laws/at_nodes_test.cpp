@@ -45,6 +45,16 @@ std::size_t slivers(const Surface<3>& surface) {
     return count;
 }
 
+/// Two triangles with the same vertices enclose nothing.
+std::size_t pillows(const Surface<3>& surface) {
+    auto all = surface.simplices;
+    for (auto& triangle : all) std::ranges::sort(triangle);
+    std::ranges::sort(all);
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < all.size(); ++i) count += all[i] == all[i - 1] ? 1 : 0;
+    return count;
+}
+
 template <class Grid>
 void expect_clean(const Grid& grid, const NodalSamples& samples, std::size_t& before,
                   std::size_t& after) {
@@ -64,6 +74,7 @@ void expect_clean(const Grid& grid, const NodalSamples& samples, std::size_t& be
                 EXPECT_NEAR(surface_report(clean.surface).volume,
                             surface_report(plain.surface).volume, 1e-5);
             }
+            EXPECT_EQ(pillows(clean.surface), 0U);
             before += slivers(plain.surface);
             after += slivers(clean.surface);
             expect_same(clean, isosurface(grid, field, 0.0, criterion, indicator, options,

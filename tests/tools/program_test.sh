@@ -9,31 +9,8 @@ program=$1
 work=$(mktemp -d)
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 "$2" "$work" || exit 1
+. "$(dirname "$0")/functions.sh"
 cd "$work" || exit 1
-failures=0
-prefix=(env)
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-value() { awk -v name="$1" '$1 == name { print $2 }' out; }
-
-# refused STATUS PATTERN ARGUMENTS...: one line on stderr, no output, no file.
-refused() {
-    local status=$1 pattern=$2
-    shift 2
-    ls -A >before
-    "${prefix[@]}" "$program" "$@" >out 2>err
-    local got=$?
-    ls -A | grep -vxF -f before >new
-    [ "$got" = "$status" ] || fail "$*: exit status $got, not $status"
-    [ "$(wc -l <err)" = 1 ] || fail "$*: not one line but: $(cat err)"
-    grep -qE -e "$pattern" err || fail "$*: '$(cat err)' does not say '$pattern'"
-    [ ! -s out ] || fail "$*: wrote to standard output"
-    grep -vxE 'out|err|new|before' new && fail "$*: left a file behind"
-    return 0
-}
 
 raw_options=(--dims 20,24,18 --type uint8 --spacing 0.5,1,2)
 expected=
@@ -56,6 +33,12 @@ done
 "$program" isosurface v.vti --value 130 --threshold 2% >out && a=$(value triangles)
 "$program" isosurface v.vti --value 130 --threshold 4.8 >out && b=$(value triangles)
 [ "$a" = "$b" ] || fail "percent: $a, $b"
+
+# Samples of whole numbers that equal the isovalue.
+"$program" isosurface v.vti --value 130 --threshold 2 >out && a=$(value triangles)
+"$program" isosurface v.vti --value 130 --threshold 2 --at-nodes >out && b=$(value triangles)
+[ "$b" -lt "$a" ] || fail "at nodes: $a, $b"
+[ "$(value open_edges) $(value nonmanifold_edges) $(value nonmanifold_vertices)" = "0 0 0" ] || fail "at nodes: $(cat out)"
 
 # Budgets, boxes and threads.
 "$program" isosurface v.vti --value 130 --threshold 0 --threads 1 -o one.vtp >out &&
@@ -222,7 +205,7 @@ head -c 40 tetra.off >cut.off && refused 1 'cut.off' mesh cut.off "${mesh[@]}"
 sed 's/^3 0 3 2/3 0 1 2/' tetra.off >bad.off && refused 1 'bad.off' mesh bad.off "${mesh[@]}"
 sed 's/^0 1 0/1 0 0/' tetra.off >bad.off && refused 1 'duplicate' mesh bad.off "${mesh[@]}"
 sed 's/^8 0 1 1/8 0.5 0.2 -1/' cube.smesh >bad.smesh && refused 1 'bad.smesh' mesh bad.smesh "${mesh[@]}"
-refused 1 "field 'sin\('" mesh tetra.off "${mesh[@]}" --field 'sin('
+refused 1 "expression 'sin\('" mesh tetra.off "${mesh[@]}" --field 'sin('
 refused 1 'no finite number at' mesh tetra.off "${mesh[@]}" --field 'log(x)'
 refused 1 'needs a --field' mesh tetra.off "${mesh[@]}" --tolerance 1
 refused 1 'no rule for a tetrahedron' mesh cube.smesh --family octree -o x.nestgrid

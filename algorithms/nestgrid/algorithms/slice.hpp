@@ -109,8 +109,8 @@ Slice slice(const Grid& grid, const Field& field, const LevelFunction& function,
     return slice(erase(grid, field), function, options, executor);
 }
 
-/// Slices and isosurfaces, each into a sink of its own (surface.hpp). In a SimplexSink, vertices
-/// next to nodes are not put there.
+/// Slices and isosurfaces, each into a sink of its own (surface.hpp). A SimplexSink also gets
+/// triangles without area, around nodes that lie on a slice.
 template <class Real, class Sink>
 std::vector<Slice> extract_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
                                   std::vector<Sink> sinks, const Criterion& criterion,

@@ -22,6 +22,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
 
+#include <nestgrid/algorithms/polylines.hpp>
 #include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/error.hpp>
 
@@ -117,6 +118,33 @@ vtkSmartPointer<vtkPolyData> make_poly_data(const Surface<dimension>& surface,
     sink.take(surface);
     if (!surface.normals.empty()) sink.set_normals(surface.normals);
     return sink.data();
+}
+
+/// Lines as vtkPolyData: one cell a line, with its value ("value"); points have the attributes.
+/// \param attributes their names
+inline vtkSmartPointer<vtkPolyData> make_poly_data(
+    const Polylines& lines, const std::vector<std::string>& attributes = {}) {
+    Surface<2> vertices;
+    vertices.vertices = lines.vertices;
+    vertices.attributes = lines.attributes;
+    PolyDataSink<2> sink(attributes);
+    sink.take(vertices);
+    const vtkNew<vtkPolyData> data;
+    data->SetPoints(sink.data()->GetPoints());
+    data->GetPointData()->ShallowCopy(sink.data()->GetPointData());
+    const vtkNew<vtkCellArray> cells;
+    const vtkNew<vtkDoubleArray> value;
+    value->SetName("value");
+    for (std::size_t i = 0; i < lines.count(); ++i) {
+        cells->InsertNextCell(static_cast<int>(lines.line(i).size()));
+        for (const std::uint32_t v : lines.line(i)) {
+            cells->InsertCellPoint(static_cast<vtkIdType>(v));
+        }
+        value->InsertNextValue(lines.value[i]);
+    }
+    data->SetLines(cells);
+    data->GetCellData()->AddArray(value);
+    return data.GetPointer();
 }
 
 /// The surface as vtkPolyData on its own arrays: positions, corners of simplices, normals and

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Slices, isolines, heights, boundaries and probes of the program: results, files, and wrong input.
+# Arguments: the program, the maker of volumes.
+set -uo pipefail
+program=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+"$2" "$work" || exit 1
+. "$(dirname "$0")/functions.sh"
+cd "$work" || exit 1
+
+run() {
+    "$program" "$@" >out 2>err || fail "$*: $(cat err)"
+    [ ! -s err ] || fail "$*: wrote to standard error: $(cat err)"
+}
+expect() {
+    awk -v got="$(value "$1")" -v wanted="$2" -v name="$1" 'BEGIN {
+        if (got == "" || (got - wanted)^2 > 1e-10 * (1 + wanted^2)) {
+            print "FAILED: " name " is " got ", not " wanted; exit 1 } }' || failures=$((failures + 1))
+}
+
+# The volume is 9.5 x 23 x 34 long. Slices through samples, between them, and on the boundary.
+for z in 0 9.3 18 34; do
+    run slice v.vti --axis z --at $z --threshold 2%
+    expect area 218.5
+    expect open_edges 0
+done
+run slice v.vti --plane 4.75,0,0,1,0,0
+expect area 782
+run boundary v.vti --threshold 5 -o b.vtp --outlines
+expect area 2647
+expect boundary_edges 0
+grep -q 'Name="value"' b.vtp || fail "the field is no array of its own name"
+for array in level element; do grep -q "Name=\"$array\"" b.vtp || fail "no $array in b.vtp"; done
+run slice v.vti --sphere 4.75,11.5,17,4 --cap
+run slice v.vti --cylinder 4.75,11.5,17,0,0,1,3 -o c.ply
+[ -s c.ply ] || fail "no c.ply"
+run slice v.vti --function 'x-4.75' --threshold 0
+expect area 782
+run slice v.vti --axis x --at 5 --threshold 0 --threshold 20 -o s.vtp
+[ -s s-1.vtp ] && [ -s s-2.vtp ] || fail "no files for two thresholds"
+run slice v.vti --axis z --at 17 --max-triangles 600
+[ "$(value triangles)" -le 600 ] || fail "more triangles than asked for"
+
+run isolines v.vti --axis z --at 17 --count 4 -o l.vtp
+[ "$(grep -c '^isoline' out)" -ge 4 ] || fail "no isolines"
+grep -q 'Name="value"' l.vtp || fail "isolines without values"
+
+# A picture of 9 x 7 pixels: 2 x, and one bright pixel.
+{
+    printf 'P5\n9 7\n255\n'
+    for y in 0 1 2 3 4 5 6; do
+        for x in 0 1 2 3 4 5 6 7 8; do printf "\\$(printf %o $((20 + 2 * x)))"; done
+    done
+} >ramp.pgm
+run height ramp.pgm --scale 1
+expect area 107.331263
+expect open_edges 0
+run surface ramp.pgm --threshold 1 --outlines -o ramp.vtp
+expect area 48
+run isolines ramp.pgm --values 25,31 -o r.vtp
+[ "$(grep -c '^isoline .*open, length 6$' out)" = 2 ] || fail "isolines of a ramp: $(cat out)"
+
+run probe v.vti --line 0,0,0,9.5,23,34 --count 3
+[ "$(wc -l <out)" = 4 ] || fail "probe: $(cat out)"
+head -1 out | grep -qx 'x,y,z,value,level' || fail "probe: no names of columns"
+printf 'x,y,z\n1,2,3\n100,0,0\n' >points.csv
+run probe v.vti --points points.csv -o values.csv
+[ ! -s out ] || fail "probe -o wrote to standard output"
+[ "$(sed -n 3p values.csv)" = '100,0,0,,' ] || fail "a point outside: $(cat values.csv)"
+
+refused 1 'needs one of --plane' slice v.vti -o x.vtp
+refused 1 'needs one of --plane' slice v.vti --axis x --at 1 --sphere 1,1,1,1
+refused 1 'normal of the plane is 0' slice v.vti --plane 1,2,3,0,0,0 -o x.vtp
+refused 1 "expression 'x\+' is no expression" slice v.vti --function x+ -o x.vtp
+refused 1 'no finite number at' slice v.vti --function 'log(x-5)' -o x.vtp
+refused 1 'does not meet the domain' slice v.vti --axis z --at 100 -o x.vtp --image x.png
+refused 1 'radius of the sphere' slice v.vti --sphere 1,1,1,-2 -o x.vtp
+refused 2 '--axis' slice v.vti --axis q --at 1 -o x.vtp
+refused 2 '--plane' slice v.vti --plane 1,2,3 -o x.vtp
+refused 1 'no known format' slice v.vti --axis x --at 1 -o x.doc
+refused 1 'either --values or --count' isolines v.vti --axis z --at 1
+refused 1 'not finite' isolines v.vti --axis z --at 1 --values nan
+refused 1 'give a slice' isolines v.vti --values 3
+refused 1 'one in space' height v.vti --scale 1
+refused 1 'scale is 0' height ramp.pgm --scale nan
+refused 1 'max-triangles is for grids of dimension 3' surface ramp.pgm --max-triangles 5
+head -c 40 ramp.pgm >cut.pgm && refused 1 'cut.pgm is cut off' height cut.pgm --scale 1 -o x.vtp
+: >empty.png && refused 1 'empty.png' height empty.png --scale 1
+echo text >text.png && refused 1 'text.png' height text.png --scale 1
+refused 1 'missing.pgm does not exist' height missing.pgm --scale 1
+refused 1 'either --line or --points' probe v.vti
+refused 1 'none.csv cannot be opened' probe v.vti --points none.csv
+printf '1,2,3\n1,2\n' >bad.csv && refused 1 'bad.csv, line 2' probe v.vti --points bad.csv
+printf '1,2,nan\n1,2,nan\n' >bad.csv && refused 1 'bad.csv, line 2' probe v.vti --points bad.csv
+refused 1 'count is below 2' probe v.vti --line 0,0,0,1,1,1 --count 1
+
+[ $failures = 0 ] && echo "all as it should be"
+exit $((failures > 0))

@@ -1,0 +1,30 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# What tests of the program have in common. Requires $program, and a folder of their own.
+
+failures=0
+prefix=(env)
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+value() { awk -v name="$1" '$1 == name { print $2 }' out; }
+
+# refused STATUS PATTERN ARGUMENTS...: one line on stderr, no output, no file.
+refused() {
+    local status=$1 pattern=$2
+    shift 2
+    ls -A >before
+    "${prefix[@]}" "$program" "$@" >out 2>err
+    local got=$?
+    ls -A | grep -vxF -f before >new
+    [ "$got" = "$status" ] || fail "$*: exit status $got, not $status"
+    [ "$(wc -l <err)" = 1 ] || fail "$*: not one line but: $(cat err)"
+    grep -qE -e "$pattern" err || fail "$*: '$(cat err)' does not say '$pattern'"
+    [ ! -s out ] || fail "$*: wrote to standard output"
+    grep -vxE 'out|err|new|before' new && fail "$*: left a file behind"
+    return 0
+}
+

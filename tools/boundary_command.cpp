@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/boundary_surface.hpp>
+
+#include "coloured_surface.hpp"
+
+namespace {
+
+struct Options {
+    Input input;
+    SurfaceOptions surface;
+    bool outlines = false;
+};
+
+}  // namespace
+
+Command add_boundary(CLI::App& program) {
+    auto o = std::make_shared<Options>();
+    CLI::App* boundary = program.add_subcommand("boundary", "draw the boundary, coloured");
+    add_input_options(*boundary, o->input);
+    add_surface_options(*boundary, o->surface);
+    boundary->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
+    return {boundary, [o] {
+                const nestgrid::detail::Everywhere everywhere;
+                draw_coloured(o->input, o->surface,
+                              {.function = &everywhere,
+                               .cap = true,
+                               .outlines = o->outlines,
+                               .empty = "the hierarchy has no boundary"});
+            }};
+}

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nestgrid/algorithms/slice.hpp>
+
+#include "command_line.hpp"
+
+/// A surface that is coloured by the field.
+struct ColouredSurface {
+    /// A slice of a hierarchy of dimension 3; null for the grid of one of dimension 2.
+    const nestgrid::LevelFunction* function = nullptr;
+    bool cap = false;          ///< with the part of the boundary where the function is positive
+    double scale = 0;          ///< heights of a grid of dimension 2, in multiples of the field
+    bool outlines = false;     ///< with the edges of elements
+    bool flat = false;         ///< in a plane, to be looked at across it
+    nestgrid::Point normal{};  ///< of that plane
+    std::string empty{};       ///< the sentence that says why there are no triangles
+    /// Isolines on the surface, in the place of the surface in files: their values, or their
+    /// number.
+    std::vector<double> values{};
+    int value_count = 0;
+};
+
+/// Draws, writes, paints and prints the surface at each threshold or budget.
+/// \throw nestgrid::IoError, nestgrid::InvalidInput, nestgrid::GridError
+void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what);

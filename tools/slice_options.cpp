@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slice_options.hpp"
+
+#include <mutex>
+
+#include <nestgrid/error.hpp>
+
+#include "expression.hpp"
+
+namespace {
+
+/// The zero of an expression. All elements are searched, because nothing bounds it.
+class ExpressionFunction final : public nestgrid::LevelFunction {
+public:
+    explicit ExpressionFunction(const std::string& text) : expression_{text} {}
+    double value(const nestgrid::Point& x) const override {
+        const std::scoped_lock lock(mutex_);
+        return expression_(x);
+    }
+
+private:
+    Expression expression_;
+    mutable std::mutex mutex_;  // the parser has one place for x, y and z
+};
+
+int count_slices(const SliceOptions& o) {
+    return int(!o.plane.empty()) + int(!o.axis.empty()) + int(!o.sphere.empty()) +
+           int(!o.cylinder.empty()) + int(!o.function.empty());
+}
+
+nestgrid::Point point_at(const std::vector<double>& numbers, std::size_t first) {
+    return {numbers[first], numbers[first + 1], numbers[first + 2]};
+}
+
+}  // namespace
+
+void add_slice_options(CLI::App& command, SliceOptions& options) {
+    command.add_option("--plane", options.plane, "a point and the normal of a plane, x,y,z,x,y,z")
+        ->delimiter(',')
+        ->expected(6);
+    command.add_option("--axis", options.axis, "x, y or z: a plane across this axis, at --at")
+        ->check(CLI::IsMember({"x", "y", "z"}));
+    command.add_option("--at", options.at, "the coordinate of that plane")->needs("--axis");
+    command
+        .add_option("--sphere", options.sphere, "the centre and the radius of a sphere, x,y,z,r")
+        ->delimiter(',')
+        ->expected(4);
+    command
+        .add_option("--cylinder", options.cylinder,
+                    "a point on the axis of a cylinder, the axis and the radius, x,y,z,x,y,z,r")
+        ->delimiter(',')
+        ->expected(7);
+    command.add_option("--function", options.function,
+                       "the zero of an expression in x, y and z: \"x*x+y*y-4\"");
+}
+
+bool is_sliced(const SliceOptions& options) { return count_slices(options) > 0; }
+
+SliceFunction slice_function(const SliceOptions& o) {
+    if (count_slices(o) != 1) {
+        throw nestgrid::InvalidInput(
+            "a slice needs one of --plane, --axis, --sphere, --cylinder and --function");
+    }
+    if (!o.plane.empty() || !o.axis.empty()) {
+        nestgrid::Point through{};
+        nestgrid::Point normal{};
+        if (o.plane.empty()) {
+            const auto d = static_cast<std::size_t>(o.axis[0] - 'x');
+            through[d] = o.at;
+            normal[d] = 1;
+        } else {
+            through = point_at(o.plane, 0);
+            normal = point_at(o.plane, 3);
+        }
+        return {std::make_unique<nestgrid::Plane>(through, normal), true, normal};
+    }
+    if (!o.sphere.empty()) {
+        return {std::make_unique<nestgrid::Sphere>(point_at(o.sphere, 0), o.sphere[3]), false, {}};
+    }
+    if (!o.cylinder.empty()) {
+        return {std::make_unique<nestgrid::Cylinder>(point_at(o.cylinder, 0),
+                                                     point_at(o.cylinder, 3), o.cylinder[6]),
+                false,
+                {}};
+    }
+    return {std::make_unique<ExpressionFunction>(o.function), false, {}};
+}
