@@ -3,6 +3,7 @@
 #include <surfaces/merge_at_nodes.hpp>
 
 #include <algorithm>
+#include <numeric>
 
 #include <surfaces/collinear_triangles.hpp>
 #include <surfaces/union_find.hpp>
@@ -41,9 +42,10 @@ public:
     }
 
 private:
+    /// The side opposite a vertex in a triangle.
     struct Side {
         Edge edge;
-        Vertex opposite;
+        std::uint32_t triangle;
     };
 
     NodeKey key(Vertex v) const { return at_nodes_.node[entry_[v]].key; }
@@ -61,11 +63,11 @@ private:
     bool is_collapsed(const NumberedTriangle& t) const;
     void remove_collapsed_fans();
     void cancel_pairs();
+    void find_links();
+    template <class Function>
+    void for_each_link(Function&& function);
     bool separate_offenders();
-    std::vector<Side> changed_sides() const;
-    void find_shared_edges(std::vector<Vertex>& offenders) const;
-    void find_pinched_vertices(std::vector<Vertex>& offenders) const;
-    static bool is_one_fan(std::span<const Edge> link);
+    static bool is_one_fan(std::span<const Side> link);
     void find_boundary();
     void rewrite();
 
@@ -76,6 +78,8 @@ private:
     std::vector<bool> merged_;   // by root: whether its class is one vertex at the node
     std::vector<bool> on_line_;  // by root: whether collinear triangles may have it
     std::vector<NumberedTriangle> triangles_;
+    std::vector<Side> sides_;                // opposite the first vertex, the second, ...
+    std::vector<std::uint32_t> first_side_;  // by vertex: its first one in sides_
 };
 
 /// Joins vertices at one node along the edges of the surface. The least vertex of a class
@@ -167,112 +171,101 @@ void NodeMerge::remove_collapsed_fans() {
 
 /// Removes pairs of triangles with the same merged vertices and opposite orientations.
 void NodeMerge::cancel_pairs() {
-    struct Turned {
-        std::array<Vertex, 3> v;  // the least vertex first
-        std::uint32_t number;
-    };
-    std::vector<Turned> forwards;
-    std::vector<Turned> backwards;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-        auto v = triangles_[t].v;
-        if (!merged_[v[0]] || !merged_[v[1]] || !merged_[v[2]]) continue;
-        std::rotate(v.begin(), std::ranges::min_element(v), v.end());
-        const bool turned = v[1] > v[2];
-        if (turned) std::swap(v[1], v[2]);
-        (turned ? backwards : forwards).push_back({v, t});
-    }
-    std::ranges::stable_sort(forwards, {}, &Turned::v);
-    std::ranges::stable_sort(backwards, {}, &Turned::v);
-    auto back = backwards.begin();
-    for (const Turned& t : forwards) {
-        while (back != backwards.end() && back->v < t.v) ++back;
-        if (back == backwards.end() || back->v != t.v) continue;
-        triangles_[t.number].from = none;
-        triangles_[back++->number].from = none;
-    }
+    for_each_link([&](Vertex v, std::span<const Side> link) {
+        for (const Side& side : link) {
+            const auto [a, b] = side.edge;
+            if (!merged_[v] || !merged_[a] || !merged_[b] || v > a || v > b || a > b) continue;
+            const Edge turned{b, a};
+            const auto back = std::ranges::find_if(link, [&](const Side& other) {
+                return other.edge == turned && triangles_[other.triangle].from != none;
+            });
+            if (back == link.end()) continue;
+            triangles_[side.triangle].from = none;
+            triangles_[back->triangle].from = none;
+        }
+    });
     std::erase_if(triangles_, [](const NumberedTriangle& t) { return t.from == none; });
 }
 
-/// The directed sides of triangles that renaming and flips may have changed, sorted.
-auto NodeMerge::changed_sides() const -> std::vector<Side> {
-    std::vector<Side> sides;
-    for (const NumberedTriangle& t : triangles_) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Edge edge{t.v[i], t.v[(i + 1) % 3]};
-            if (on_line_[edge[0]] || on_line_[edge[1]]) sides.push_back({edge, t.v[(i + 2) % 3]});
+/// Finds the triangles around each vertex that renaming and flips may have changed.
+void NodeMerge::find_links() {
+    first_side_.assign(surface_.vertices.size() + 1, 0);
+    const auto for_each_corner = [&](auto&& function) {
+        for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+            const auto& v = triangles_[t].v;
+            if (on_line_[v[0]]) function(v[0], Side{{v[1], v[2]}, t});
+            if (on_line_[v[1]]) function(v[1], Side{{v[2], v[0]}, t});
+            if (on_line_[v[2]]) function(v[2], Side{{v[0], v[1]}, t});
         }
-    }
-    std::ranges::sort(sides, {}, &Side::edge);
-    return sides;
-}
-
-/// Finds the ends of edges along which two triangles run the same way, and the vertices opposite
-/// edges of which neither end is merged.
-void NodeMerge::find_shared_edges(std::vector<Vertex>& offenders) const {
-    const std::vector<Side> sides = changed_sides();
-    for (std::size_t i = 1; i < sides.size(); ++i) {
-        const auto& [a, b] = sides[i].edge;
-        if (sides[i].edge != sides[i - 1].edge) continue;
-        offenders.insert(offenders.end(), {a, b});
-        if (merged_[a] || merged_[b]) continue;
-        offenders.insert(offenders.end(), {sides[i].opposite, sides[i - 1].opposite});
-    }
-}
-
-/// Finds merged vertices around which the triangles are not one fan.
-void NodeMerge::find_pinched_vertices(std::vector<Vertex>& offenders) const {
-    struct Opposite {
-        Vertex vertex;
-        Edge side;
     };
-    std::vector<Opposite> all;
-    for (const NumberedTriangle& t : triangles_) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (merged_[t.v[i]]) all.push_back({t.v[i], {t.v[(i + 1) % 3], t.v[(i + 2) % 3]}});
-        }
-    }
-    std::ranges::stable_sort(all, {}, &Opposite::vertex);
-    std::vector<Edge> link;
-    for (std::size_t i = 0; i < all.size();) {
-        const Vertex vertex = all[i].vertex;
-        link.clear();
-        for (; i < all.size() && all[i].vertex == vertex; ++i) link.push_back(all[i].side);
-        if (!is_one_fan(link)) offenders.push_back(vertex);
+    for_each_corner([&](Vertex v, const Side&) { ++first_side_[v + 1U]; });
+    std::partial_sum(first_side_.begin(), first_side_.end(), first_side_.begin());
+    sides_.resize(first_side_.back());
+    for_each_corner([&](Vertex v, const Side& side) { sides_[first_side_[v]++] = side; });
+    std::shift_right(first_side_.begin(), first_side_.end(), 1);
+    first_side_[0] = 0;
+}
+
+/// Calls function(vertex, link) for each of these vertices that has triangles; the link consists of
+/// the sides opposite the vertex.
+template <class Function>
+void NodeMerge::for_each_link(Function&& function) {
+    find_links();
+    for (Vertex v = 0; v < surface_.vertices.size(); ++v) {
+        const std::uint32_t first = first_side_[v];
+        const std::uint32_t last = first_side_[v + 1U];
+        if (first != last) function(v, std::span<const Side>(sides_).subspan(first, last - first));
     }
 }
 
-/// Whether the sides opposite a vertex form one path or one ring. Requires that no two sides begin,
-/// and no two end, at one vertex.
-bool NodeMerge::is_one_fan(std::span<const Edge> link) {
-    std::size_t steps = 0;
-    Vertex at = link[0][0];
-    const auto go_on = [&](std::size_t end) {
-        const auto next = std::ranges::find(link, at, [&](const Edge& e) { return e[end]; });
-        if (next == link.end()) return false;
-        at = (*next)[1 - end];
-        ++steps;
-        return true;
-    };
-    while (go_on(0)) {
-        if (at == link[0][0]) return steps == link.size();
-    }
-    at = link[0][0];
-    while (go_on(1)) {
-    }
-    return steps == link.size();
-}
-
-/// Takes the classes apart at which the surface is no manifold. \return whether there were any
+/// Takes the classes apart at which the surface is no manifold: where two triangles run along an
+/// edge the same way, and where the triangles around a vertex are not one fan.
+/// \return whether there were any
 bool NodeMerge::separate_offenders() {
     std::vector<Vertex> offenders;
-    find_shared_edges(offenders);
-    if (offenders.empty()) find_pinched_vertices(offenders);
+    for_each_link([&](Vertex v, std::span<const Side> link) {
+        bool shares = false;
+        for (const Side& side : link) {
+            for (const std::size_t end : {0U, 1U}) {
+                const Vertex at = side.edge[end];
+                const auto meets = [&](const Side& other) { return other.edge[end] == at; };
+                if (std::ranges::count_if(link, meets) < 2) continue;
+                shares = true;
+                offenders.insert(offenders.end(), {v, at});
+                if (!merged_[v] && !merged_[at]) offenders.push_back(side.edge[1 - end]);
+            }
+        }
+        if (!shares && merged_[v] && !is_one_fan(link)) offenders.push_back(v);
+    });
     bool any = false;
     for (const Vertex v : offenders) {
         any = any || merged_[v];
         merged_[v] = false;
     }
     return any;
+}
+
+/// Whether the sides opposite a vertex form one path or one ring. Requires that no two sides begin,
+/// and no two end, at one vertex.
+bool NodeMerge::is_one_fan(std::span<const Side> link) {
+    std::size_t steps = 0;
+    const Vertex start = link[0].edge[0];
+    Vertex at = start;
+    const auto go_on = [&](std::size_t end) {
+        const auto next =
+            std::ranges::find_if(link, [&](const Side& side) { return side.edge[end] == at; });
+        if (next == link.end()) return false;
+        at = next->edge[1 - end];
+        ++steps;
+        return true;
+    };
+    while (go_on(0)) {
+        if (at == start) return steps == link.size();
+    }
+    at = start;
+    while (go_on(1)) {
+    }
+    return steps == link.size();
 }
 
 /// Keeps the boundary edges that nothing changed, and adds those changed ones that one triangle
@@ -284,12 +277,16 @@ void NodeMerge::find_boundary() {
         return on_line_[edge[0]] || on_line_[edge[1]];
     };
     std::erase_if(boundary, is_changed);
-    const std::vector<Side> sides = changed_sides();
-    for (const Side& side : sides) {
-        const Edge back{side.edge[1], side.edge[0]};
-        if (!std::ranges::binary_search(sides, back, {}, &Side::edge))
-            boundary.push_back(side.edge);
-    }
+    for_each_link([&](Vertex v, std::span<const Side> link) {
+        const auto any = [&](std::size_t end, Vertex at) {
+            return std::ranges::any_of(link, [&](const Side& s) { return s.edge[end] == at; });
+        };
+        for (const Side& side : link) {
+            const auto [from, to] = side.edge;
+            if (!any(1, from)) boundary.push_back({v, from});
+            if (!on_line_[to] && !any(0, to)) boundary.push_back({to, v});
+        }
+    });
 }
 
 /// Writes the result into the surface, vertices in their old order.
