@@ -138,6 +138,28 @@ TYPED_TEST(Probes, VisitOneElementALevel) {
     }
 }
 
+/// Rounding puts points on faces and edges outside of all children. They go down all the same, and
+/// need no second descent.
+TYPED_TEST(Probes, GoDownOnceBetweenElements) {
+    if constexpr (!std::is_same_v<TypeParam, RedGreenMixed2>) {
+        for (auto& grid : TypeParam::grids()) {
+            refine_at_sphere(grid, 3 * TypeParam::steps);
+            const std::vector<double> values =
+                sample_nodes(grid, [](const Point& x) { return norm(x); });
+            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
+            const HierarchicalIndicator indicator(grid, field);
+            const Expected on =
+                between(stopped_elements(grid, field, Exact{}, indicator.hanging()));
+            for (std::size_t i = 0; i < on.points.size(); i += 1 + on.points.size() / 500) {
+                const auto point = std::span(on.points).subspan(i, 1);
+                const ProbeResult result = probe(grid, field, point, Exact{}, indicator);
+                EXPECT_LE(result.counts.calls, static_cast<std::uint64_t>(result.level[0]) + 1)
+                    << text_of(point[0]);
+            }
+        }
+    }
+}
+
 template <class Grid, class Field>
 std::size_t count_rules(const Grid& grid, const Field& field) {
     const auto hierarchy = erase(grid, field);
