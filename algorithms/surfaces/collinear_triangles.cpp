@@ -26,7 +26,9 @@ public:
         for (std::uint32_t t = 0; t < triangles_.size(); ++t) queue_if_collinear(t);
         if (queue_.empty()) return;
         for (std::uint32_t t = 0; t < triangles_.size(); ++t) index(t);
-        while (!queue_.empty()) {
+        // Flips of the longest sides end by themselves; rounding could only prolong them.
+        std::size_t flips_left = 16 * triangles_.size();
+        while (!queue_.empty() && flips_left-- > 0) {
             const Queued next = queue_.top();
             queue_.pop();
             if (triangles_[next.triangle] == next.as) flip(next.triangle);
@@ -56,9 +58,15 @@ private:
         return side[static_cast<std::size_t>(first)];
     }
 
+    /// Whether the height is next to nothing, and no side is: a flip of a triangle with two
+    /// vertices at one place would turn around that place for ever.
     bool is_collinear(std::uint32_t t) const {
         const auto& v = triangles_[t].v;
-        return std::ranges::all_of(v, candidate_) && are_collinear(at_(v[0]), at_(v[1]), at_(v[2]));
+        if (!std::ranges::all_of(v, candidate_)) return false;
+        const std::array<double, 3> side{length(v[0], v[1]), length(v[1], v[2]),
+                                         length(v[2], v[0])};
+        const auto [shortest, longest] = std::ranges::minmax(side);
+        return shortest > 1e-9 * longest && are_collinear(at_(v[0]), at_(v[1]), at_(v[2]));
     }
 
     void queue_if_collinear(std::uint32_t t) {

@@ -25,7 +25,7 @@ struct Surface {
 
     std::vector<Point> vertices;
     std::vector<Point> normals;      ///< unit length, one per vertex, where asked for
-    std::vector<double> attributes;  ///< components 1 ... of the field, vertex by vertex
+    std::vector<double> attributes;  ///< by vertex: components of the field; isosurfaces: 1 ...
     std::vector<Simplex> simplices;
     std::vector<std::uint32_t> element_of;  ///< per simplex, an index into elements
     std::vector<Point> reference;           ///< per corner of a simplex, where asked for: where it
