@@ -17,7 +17,7 @@
 
 namespace nestgrid::engine {
 
-/// What the triangles of all elements have in common.
+/// The parameters by which all elements are triangulated.
 struct GraphShape {
     double lift = 0;  ///< vertices are lifted along z by this times component 0
     double flatness;  ///< the greatest twist of a quadrilateral that two triangles draw

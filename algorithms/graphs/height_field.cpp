@@ -7,7 +7,6 @@
 #include <graphs/triangulation.hpp>
 #include <levels/draw.hpp>
 #include <levels/level_search.hpp>
-#include <levels/level_set.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {
@@ -40,10 +39,12 @@ Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const Criter
     using engine::Triangulation;
     require_drawable(hierarchy, scale, criterion, bounds, options);
     const engine::Walk<Real> walk(hierarchy, Triangulation<Real>::needs, bounds.hanging());
-    const bool stops_apart =
-        engine::LevelSearch<Real>(walk, {}, criterion, bounds).may_stop_apart();
-    const engine::Graph<Real> graph{
-        &walk, &criterion, &bounds, {scale, options.flatness}, options.elements, stops_apart};
+    const engine::Graph<Real> graph{&walk,
+                                    &criterion,
+                                    &bounds,
+                                    {scale, options.flatness},
+                                    options.elements,
+                                    engine::may_stop_apart(hierarchy, criterion, bounds)};
     Shading result;
     result.surface.elements = hierarchy.make_elements();
     Triangulation<Real> drawing(graph, {result.surface, options.elements});

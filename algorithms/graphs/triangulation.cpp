@@ -5,26 +5,15 @@
 #include <algorithm>
 #include <bit>
 
-#include <levels/level_set.hpp>
+#include <levels/error_bound.hpp>
 
 namespace nestgrid::engine {
-
-namespace {
-
-/// Whether all node keys of a hierarchy are below 2^32.
-template <class Real>
-bool has_small_keys(const Walk<Real>& walk) {
-    const std::size_t keys = walk.hierarchy().facts().node_count;
-    return keys > 0 && keys <= (std::uint64_t{1} << 32U);
-}
-
-}  // namespace
 
 template <class Real>
 Triangulation<Real>::Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder)
     : graph_{graph},
       polygon_{*graph.walk, graph.shape},
-      surface_{builder, has_small_keys(*graph.walk)} {
+      surface_{builder, graph.walk->hierarchy().facts().node_count} {
     own_nodes_.begin(graph.walk->components());
     surface_.begin(builder, nullptr, false);
 }
@@ -54,22 +43,16 @@ void Triangulation<Real>::report(Shading& result) const {
     result.table_bytes = surface_.memory_bytes();
 }
 
-/// Walks alone, or in tasks: enough of them that threads end together, and few, because a walk
-/// begins anew at each.
+/// Walks alone, or in tasks.
 template <class Real>
 void Triangulation<Real>::walk(const Executor& executor) {
     if (executor.concurrency() < 2) return graph_.walk->run(*this);
-    const std::size_t wanted = 16 * executor.concurrency();
-    const Frontier<Real> frontier(*graph_.walk, *this, 2 * wanted);
-    const std::size_t entries = frontier.entry_count();
-    const std::size_t parts = std::min(entries, wanted);
-    std::vector<std::unique_ptr<Task>> tasks(parts);
-    executor.run(
-        parts,
-        [&](std::size_t i) {
+    std::vector<std::unique_ptr<Task>> tasks(most_tasks(executor));
+    run_tasks<Real>(
+        *graph_.walk, *this, executor,
+        [&](std::size_t i) -> TaskVisitor<Real>& {
             tasks[i] = begin_task();
-            frontier.run(*graph_.walk, i * entries / parts, (i + 1) * entries / parts,
-                         *tasks[i]->draws);
+            return *tasks[i]->draws;
         },
         [&](std::size_t i) {
             add(*tasks[i]);
@@ -113,14 +96,12 @@ Decision Triangulation<Real>::inspect(const View& view, const Split& split) {
     return look(view, split);
 }
 
-/// Does not ask a saturated criterion about an element with a corner at which S > 0, because S is 1
-/// at all its new nodes then, unless one of them lies outside.
 template <class Real>
 Decision Triangulation<Real>::look(const View& view, const Split& split) {
     below_ = 0;
     if (split.rule == nullptr) return {Visit::stop, 0};
     Decision decision{Visit::stop, split.rule->all()};
-    if (view.interpolated == 0 || split.outside != 0 || !graph_.criterion->saturated()) {
+    if (!stops_unasked(graph_.criterion->saturated(), view, split)) {
         decision = question_.ask(*graph_.walk, *graph_.criterion, view, split);
     }
     if (decision.visit == Visit::stop && !records_) {
@@ -152,13 +133,7 @@ void Triangulation<Real>::extract(const View& view) {
 /// what its triangles leave out.
 template <class Real>
 void Triangulation<Real>::raise_error_bound(const View& view) {
-    double corner = 0;
-    for (unsigned left = view.interpolated; left != 0; left &= left - 1) {
-        const NodeKey key = polygon_.keys()[static_cast<std::size_t>(std::countr_zero(left))];
-        corner = std::max(corner, graph_.bounds->offset_bound(key));
-    }
-    // An interpolated parent that was made in the same split adds its own error.
-    if (view.made_by != nullptr) corner *= view.made_by->steps;
+    const double corner = corner_offset(view, polygon_.keys(), *graph_.bounds);
     const bool quadrilaterals = graph_.walk->hierarchy().facts().only_shape == Shape::quadrilateral;
     const double chord = polygon_.chord(view.is_leaf() || quadrilaterals);
     surface_.raise_error_bound((view.is_leaf() ? 0 : below_) + corner + chord);

@@ -3,10 +3,10 @@
 //
 // Triangulates the elements at which a criterion stops on a two-dimensional hierarchy.
 //
-// Where elements may stop without conforming there are two walks: the first one records the nodes
-// inside closed edges (edge_nodes.hpp), the second one draws. Tasks of several threads record and
-// draw parts; the leader puts these together in the order of one thread, so that no bit depends on
-// the number of threads.
+// Two walks draw elements that may stop without conforming: the first one records the nodes inside
+// closed edges (edge_nodes.hpp), the second one draws. One walk draws the others. Tasks of several
+// threads record and draw parts; the leader puts these together in the order of one thread, so that
+// no bit depends on the number of threads.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@
 
 namespace nestgrid::engine {
 
-/// What is drawn, and where the walks stop. All is borrowed, and shared by the tasks.
+/// The grid, the field and the criterion of a triangulation, all borrowed. Tasks share them.
 template <class Real>
 struct Graph {
     const Walk<Real>* walk;

@@ -9,6 +9,21 @@
 
 namespace nestgrid::engine {
 
+/// How far U may be from P_S U at the corners of an element that are interpolated.
+/// \param keys of the corners
+/// \param bounds tells offset_bound(key)
+template <class Real>
+double corner_offset(const ElementView<Real>& view, const std::array<NodeKey, max_corners>& keys,
+                     const auto& bounds) {
+    double greatest = 0;
+    for (unsigned left = view.interpolated; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        greatest = std::max(greatest, bounds.offset_bound(keys[i]));
+    }
+    // An interpolated parent that was made in the same split adds its own error.
+    return view.made_by == nullptr ? greatest : greatest * view.made_by->steps;
+}
+
 /// How far U may be from the level on what is drawn in an element, or on a slice from the colour of
 /// component 0: the bound of what S projected away below it, the offsets of its interpolated
 /// corners, and what the flatness of triangles adds in shapes other than simplices.
@@ -16,15 +31,8 @@ namespace nestgrid::engine {
 template <class Real>
 double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& search, Real below) {
     const ElementView<Real>& view = element.view();
-    double corner = 0;
-    for (unsigned left = view.interpolated; left != 0; left &= left - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(left));
-        corner = std::max(corner, search.offset_bound(element.keys()[i]));
-    }
-    // An interpolated parent that was made in the same split adds its own error.
-    if (view.made_by != nullptr) corner *= view.made_by->steps;
     const Topology& t = view.topology();
-    const double bound = static_cast<double>(below) + corner;
+    const double bound = static_cast<double>(below) + corner_offset(view, element.keys(), search);
     if (t.corners == t.dimension + 1U) return bound;
     const auto u = element.data(0);
     return bound + 2 * affine_residual(std::span(element.positions()).first(t.corners),

@@ -42,11 +42,11 @@ LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::span<const Level<Rea
 }
 
 template <class Real>
-bool LevelSearch<Real>::may_stop_apart() const {
-    const Hierarchy<Real>& hierarchy = walk_->hierarchy();
-    if (hierarchy.offers(Feature::constrained) || bounds_->hanging() != nullptr) return true;
-    if (dynamic_cast<const Exact*>(criterion_) != nullptr) return false;
-    return hierarchy.offers(Feature::hidden) || !bounds_->stops_conform();
+bool may_stop_apart(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
+                    const Bounds& bounds) {
+    if (hierarchy.offers(Feature::constrained) || bounds.hanging() != nullptr) return true;
+    if (dynamic_cast<const Exact*>(&criterion) != nullptr) return false;
+    return hierarchy.offers(Feature::hidden) || !bounds.stops_conform();
 }
 
 /// Whether a level of a component may pass through an element on which the component is within
@@ -98,8 +98,8 @@ std::size_t LevelSearch<Real>::corners_at_zero(const View& view, std::size_t com
     return count;
 }
 
-/// The same for a function of position. Elements with a face on the boundary that lies in the slice
-/// count: where no element is below the slice, they draw it.
+/// Whether a slice may pass through an element, or one of its faces on the boundary may lie in the
+/// slice: where no element is below the slice, the element above draws it.
 template <class Real>
 bool LevelSearch<Real>::looks_at_function(const View& view, std::size_t component,
                                           bool caps) const {
@@ -119,9 +119,6 @@ bool LevelSearch<Real>::looks_at_function(const View& view, std::size_t componen
     return of_interest(range.lo, range.hi, 0, component, caps);
 }
 
-/// Does not ask a saturated criterion about an element with a corner at which S > 0, because S is 1
-/// at all its new nodes then. Asks nevertheless where a new node lies outside, because no element
-/// may stop at such a node.
 template <class Real>
 auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
                              CriterionQuestion& question) const -> Sight {
@@ -134,7 +131,7 @@ auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
     }
     if (!interest) return {{Visit::skip, 0}, bound};
     if (rule == nullptr) return {{Visit::stop, 0}, bound};
-    if (saturated_ && view.interpolated != 0 && split.outside == 0) {
+    if (stops_unasked(saturated_, view, split)) {
         return {{Visit::stop, rule->all()}, bound};
     }
     if (!asks_for_masks_) return {question.ask(*walk_, *criterion_, view, split), bound};
@@ -216,6 +213,8 @@ NodeMask LevelSearch<Real>::holds(const NewNodes& nodes) const {
            ~nodes.outside;
 }
 
+template bool may_stop_apart(const Hierarchy<float>&, const Criterion&, const Bounds&);
+template bool may_stop_apart(const Hierarchy<double>&, const Criterion&, const Bounds&);
 template class LevelSearch<float>;
 template class LevelSearch<double>;
 

@@ -14,6 +14,11 @@
 
 namespace nestgrid::engine {
 
+/// Whether elements may stop without conforming to their neighbours.
+template <class Real>
+bool may_stop_apart(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
+                    const Bounds& bounds);
+
 /// Decides about elements by levels, criterion and bounds, all of which it borrows.
 /// Immutable: the tasks of a traversal share one.
 template <class Real>
@@ -36,7 +41,9 @@ public:
     bool is_slice(const Level<Real>& level) const { return level.component < functions_; }
     const Bounds& bounds() const { return *bounds_; }
     /// Whether elements may stop without conforming to their neighbours.
-    bool may_stop_apart() const;
+    bool may_stop_apart() const {
+        return engine::may_stop_apart(walk_->hierarchy(), *criterion_, *bounds_);
+    }
 
     /// Whether the walk in patches may ask: whether the criterion looks at keys and levels alone,
     /// and answers yes or no.

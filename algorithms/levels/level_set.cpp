@@ -13,12 +13,6 @@ namespace {
 
 unsigned all_corners(std::size_t corners) { return (1U << corners) - 1; }
 
-template <class Real>
-bool has_small_keys(const Hierarchy<Real>& hierarchy) {
-    const std::size_t keys = hierarchy.facts().node_count;
-    return keys > 0 && keys <= (std::uint64_t{1} << 32U);
-}
-
 }  // namespace
 
 template <int dimension, class Real>
@@ -32,8 +26,8 @@ LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Re
       transitions_(builders.size()),
       normals_{walk},
       at_hand_{walk, first_attribute, tally_, options} {
-    const bool small_keys = has_small_keys(walk.hierarchy());
-    for (const Builder& builder : builders) surfaces_.emplace_back(builder, small_keys);
+    const std::size_t keys = walk.hierarchy().facts().node_count;
+    for (const Builder& builder : builders) surfaces_.emplace_back(builder, keys);
     for (Transitions& t : transitions_) {
         t.record.begin(at_hand_.cuts.attribute_count(), walk.hierarchy().make_elements());
     }

@@ -17,9 +17,6 @@
 
 namespace nestgrid::engine {
 
-/// Thrown where options.progress ends a walk.
-struct Cancelled {};
-
 /// Draws several levels in one traversal; each has a builder of its own.
 template <int dimension, class Real>
 class LevelSet final : public TaskVisitor<Real>, private PatchCounts {

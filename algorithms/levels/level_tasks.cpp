@@ -10,20 +10,14 @@ namespace nestgrid::engine {
 
 template <int dimension, class Real>
 void LevelTasks<dimension, Real>::run(LevelSet<dimension, Real>& leader, const Executor& executor) {
-    // Enough parts that threads end together, and few entries, because a walk begins anew at each.
-    const std::size_t wanted = 16 * executor.concurrency();
-    const Frontier<Real> frontier(*leader.walk_, leader, 2 * wanted);
-    const std::size_t entries = frontier.entry_count();
-    const std::size_t parts = std::min(entries, wanted);
     silent_ = *leader.options_;
     silent_.progress = {};
-    std::vector<std::unique_ptr<Task>> tasks(parts);
-    executor.run(
-        parts,
-        [&](std::size_t i) {
+    std::vector<std::unique_ptr<Task>> tasks(most_tasks(executor));
+    run_tasks<Real>(
+        *leader.walk_, leader, executor,
+        [&](std::size_t i) -> TaskVisitor<Real>& {
             tasks[i] = begin(leader);
-            frontier.run(*leader.walk_, i * entries / parts, (i + 1) * entries / parts,
-                         *tasks[i]->draws);
+            return *tasks[i]->draws;
         },
         [&](std::size_t i) {
             add(*tasks[i], leader);

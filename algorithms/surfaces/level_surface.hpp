@@ -23,9 +23,10 @@ public:
     using Name = VertexNumbers::Name;
     static constexpr Number none = std::numeric_limits<Number>::max();
 
-    /// \param small_keys all node keys are below 2^32
-    LevelSurface(Builder builder, bool small_keys)
-        : builder_{std::move(builder)}, numbers_{small_keys} {}
+    /// \param node_count number of dense node keys; 0 where keys are not dense
+    LevelSurface(Builder builder, std::size_t node_count)
+        : builder_{std::move(builder)},
+          numbers_{node_count > 0 && node_count <= (std::uint64_t{1} << 32U)} {}
 
     /// Begins an empty surface, and keeps its memory.
     /// \param gradients at nodes, where normals are wanted here; else null

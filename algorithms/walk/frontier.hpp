@@ -12,12 +12,17 @@
 // Memory: 20 bytes for each element above the frontier and on it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include <nestgrid/algorithms/executor.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {
+
+/// Thrown where who is told of the progress of a walk ends it.
+struct Cancelled {};
 
 /// A visitor whose walk can be cut into tasks.
 template <class Real>
@@ -75,5 +80,29 @@ private:
     std::vector<Item> items_;
     std::size_t entries_ = 0;
 };
+
+/// How many tasks run_tasks() makes at most.
+inline std::size_t most_tasks(const Executor& executor) { return 16 * executor.concurrency(); }
+
+/// Walks for a leader by the tasks of an executor: enough of them that threads end together, and
+/// few, because a walk begins anew at each.
+/// \param begin begin(i) returns the visitor of task i, which must outlive end(i); several threads
+///        call it
+/// \param end end(i) takes what task i has done; called in the order of the tasks, by one thread at
+///        a time, while others run
+template <class Real, class Begin, class End>
+void run_tasks(const Walk<Real>& walk, TaskVisitor<Real>& leader, const Executor& executor,
+               Begin&& begin, End&& end) {
+    const std::size_t wanted = most_tasks(executor);
+    const Frontier<Real> frontier(walk, leader, 2 * wanted);
+    const std::size_t entries = frontier.entry_count();
+    const std::size_t tasks = std::min(entries, wanted);
+    executor.run(
+        tasks,
+        [&](std::size_t i) {
+            frontier.run(walk, i * entries / tasks, (i + 1) * entries / tasks, begin(i));
+        },
+        [&](std::size_t i) { end(i); });
+}
 
 }  // namespace nestgrid::engine
