@@ -59,9 +59,7 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
     }
     epoch_ = hierarchy.epoch();
     own_errors_ = static_cast<bool>(leaf_errors);
-    if (engine::hanging_nodes_unknown(hierarchy)) {
-        hanging_ = engine::derive_hanging_nodes(hierarchy);
-    }
+    hanging_ = engine::find_hanging_nodes(hierarchy);
     const bool measures = spread_.slope > 0;
     const bool plain = spread_.factor == 1 && !measures && !own_errors_;
     if (hierarchy.facts().knows_stars && plain) {

@@ -58,7 +58,6 @@ void descend(const Question<Real>& question, std::span<engine::PointInElement> f
 /// Descends nested; and then wide, with the points that the nested descent may have missed.
 template <class Real>
 ProbeResult answer(const Question<Real>& question) {
-    require_points(question.points);
     const Hierarchy<Real>& hierarchy = question.hierarchy;
     ProbeResult result;
     const std::size_t count = question.points.size();
@@ -90,14 +89,14 @@ ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> point
                   const Criterion& criterion, const Bounds& bounds) {
     engine::require_same_epoch(hierarchy, bounds);
     engine::require_saturated(criterion, bounds);
+    require_points(points);
     return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true});
 }
 
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points) {
     require_points(points);
-    HangingNodes hanging;
-    if (engine::hanging_nodes_unknown(hierarchy)) hanging = engine::derive_hanging_nodes(hierarchy);
+    const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
     const bool any = !hanging.empty();
     return answer<Real>({hierarchy, points, Exact{}, any ? &hanging : nullptr, any});
 }

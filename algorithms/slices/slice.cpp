@@ -13,21 +13,15 @@ namespace {
 template <class Real>
 class LeafBounds final : public Bounds {
 public:
-    explicit LeafBounds(const Hierarchy<Real>& hierarchy) : epoch_{hierarchy.epoch()} {
-        derived_ = engine::hanging_nodes_unknown(hierarchy);
-        if (derived_) hanging_ = engine::derive_hanging_nodes(hierarchy);
-    }
+    explicit LeafBounds(const Hierarchy<Real>& hierarchy)
+        : epoch_{hierarchy.epoch()}, hanging_{engine::find_hanging_nodes(hierarchy)} {}
     double offset_bound(NodeKey) const override { return 0; }
     double bound(const Rule&, std::span<const NodeKey>) const override { return 0; }
-    const HangingNodes* hanging() const override {
-        return derived_ && !hanging_.empty() ? &hanging_ : nullptr;
-    }
+    const HangingNodes* hanging() const override { return hanging_.empty() ? nullptr : &hanging_; }
     std::uint64_t epoch() const override { return epoch_; }
-    bool one_level_a_node() const override { return false; }
 
 private:
     std::uint64_t epoch_;
-    bool derived_;
     HangingNodes hanging_;
 };
 
@@ -53,13 +47,11 @@ auto with_levels(const Hierarchy<Real>& hierarchy, const SliceRequest& request, 
 template <class Real>
 std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
                                const SurfaceTargets<3>& targets, const Criterion& criterion,
-                               const Bounds* bounds, IsosurfaceOptions options,
+                               const Bounds& bounds, IsosurfaceOptions options,
                                const Executor& executor) {
     options.at_nodes = targets.soups.empty();
-    std::optional<LeafBounds<Real>> of_leaves;
-    if (bounds == nullptr) bounds = &of_leaves.emplace(hierarchy);
     return with_levels(hierarchy, request, [&](const engine::Levels<double>& levels) {
-        return engine::draw_levels<3>(levels, targets, criterion, *bounds, options, executor);
+        return engine::draw_levels<3>(levels, targets, criterion, bounds, options, executor);
     });
 }
 
@@ -68,27 +60,27 @@ Slice draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function
                  const HierarchicalIndicator* indicator, const IsosurfaceOptions& options,
                  const Executor& executor) {
     const SliceRequest request{{&function}};
-    const auto draw = [&](const Criterion& criterion, const Bounds* bounds) {
-        return std::move(
-            draw_slices(hierarchy, request, {}, criterion, bounds, options, executor).front());
-    };
     hierarchy.facts().require_dimension(3);
     if (indicator == nullptr && options.threshold == 0 && options.max_triangles == 0) {
-        return draw(Exact{}, nullptr);
+        const LeafBounds<Real> leaves(hierarchy);
+        return std::move(
+            draw_slices(hierarchy, request, {}, Exact{}, leaves, options, executor).front());
     }
     std::optional<HierarchicalIndicator> own;
     if (indicator == nullptr) indicator = &own.emplace(hierarchy, LeafErrors{}, executor);
-    const Threshold criterion =
-        with_levels(hierarchy, request, [&](const engine::Levels<double>& levels) {
-            return engine::criterion_for<3>(levels, *indicator, options, executor);
-        });
-    return draw(criterion, indicator);
+    return with_levels(hierarchy, request, [&](const engine::Levels<double>& levels) {
+        const Threshold s = engine::criterion_for<3>(levels, *indicator, options, executor);
+        IsosurfaceOptions merged = options;
+        merged.at_nodes = true;
+        return std::move(
+            engine::draw_levels<3>(levels, {}, s, *indicator, merged, executor).front());
+    });
 }
 
 #define NESTGRID_INSTANTIATE(Real)                                                              \
     template std::vector<Slice> draw_slices(const Hierarchy<Real>&, const SliceRequest&,        \
                                             const SurfaceTargets<3>&, const Criterion&,         \
-                                            const Bounds*, IsosurfaceOptions, const Executor&); \
+                                            const Bounds&, IsosurfaceOptions, const Executor&); \
     template Slice draw_slice(const Hierarchy<Real>&, const LevelFunction&,                     \
                               const HierarchicalIndicator*, const IsosurfaceOptions&,           \
                               const Executor&);

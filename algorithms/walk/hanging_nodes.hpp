@@ -23,4 +23,11 @@ bool hanging_nodes_unknown(const Hierarchy<Real>& hierarchy) {
            !hierarchy.facts().conforming;
 }
 
+/// The hanging nodes that a walk must be told: those derived where they are unknown, else none.
+/// \throw GridError as derive_hanging_nodes()
+template <class Real>
+HangingNodes find_hanging_nodes(const Hierarchy<Real>& hierarchy) {
+    return hanging_nodes_unknown(hierarchy) ? derive_hanging_nodes(hierarchy) : HangingNodes();
+}
+
 }  // namespace nestgrid::engine

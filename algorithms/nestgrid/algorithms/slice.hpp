@@ -31,13 +31,14 @@ struct SliceRequest {
 
 namespace detail {
 
-/// Draws slices, and isosurfaces behind them. Without bounds: at full resolution.
+/// Draws slices, and isosurfaces behind them.
 template <class Real>
 std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
                                const SurfaceTargets<3>& targets, const Criterion& criterion,
-                               const Bounds* bounds, IsosurfaceOptions options,
+                               const Bounds& bounds, IsosurfaceOptions options,
                                const Executor& executor);
-/// The first slice, with S from options.threshold or options.max_triangles.
+/// A slice with S from options.threshold or options.max_triangles.
+/// \param indicator null: computed here, or not needed at threshold 0
 template <class Real>
 Slice draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
                  const HierarchicalIndicator* indicator, const IsosurfaceOptions& options,
@@ -56,7 +57,7 @@ std::vector<Slice> slices(const Hierarchy<Real>& hierarchy, const SliceRequest& 
                           const Criterion& criterion, const Bounds& bounds,
                           const IsosurfaceOptions& options = {},
                           const Executor& executor = SequentialExecutor{}) {
-    return detail::draw_slices(hierarchy, request, {}, criterion, &bounds, options, executor);
+    return detail::draw_slices(hierarchy, request, {}, criterion, bounds, options, executor);
 }
 template <class Grid, class Field>
 std::vector<Slice> slices(const Grid& grid, const Field& field, const SliceRequest& request,
@@ -81,7 +82,7 @@ Slice slice(const Grid& grid, const Field& field, const LevelFunction& function,
     return slice(erase(grid, field), function, criterion, bounds, options, executor);
 }
 
-/// The same with S from options.threshold or options.max_triangles.
+/// Draws one slice with S from options.threshold or options.max_triangles.
 template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
@@ -95,7 +96,7 @@ Slice slice(const Grid& grid, const Field& field, const LevelFunction& function,
     return slice(erase(grid, field), function, indicator, options, executor);
 }
 
-/// The same with its own preroll, or, at threshold 0, without any.
+/// Draws one slice like that, after its own preroll, or, at threshold 0, without any.
 template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const IsosurfaceOptions& options = {},
@@ -116,7 +117,7 @@ std::vector<Slice> extract_slices(const Hierarchy<Real>& hierarchy, const SliceR
                                   std::vector<Sink> sinks, const Criterion& criterion,
                                   const Bounds& bounds, const IsosurfaceOptions& options = {},
                                   const Executor& executor = SequentialExecutor{}) {
-    return detail::draw_slices(hierarchy, request, detail::targets_of<3>(sinks), criterion, &bounds,
+    return detail::draw_slices(hierarchy, request, detail::targets_of<3>(sinks), criterion, bounds,
                                options, executor);
 }
 template <class Grid, class Field, class Sink>
