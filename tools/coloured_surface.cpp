@@ -19,6 +19,7 @@
 #include "extract.hpp"
 #include "input_hierarchy.hpp"
 #include "picture.hpp"
+#include "print.hpp"
 #include "surface_file.hpp"
 
 namespace {
@@ -116,20 +117,17 @@ private:
 };
 
 void print(const Drawn& d, const DrawnField& field) {
-    const auto line = [](const char* name, double value) {
-        std::printf("%-22s %.6g\n", name, value);
-    };
     line("threshold", d.threshold);
-    line("inspect_calls", static_cast<double>(d.slice.counts.calls));
-    line("visited", static_cast<double>(d.slice.counts.visited));
-    line("extracted", static_cast<double>(d.slice.counts.extracted));
-    line("triangles", static_cast<double>(d.report.triangles));
-    line("vertices", static_cast<double>(d.report.vertices));
+    line("inspect_calls", std::size_t{d.slice.counts.calls});
+    line("visited", std::size_t{d.slice.counts.visited});
+    line("extracted", std::size_t{d.slice.counts.extracted});
+    line("triangles", d.report.triangles);
+    line("vertices", d.report.vertices);
     line("least_value", field.least);
     line("greatest_value", field.greatest);
     line("error_bound", d.slice.error_bound);
-    line("open_edges", static_cast<double>(d.report.open_edges));
-    line("boundary_edges", static_cast<double>(d.report.boundary_edges));
+    line("open_edges", d.report.open_edges);
+    line("boundary_edges", d.report.boundary_edges);
     line("area", d.report.area);
     for (std::size_t i = 0; i < d.isolines.count(); ++i) {
         std::printf("%-22s %.6g, %s, length %.6g\n", "isoline", d.isolines.value[i],

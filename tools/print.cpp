@@ -6,12 +6,6 @@
 
 namespace {
 
-void line(const char* name, std::size_t value) { std::printf("%-22s %zu\n", name, value); }
-void line(const char* name, double value) { std::printf("%-22s %.6g\n", name, value); }
-void line(const char* name, const std::string& value) {
-    std::printf("%-22s %s\n", name, value.c_str());
-}
-
 std::string list(const double* v) {
     char text[100];
     std::snprintf(text, sizeof(text), "%.9g %.9g %.9g", v[0], v[1], v[2]);
@@ -28,6 +22,12 @@ void print_emptiness(const ExtractionRun& run, double isovalue) {
 double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / 1048576; }
 
 }  // namespace
+
+void line(const char* name, std::size_t value) { std::printf("%-22s %zu\n", name, value); }
+void line(const char* name, double value) { std::printf("%-22s %.6g\n", name, value); }
+void line(const char* name, const std::string& value) {
+    std::printf("%-22s %s\n", name, value.c_str());
+}
 
 std::string caption(const Extraction& e) {
     char text[200];

@@ -14,6 +14,11 @@ struct Seconds {
     double draw = 0;
 };
 
+// A line with the name of a quantity and its value.
+void line(const char* name, std::size_t value);
+void line(const char* name, double value);
+void line(const char* name, const std::string& value);
+
 /// One line per quantity: name and value.
 void print_result(const ExtractionRun& run, double isovalue, const Seconds& seconds);
 

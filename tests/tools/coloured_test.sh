@@ -4,13 +4,7 @@
 #
 # Slices, isolines, heights, boundaries and probes of the program: results, files, and wrong input.
 # Arguments: the program, the maker of volumes.
-set -uo pipefail
-program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-"$2" "$work" || exit 1
 . "$(dirname "$0")/functions.sh"
-cd "$work" || exit 1
 
 run() {
     "$program" "$@" >out 2>err || fail "$*: $(cat err)"

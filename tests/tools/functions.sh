@@ -1,8 +1,15 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# What tests of the program have in common. Requires $program, and a folder of their own.
+# The beginning of a test of the program: a folder of its own with volumes in it, and functions.
+# Arguments of the test: the program, the maker of volumes.
 
+set -uo pipefail
+program=$1
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+"$2" "$work" || exit 1
+cd "$work" || exit 1
 failures=0
 prefix=(env)
 
