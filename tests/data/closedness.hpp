@@ -52,6 +52,15 @@ inline void expect_closed(const Surface<2>& lines, bool capped = false) {
     }
 }
 
+/// The attribute of every vertex is that of a function.
+template <class Function>
+void expect_colours(const Surface<3>& surface, Function&& f) {
+    ASSERT_EQ(surface.attributes.size(), surface.vertices.size());
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+        EXPECT_NEAR(surface.attributes[v], f(surface.vertices[v]), 1e-12);
+    }
+}
+
 struct NodalSamples {
     std::string name;
     std::vector<double> values;

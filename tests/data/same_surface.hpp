@@ -15,6 +15,8 @@
 namespace nestgrid_test {
 
 using nestgrid::Isosurface;
+using nestgrid::Surface;
+using nestgrid::TraversalCounts;
 
 template <class T>
 void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b, const char* what) {
@@ -24,20 +26,29 @@ void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b, const ch
 }
 
 template <int dimension>
+void expect_same(const Surface<dimension>& a, const Surface<dimension>& b) {
+    expect_same_bits(a.vertices, b.vertices, "vertices");
+    expect_same_bits(a.normals, b.normals, "normals");
+    expect_same_bits(a.attributes, b.attributes, "attributes");
+    expect_same_bits(a.simplices, b.simplices, "simplices");
+    expect_same_bits(a.element_of, b.element_of, "element_of");
+    expect_same_bits(a.reference, b.reference, "reference");
+    EXPECT_EQ(a.elements.size(), b.elements.size());
+    expect_same_bits(a.shape_of, b.shape_of, "shape_of");
+    expect_same_bits(a.level_of, b.level_of, "level_of");
+    expect_same_bits(a.boundary, b.boundary, "boundary");
+}
+
+inline void expect_same(const TraversalCounts& a, const TraversalCounts& b) {
+    EXPECT_EQ(a.calls, b.calls);
+    EXPECT_EQ(a.visited, b.visited);
+    EXPECT_EQ(a.extracted, b.extracted);
+}
+
+template <int dimension>
 void expect_same(const Isosurface<dimension>& a, const Isosurface<dimension>& b) {
-    expect_same_bits(a.surface.vertices, b.surface.vertices, "vertices");
-    expect_same_bits(a.surface.normals, b.surface.normals, "normals");
-    expect_same_bits(a.surface.attributes, b.surface.attributes, "attributes");
-    expect_same_bits(a.surface.simplices, b.surface.simplices, "simplices");
-    expect_same_bits(a.surface.element_of, b.surface.element_of, "element_of");
-    expect_same_bits(a.surface.reference, b.surface.reference, "reference");
-    EXPECT_EQ(a.surface.elements.size(), b.surface.elements.size());
-    expect_same_bits(a.surface.shape_of, b.surface.shape_of, "shape_of");
-    expect_same_bits(a.surface.level_of, b.surface.level_of, "level_of");
-    expect_same_bits(a.surface.boundary, b.surface.boundary, "boundary");
-    EXPECT_EQ(a.counts.calls, b.counts.calls);
-    EXPECT_EQ(a.counts.visited, b.counts.visited);
-    EXPECT_EQ(a.counts.extracted, b.counts.extracted);
+    expect_same(a.surface, b.surface);
+    expect_same(a.counts, b.counts);
     EXPECT_EQ(a.error_bound, b.error_bound);
     EXPECT_EQ(a.stack_bytes, b.stack_bytes);
 }

@@ -95,15 +95,6 @@ double area_in_cubes(const Forest<3>& forest, const PlaneAt& plane) {
     return area / plane.cubes;
 }
 
-double area_of(const Surface<3>& surface) {
-    double area = 0;
-    for (const auto& [a, b, c] : surface.simplices) {
-        const Point& x = surface.vertices[a];
-        area += norm(cross(surface.vertices[b] - x, surface.vertices[c] - x)) / 2;
-    }
-    return area;
-}
-
 /// With every shared vertex computed from every element around it.
 /// \param area of a plane in the grid, or a negative number where it is not known
 template <class Grid, class Area>
@@ -121,7 +112,7 @@ void expect_closed_slices(const Grid& grid, const ForestField<3>& field, Area&& 
             expect_closed(s.surface);
             for (const Point& x : s.surface.vertices) EXPECT_NEAR(plane.value(x), 0, 1e-12);
             if (const double exact = area(at); exact >= 0) {
-                EXPECT_NEAR(area_of(s.surface), exact, 1e-12);
+                EXPECT_NEAR(surface_report(s.surface).area, exact, 1e-12);
             }
         }
         expect_closed(slice(grid, field, ball, criterion, indicator, options).surface);

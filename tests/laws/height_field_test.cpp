@@ -307,17 +307,8 @@ TYPED_TEST(HeightField, StaysWithinItsErrorBound) {
 }
 
 void expect_same(const Shading& a, const Shading& b) {
-    expect_same_bits(a.surface.vertices, b.surface.vertices, "vertices");
-    expect_same_bits(a.surface.attributes, b.surface.attributes, "attributes");
-    expect_same_bits(a.surface.simplices, b.surface.simplices, "simplices");
-    expect_same_bits(a.surface.element_of, b.surface.element_of, "element_of");
-    expect_same_bits(a.surface.level_of, b.surface.level_of, "level_of");
-    expect_same_bits(a.surface.shape_of, b.surface.shape_of, "shape_of");
-    expect_same_bits(a.surface.boundary, b.surface.boundary, "boundary");
-    EXPECT_EQ(a.surface.elements.size(), b.surface.elements.size());
-    EXPECT_EQ(a.counts.calls, b.counts.calls);
-    EXPECT_EQ(a.counts.visited, b.counts.visited);
-    EXPECT_EQ(a.counts.extracted, b.counts.extracted);
+    nestgrid_test::expect_same(a.surface, b.surface);
+    nestgrid_test::expect_same(a.counts, b.counts);
     EXPECT_EQ(a.error_bound, b.error_bound);
     EXPECT_EQ(a.edge_nodes, b.edge_nodes);
 }

@@ -117,46 +117,50 @@ TYPED_TEST(Probes, DoNotDependOnTheOrderOfPoints) {
     });
 }
 
-/// One call a level; where children are no parts of the map of a deformed father, points go down
-/// twice, the second time beside their elements, too.
-TYPED_TEST(Probes, VisitOneElementALevel) {
-    constexpr bool may_go_twice = std::is_same_v<TypeParam, RedGreenMixed2>;
-    for (auto& grid : TypeParam::grids()) {
-        refine_at_sphere(grid, 4 * TypeParam::steps);
+/// Calls test(grid, field, bounds, leaves) for grids of a family that are refined at the sphere,
+/// with the distance from the origin as a field.
+template <class Family, class Test>
+void for_each_distance(int levels, Test&& test) {
+    for (auto& grid : Family::grids()) {
+        refine_at_sphere(grid, levels * Family::steps);
         const std::vector<double> values =
             sample_nodes(grid, [](const Point& x) { return norm(x); });
         const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
         const HierarchicalIndicator indicator(grid, field);
-        const auto leaves = stopped_elements(grid, field, Exact{}, indicator.hanging());
-        const Expected in = inside(leaves, 200, 11);
-        const ProbeResult result = probe(grid, field, in.points);
-        std::uint64_t most = 0;
-        for (const int level : in.levels) most += static_cast<std::uint64_t>(level) + 1;
-        EXPECT_LE(result.counts.calls, may_go_twice ? 8 * most : most);
-        EXPECT_LE(result.counts.visited, result.counts.calls);
-        EXPECT_LE(result.counts.extracted, result.counts.visited);
+        test(grid, field, indicator, stopped_elements(grid, field, Exact{}, indicator.hanging()));
     }
+}
+
+/// One call a level; where children are no parts of the map of a deformed father, points go down
+/// twice, the second time beside their elements, too.
+TYPED_TEST(Probes, VisitOneElementALevel) {
+    constexpr bool may_go_twice = std::is_same_v<TypeParam, RedGreenMixed2>;
+    for_each_distance<TypeParam>(
+        4, [&](const auto& grid, const auto& field, const auto& /*indicator*/, const auto& leaves) {
+            const Expected in = inside(leaves, 200, 11);
+            const ProbeResult result = probe(grid, field, in.points);
+            std::uint64_t most = 0;
+            for (const int level : in.levels) most += static_cast<std::uint64_t>(level) + 1;
+            EXPECT_LE(result.counts.calls, may_go_twice ? 8 * most : most);
+            EXPECT_LE(result.counts.visited, result.counts.calls);
+            EXPECT_LE(result.counts.extracted, result.counts.visited);
+        });
 }
 
 /// Rounding puts points on faces and edges outside of all children. They go down all the same, and
 /// need no second descent.
 TYPED_TEST(Probes, GoDownOnceBetweenElements) {
     if constexpr (!std::is_same_v<TypeParam, RedGreenMixed2>) {
-        for (auto& grid : TypeParam::grids()) {
-            refine_at_sphere(grid, 3 * TypeParam::steps);
-            const std::vector<double> values =
-                sample_nodes(grid, [](const Point& x) { return norm(x); });
-            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
-            const HierarchicalIndicator indicator(grid, field);
-            const Expected on =
-                between(stopped_elements(grid, field, Exact{}, indicator.hanging()));
-            for (std::size_t i = 0; i < on.points.size(); i += 1 + on.points.size() / 500) {
-                const auto point = std::span(on.points).subspan(i, 1);
-                const ProbeResult result = probe(grid, field, point, Exact{}, indicator);
-                EXPECT_LE(result.counts.calls, static_cast<std::uint64_t>(result.level[0]) + 1)
-                    << text_of(point[0]);
-            }
-        }
+        for_each_distance<TypeParam>(
+            3, [&](const auto& grid, const auto& field, const auto& indicator, const auto& leaves) {
+                const Expected on = between(leaves);
+                for (std::size_t i = 0; i < on.points.size(); i += 1 + on.points.size() / 500) {
+                    const auto point = std::span(on.points).subspan(i, 1);
+                    const ProbeResult result = probe(grid, field, point, Exact{}, indicator);
+                    EXPECT_LE(result.counts.calls, static_cast<std::uint64_t>(result.level[0]) + 1)
+                        << text_of(point[0]);
+                }
+            });
     }
 }
 
@@ -172,22 +176,17 @@ std::size_t count_rules(const Grid& grid, const Field& field) {
 
 /// Memory comes in vectors that are kept, a few for each level and each rule.
 TYPED_TEST(Probes, AllocateForLevelsAndNotForElements) {
-    for (auto& grid : TypeParam::grids()) {
-        refine_at_sphere(grid, 4 * TypeParam::steps);
-        const std::vector<double> values =
-            sample_nodes(grid, [](const Point& x) { return norm(x); });
-        const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
-        const HierarchicalIndicator indicator(grid, field);
-        const auto leaves = stopped_elements(grid, field, Exact{}, indicator.hanging());
-        const auto allocations = [&](std::size_t count) {
-            const std::vector<Point> points = inside(leaves, count, 12).points;
-            const std::size_t before = allocation_count();
-            EXPECT_TRUE(probe(grid, field, points, Exact{}, indicator).found(0));
-            return allocation_count() - before;
-        };
-        const std::size_t few = allocations(500);
-        EXPECT_LT(allocations(5000), few + 200 + 30 * count_rules(grid, field));
-    }
+    for_each_distance<TypeParam>(
+        4, [&](const auto& grid, const auto& field, const auto& indicator, const auto& leaves) {
+            const auto allocations = [&](std::size_t count) {
+                const std::vector<Point> points = inside(leaves, count, 12).points;
+                const std::size_t before = allocation_count();
+                EXPECT_TRUE(probe(grid, field, points, Exact{}, indicator).found(0));
+                return allocation_count() - before;
+            };
+            const std::size_t few = allocations(500);
+            EXPECT_LT(allocations(5000), few + 200 + 30 * count_rules(grid, field));
+        });
 }
 
 }  // namespace

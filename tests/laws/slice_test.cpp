@@ -86,15 +86,14 @@ void expect_plane(const Surface<3>& surface, const PlaneAt& plane, bool affine) 
     for (const auto& [a, b] : surface.boundary) {
         EXPECT_TRUE(on_one_side(surface.vertices[a], surface.vertices[b]));
     }
-    double area = 0;
     for (const auto& [a, b, c] : surface.simplices) {
         const Point& x = surface.vertices[a];
         const Point twice = cross(surface.vertices[b] - x, surface.vertices[c] - x);
         EXPECT_TRUE(!affine || dot(twice, n) < 0) << "a triangle is turned over";
         EXPECT_GT(height_of(x, surface.vertices[b], surface.vertices[c]), 1e-9 / 64);
-        area += norm(twice) / 2;
     }
-    EXPECT_NEAR(area, area_in_cube(plane.through, n), affine ? 1e-12 : 0.01);
+    EXPECT_NEAR(surface_report(surface).area, area_in_cube(plane.through, n),
+                affine ? 1e-12 : 0.01);
 }
 
 TYPED_TEST(Slices, TakeEachPointOfThePlaneOnce) {
@@ -124,17 +123,13 @@ TYPED_TEST(Slices, CarryALinearFunctionExactly) {
         const auto f = [](const Point& x) { return 2 * x[0] - 3 * x[1] + x[2] + 0.125; };
         for (auto& grid : TypeParam::grids()) {
             refine_at_sphere(grid, 2 * TypeParam::steps);
-            std::vector<double> values;
-            for (const Point& x : grid.node_positions()) values.push_back(f(x));
+            const std::vector<double> values = sample_nodes(grid, f);
             const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
             for (const double threshold : {0.0, 1e-9}) {
                 for (const PlaneAt& plane : planes) {
                     const Plane at(plane.through, plane.normal);
                     const Slice s = nestgrid::slice(grid, field, at, {.threshold = threshold});
-                    ASSERT_EQ(s.surface.attributes.size(), s.surface.vertices.size());
-                    for (std::size_t v = 0; v < s.surface.vertices.size(); ++v) {
-                        EXPECT_NEAR(s.surface.attributes[v], f(s.surface.vertices[v]), 1e-12);
-                    }
+                    expect_colours(s.surface, f);
                 }
             }
         }
