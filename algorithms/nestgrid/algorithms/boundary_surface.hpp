@@ -49,8 +49,8 @@ Slice boundary_surface(const Grid& grid, const Field& field, const Criterion& cr
     return boundary_surface(erase(grid, field), criterion, bounds, options, executor);
 }
 
-/// The same with S from options.threshold or options.max_triangles: with its own preroll, or, at
-/// threshold 0, without any.
+/// Draws the boundary with S from options.threshold or options.max_triangles, after its own
+/// preroll, or, at threshold 0, without any.
 template <class Real>
 Slice boundary_surface(const Hierarchy<Real>& hierarchy, const IsosurfaceOptions& options = {},
                        const Executor& executor = SequentialExecutor{}) {

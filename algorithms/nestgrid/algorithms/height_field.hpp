@@ -58,18 +58,18 @@ template <class Real>
 Shading shading(const Hierarchy<Real>& hierarchy, const Criterion& criterion, const Bounds& bounds,
                 const ShadingOptions& options = {},
                 const Executor& executor = SequentialExecutor{});
-/// The same with S from options.threshold.
+/// Draws a shading with S from options.threshold.
 /// \throw InvalidInput also where the threshold is negative or not a number
 template <class Real>
 Shading shading(const Hierarchy<Real>& hierarchy, const HierarchicalIndicator& indicator,
                 const ShadingOptions& options = {},
                 const Executor& executor = SequentialExecutor{});
-/// The same with its own preroll: one call for one picture.
+/// Draws a shading with S from options.threshold, after its own preroll.
 template <class Real>
 Shading shading(const Hierarchy<Real>& hierarchy, const ShadingOptions& options = {},
                 const Executor& executor = SequentialExecutor{});
 
-/// The same, lifted along z by scale times component 0.
+/// Draws a shading lifted along z by scale times component 0.
 /// \throw InvalidInput also where the scale is not finite
 template <class Real>
 Shading height_field(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,

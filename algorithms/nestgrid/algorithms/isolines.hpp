@@ -50,7 +50,7 @@ Isolines isolines(const Grid& grid, const Field& field, std::span<const double> 
     return isolines(erase(grid, field), values, criterion, bounds, options, executor);
 }
 
-/// The same with S from options.threshold.
+/// Draws isolines with S from options.threshold.
 /// \throw InvalidInput also for options.max_triangles, which is for one isoline
 template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
@@ -68,7 +68,7 @@ Isolines isolines(const Grid& grid, const Field& field, std::span<const double> 
     return isolines(erase(grid, field), values, indicator, options, executor);
 }
 
-/// The same with its own preroll.
+/// Draws isolines with S from options.threshold, after its own preroll.
 template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
                   const IsosurfaceOptions& options = {},

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the sources have in common that draw a live grid at the head of a VTK pipeline.
+// The base of all sources that draw a live grid at the head of a VTK pipeline: keeps the indicator,
+// and tells the pipeline when the grid has changed.
 #pragma once
 
 #include <functional>
