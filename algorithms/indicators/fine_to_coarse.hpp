@@ -88,21 +88,29 @@ public:
     }
     Number& operator[](std::size_t node) { return values_[node]; }
     /// \param nodes numbers of the corners and, behind them, of the new nodes
-    void add_split(int level, const Rule& rule, std::span<const std::size_t> nodes) {
-        splits_.add(static_cast<std::size_t>(level), rule, nodes);
+    /// \param reach the greatest distance between a corner and a new node, where distances count
+    void add_split(int level, const Rule& rule, std::span<const std::size_t> nodes,
+                   float reach = 0) {
+        splits_.add(static_cast<std::size_t>(level), rule, nodes, reach);
     }
 
     void saturate() {
+        saturate([](const Number& number, float) { return number; });
+    }
+    /// \param hand hand(number, reach), monotone, is what a new node with that number hands to its
+    ///        parents
+    template <class Hand>
+    void saturate(const Hand& hand) {
         const auto of_node = [&](std::size_t node) { return values_[node]; };
-        const auto hand = [](const Number& number) { return number; };
         const auto raise = [&](std::size_t node, const Number& to) {
             const bool raises = values_[node] < to;
             if (raises) values_[node] = to;
             return raises;
         };
-        sweep(splits_, false, [&](const Rule& rule, std::span<const std::size_t> of, float) {
+        sweep(splits_, false, [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
+            const auto hand_here = [&](const Number& number) { return hand(number, reach); };
             Number greatest = least_;
-            return raise_parents(rule, of, of_node, hand, raise, greatest);
+            return raise_parents(rule, of, of_node, hand_here, raise, greatest);
         });
     }
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/indicator.hpp>
 
-#include <cmath>
 #include <string>
 
 #include <indicators/preroll.hpp>
+#include <indicators/spread.hpp>
 #include <indicators/stars.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/crossing_nodes.hpp>
@@ -50,13 +50,7 @@ HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy,
 template <class Real>
 void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
                                     const Executor& executor) {
-    if (!(spread_.factor >= 1) || !(spread_.slope >= 0) || !std::isfinite(spread_.factor) ||
-        !std::isfinite(spread_.slope)) {
-        throw InvalidInput(
-            "an indicator is spread by a factor of at least 1 and a slope of at "
-            "least 0, not by " +
-            std::to_string(spread_.factor) + " and " + std::to_string(spread_.slope));
-    }
+    engine::require_spread(spread_);
     epoch_ = hierarchy.epoch();
     own_errors_ = static_cast<bool>(leaf_errors);
     hanging_ = engine::find_hanging_nodes(hierarchy);

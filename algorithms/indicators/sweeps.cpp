@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <indicators/sweeps.hpp>
 
+#include <indicators/spread.hpp>
+
 namespace nestgrid::engine {
 
 void Sweeps::leaf(std::span<const NodeKey> corners, float error) {
@@ -19,17 +21,12 @@ void Sweeps::saturate() {
     for (Node& node : nodes_) node.entry.bound = std::max(node.entry.bound, node.bound());
 }
 
-/// factor * (stop + slope * reach), rounded up.
-inline std::uint16_t Sweeps::hand_stop(std::uint16_t stop, float reach) const {
-    if (spread_.factor == 1 && spread_.slope == 0) return stop;
-    const double to = static_cast<double>(bfloat16_value(stop)) + spread_.slope * reach;
-    return bfloat16_above(float_above(spread_.factor * to));
-}
-
 /// \param of numbers of the corners and, behind them, of the new nodes
 /// \return whether anything has changed
 inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> of, float reach) {
-    const auto hand = [&](const Below& b) { return Below{hand_stop(b.stop, reach), b.bound}; };
+    const auto hand = [&](const Below& b) {
+        return Below{hand_on(spread_, b.stop, reach), b.bound};
+    };
     const auto of_node = [&](std::size_t node) {
         return Below{nodes_[node].entry.stop, nodes_[node].bound()};
     };

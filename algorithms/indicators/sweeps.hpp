@@ -82,7 +82,6 @@ private:
         }
     };
     bool sweep_split(const Rule& rule, std::span<const std::size_t> of, float reach);
-    std::uint16_t hand_stop(std::uint16_t stop, float reach) const;
 
     NodeNumbers number_of_;
     std::vector<Node> nodes_;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <walk/project.hpp>
 
@@ -18,35 +19,6 @@
 using namespace nestgrid_test;
 
 namespace {
-
-/// 1 up to epsilon, 0 from factor * epsilon on, linear between.
-class Blended final : public Criterion {
-public:
-    Blended(const HierarchicalIndicator& indicator, double epsilon, double factor)
-        : indicator_{&indicator}, epsilon_{epsilon}, factor_{factor} {}
-
-    NodeMask holds(const NewNodes& nodes) const override {
-        return indicator_->stops_at_most(nodes.rule, nodes.keys, epsilon_) & ~nodes.outside;
-    }
-    bool blends() const override { return factor_ > 1; }
-    void weights(const NewNodes& nodes, std::span<float> s) const override {
-        const NodeMask whole = holds(nodes);
-        for (std::size_t n = 0; n < s.size(); ++n) {
-            const double eta = indicator_->stop(nodes.keys[n]);
-            const double part = (factor_ * epsilon_ - eta) / ((factor_ - 1) * epsilon_);
-            const bool none = !(part > 0) || (nodes.outside >> n & 1U) != 0;
-            s[n] = (whole >> n & 1U) != 0 ? 1.0F
-                   : none                 ? 0.0F
-                                          : std::min(static_cast<float>(part), 0.999F);
-        }
-    }
-    bool saturated() const override { return indicator_->spread().factor >= factor_; }
-
-private:
-    const HierarchicalIndicator* indicator_;
-    double epsilon_;
-    double factor_;
-};
 
 /// Fine in a ball, coarser by the distance from it: eta <= distance + epsilon.
 class NearBall final : public Criterion {
@@ -72,12 +44,6 @@ private:
     double radius_;
 };
 
-template <class Grid>
-HierarchicalIndicator spread_indicator(const Grid& grid, const NodeField<Grid, double>& field,
-                                       const Spread& spread) {
-    return HierarchicalIndicator(erase(grid, field), LeafErrors{}, SequentialExecutor{}, spread);
-}
-
 template <class Family>
 class Weights : public testing::Test {};
 TYPED_TEST_SUITE(Weights, Families);
@@ -92,9 +58,9 @@ void on_refined_grids(unsigned seed, Test&& test) {
 
 TYPED_TEST(Weights, DrawClosedSurfaces) {
     on_refined_grids<TypeParam>(11, [](const auto& grid, const auto& field) {
-        const auto indicator = spread_indicator(grid, field, {.factor = 1.5});
+        const HierarchicalIndicator indicator(grid, field, Spread{.factor = 1.5});
         for (const double epsilon : {0.003, 0.03, 0.3}) {
-            const Blended blended(indicator, epsilon, 1.5);
+            const Blended blended(&indicator, epsilon, 1.5);
             expect_closed(isosurface(grid, field, 0.0, blended, indicator).surface);
             const Threshold other(&indicator, epsilon / 2);
             expect_closed(isosurface(grid, field, 0.0, blended && other, indicator).surface);
@@ -108,7 +74,7 @@ TYPED_TEST(Weights, OfOneOrNothingAreAThreshold) {
         const HierarchicalIndicator indicator(grid, field);
         const Threshold threshold(&indicator, 0.03);
         const auto expected = isosurface(grid, field, 0.0, threshold, indicator);
-        const auto blended = isosurface(grid, field, 0.0, Blended(indicator, 0.03, 1), indicator);
+        const auto blended = isosurface(grid, field, 0.0, Blended(&indicator, 0.03, 1), indicator);
         EXPECT_EQ(blended.surface.vertices, expected.surface.vertices);
         EXPECT_EQ(blended.surface.simplices, expected.surface.simplices);
     });
@@ -136,12 +102,12 @@ std::map<NodeKey, double> projection(const Grid& grid, const NodeField<Grid, dou
 /// |dP / d epsilon| <= C^2 / (C - 1), which is 4.5 for C = 1.5.
 TYPED_TEST(Weights, MoveTheProjectionContinuously) {
     on_refined_grids<TypeParam>(13, [](const auto& grid, const auto& field) {
-        const auto indicator = spread_indicator(grid, field, {.factor = 1.5});
+        const HierarchicalIndicator indicator(grid, field, Spread{.factor = 1.5});
         const double epsilon = 0.05;
         const double step = 1e-6;
-        const auto before = projection(grid, field, Blended(indicator, epsilon, 1.5), indicator);
+        const auto before = projection(grid, field, Blended(&indicator, epsilon, 1.5), indicator);
         const auto after =
-            projection(grid, field, Blended(indicator, epsilon + step, 1.5), indicator);
+            projection(grid, field, Blended(&indicator, epsilon + step, 1.5), indicator);
         for (const auto& [key, value] : before) {
             const auto at = after.find(key);
             if (at == after.end()) continue;
@@ -156,16 +122,16 @@ TYPED_TEST(Weights, AreRefusedWithoutTheFactor) {
     const auto values = sample_nodes(grid, [](const Point& x) { return to_sphere(x, 3); });
     const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
     const HierarchicalIndicator indicator(grid, field);
-    expect_refused([&] { isosurface(grid, field, 0.0, Blended(indicator, 0.1, 1.5), indicator); },
+    expect_refused([&] { isosurface(grid, field, 0.0, Blended(&indicator, 0.1, 1.5), indicator); },
                    "not saturated");
-    expect_refused([&] { spread_indicator(grid, field, {.factor = 0.5}); }, "factor");
-    expect_refused([&] { spread_indicator(grid, field, {.slope = -1}); }, "slope");
+    expect_refused([&] { HierarchicalIndicator(grid, field, Spread{.factor = 0.5}); }, "factor");
+    expect_refused([&] { HierarchicalIndicator(grid, field, Spread{.slope = -1}); }, "slope");
 }
 
 TYPED_TEST(Weights, ByDistanceDrawClosedSurfaces) {
     std::mt19937 random(14);
     on_refined_grids<TypeParam>(15, [&](const auto& grid, const auto& field) {
-        const auto indicator = spread_indicator(grid, field, {.slope = 1});
+        const HierarchicalIndicator indicator(grid, field, Spread{.slope = 1});
         for (int i = 0; i < 4; ++i) {
             const Point centre{uniform(random), uniform(random), uniform(random)};
             const NearBall near(indicator, centre, 0.3 * uniform(random));

@@ -60,6 +60,15 @@ protected:
     Criterion& operator=(Criterion&&) noexcept = default;
 };
 
+/// How eta is handed from a node y to the nodes x that y depends on:
+///     eta(x) >= factor * (eta(y) + slope * |x - y|).
+struct Spread {
+    /// At least 1: for criteria that blend between epsilon and factor * epsilon (Blended).
+    double factor = 1;
+    /// At least 0: for thresholds that vary in space with that slope at most (Lens).
+    double slope = 0;
+};
+
 /// A number eta for every node, to be compared with a threshold.
 class Indicator {
 public:
@@ -68,6 +77,8 @@ public:
     virtual double stop(NodeKey node) const = 0;
     /// Whether eta at every corner of a split element is at least eta at all its new nodes.
     virtual bool saturated() const { return true; }
+    /// How eta spreads from the new nodes of a split element to its corners, where it is saturated.
+    virtual Spread spread() const { return {}; }
     /// The new nodes of a split with eta <= epsilon, one bit each.
     virtual NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> keys,
                                    double epsilon) const {

@@ -66,14 +66,6 @@ protected:
     Bounds& operator=(Bounds&&) noexcept = default;
 };
 
-/// How `stop` is handed from a node y to the nodes x that y depends on:
-///     stop(x) >= factor * (stop(y) + slope * |x - y|).
-struct Spread {
-    double factor =
-        1;             ///< at least 1: for criteria that blend between epsilon and factor * epsilon
-    double slope = 0;  ///< at least 0: for thresholds that vary in space with that slope at most
-};
-
 /// The error of a leaf: not negative. Called by several threads where the executor has several.
 using LeafErrors = std::function<double(const Handle& leaf)>;
 
@@ -140,6 +132,13 @@ public:
     HierarchicalIndicator(const Grid& grid, const Field& field,
                           const Executor& executor = SequentialExecutor{})
         : HierarchicalIndicator(erase(grid, field), LeafErrors{}, executor) {}
+    /// \param spread how `stop` is handed from finer nodes to coarser ones
+    /// \throw InvalidInput also where the factor is below 1 or the slope below 0
+    template <class Grid, class Field>
+        requires(!detail::AnyHierarchy<Grid>)
+    HierarchicalIndicator(const Grid& grid, const Field& field, const Spread& spread,
+                          const Executor& executor = SequentialExecutor{})
+        : HierarchicalIndicator(erase(grid, field), LeafErrors{}, executor, spread) {}
     /// \param leaf_error errors of leaves in the place of offsets, such as a Kelly or residual
     ///        estimate; then thresholds have their unit. Called as double(const Element&) for every
     ///        leaf
@@ -155,7 +154,6 @@ public:
               },
               executor) {}
     /// The same for a hierarchy; leaf_errors may be empty.
-    /// \param spread how `stop` is handed from finer nodes to coarser ones
     explicit HierarchicalIndicator(const Hierarchy<float>& hierarchy,
                                    const LeafErrors& leaf_errors = {},
                                    const Executor& executor = SequentialExecutor{},
@@ -181,7 +179,7 @@ public:
         return mask;
     }
 
-    const Spread& spread() const { return spread_; }
+    Spread spread() const override { return spread_; }
 
     double offset_bound(NodeKey node) const override {
         return own_errors_ ? bound(node) : stop(node);

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <indicators/eta_source.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include <indicators/spread.hpp>
+#include <nestgrid/error.hpp>
+#include <walk/hanging_nodes.hpp>
+#include <walk/interpolate.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+void NodeEtas::raise(std::size_t node, double eta) {
+    if (!(eta >= 0)) {
+        throw InvalidInput("the measure of a node is not a usable number: " + std::to_string(eta));
+    }
+    std::uint16_t& at = maxima_[node];
+    at = std::max(at, bfloat16_above(float_above(eta)));
+}
+
+detail::NodeStops NodeEtas::saturate(const Spread& spread, bool dense) {
+    maxima_.saturate([&](std::uint16_t stop, float reach) { return hand_on(spread, stop, reach); });
+    detail::NodeStops stops;
+    std::vector<std::uint16_t> saturated = maxima_.take();
+    if (dense) {
+        stops.dense = std::move(saturated);
+        return stops;
+    }
+    stops.sparse.reserve(saturated.size());
+    maxima_.for_each(
+        [&](NodeKey key, std::size_t node) { stops.sparse.insert(key, saturated[node]); });
+    return stops;
+}
+
+namespace {
+
+/// Shows a source the splits that a walk meets.
+template <class Real>
+class SourceVisitor final : public Visitor<Real> {
+public:
+    using View = ElementView<Real>;
+
+    SourceVisitor(const Walk<Real>& walk, EtaSource& source, bool measures_reach, NodeEtas& etas)
+        : walk_{&walk}, source_{&source}, measures_reach_{measures_reach}, etas_{&etas} {}
+
+    bool sees_hidden() const override { return true; }
+    Leaves leaves(const Rule&, const Real*, NodeMask, bool) override { return {}; }
+    Decision inspect(const View&, const Split&) override { return {}; }
+    void extract(const View&) override {}
+
+    void entered(const View& view, const Split& split, const Real* value) override {
+        const Rule& rule = *split.rule;
+        const std::size_t corners = view.corner_count();
+        const std::size_t count = corners + rule.new_nodes.size();
+        const std::size_t components = source_->wants_values() ? walk_->components() : 0;
+        put_positions(view, split);
+        values_.assign(value, value + count * components);
+        const auto keys = walk_->split_keys(view, split, keys_);
+        const auto nodes = std::span(nodes_).first(count);
+        etas_->maxima().find(keys, nodes);
+        const MeasuredSplit measured{rule, view.level, std::span(positions_).first(count), values_,
+                                     components};
+        source_->split(measured, nodes, *etas_);
+        for (NodeMask left = split.outside & rule.all(); left != 0; left &= left - 1) {
+            etas_->maxima()[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
+                bfloat16_infinity;
+        }
+        etas_->maxima().add_split(view.level, rule, nodes, reach(measured));
+    }
+
+private:
+    /// Puts the true positions of corners and new nodes in place; hanging nodes are interpolated.
+    void put_positions(const View& view, const Split& split) {
+        const Rule& rule = *split.rule;
+        const std::size_t corners = view.corner_count();
+        walk_->corners(view, nullptr, positions_.data());
+        walk_->new_positions(view, rule,
+                             std::span(positions_).subspan(corners, rule.new_nodes.size()));
+        for (NodeMask left = split.constrained & rule.all(); left != 0; left &= left - 1) {
+            const auto n = static_cast<std::size_t>(std::countr_zero(left));
+            positions_[corners + n] =
+                nestgrid::detail::interpolate(rule.new_nodes[n], positions_.data());
+        }
+    }
+
+    /// The greatest distance between a corner and a new node, rounded up; 0 where distances do not
+    /// count.
+    float reach(const MeasuredSplit& split) const {
+        if (!measures_reach_) return 0;
+        const std::size_t corners = split.corner_count();
+        double greatest = 0;
+        for (const Point& made : split.positions.subspan(corners)) {
+            for (const Point& corner : split.positions.first(corners)) {
+                greatest = std::max(greatest, norm(made - corner));
+            }
+        }
+        return float_above(greatest);
+    }
+
+    const Walk<Real>* walk_;
+    EtaSource* source_;
+    bool measures_reach_;
+    NodeEtas* etas_;
+    SplitKeys keys_;
+    std::array<Point, max_corners + max_new_nodes> positions_;
+    std::array<std::size_t, max_corners + max_new_nodes> nodes_{};
+    std::vector<double> values_;
+};
+
+}  // namespace
+
+template <class Real>
+SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
+                            const Spread& spread) {
+    require_spread(spread);
+    const HangingNodes hanging = find_hanging_nodes(hierarchy);
+    const Walk<Real> walk(
+        hierarchy, {.values = source.wants_values(), .keys = true, .positions = true}, &hanging);
+    const std::size_t dense = hierarchy.facts().node_count;
+    NodeEtas etas(dense);
+    SourceVisitor<Real> visitor(walk, source, spread.slope > 0, etas);
+    walk.run(visitor);
+    source.finish(etas);
+    return {etas.saturate(spread, dense != 0), spread};
+}
+
+template SweptIndicator sweep_source(const Hierarchy<float>&, EtaSource&, const Spread&);
+template SweptIndicator sweep_source(const Hierarchy<double>&, EtaSource&, const Spread&);
+
+}  // namespace nestgrid::engine

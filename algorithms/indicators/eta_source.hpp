@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How an indicator is made from what is measured at the splits of a hierarchy: a source is shown
+// all splits in one walk, raises eta at nodes, and the sweep saturates what it has raised.
+#pragma once
+
+#include <indicators/fine_to_coarse.hpp>
+#include <nestgrid/algorithms/swept_indicator.hpp>
+
+namespace nestgrid::engine {
+
+/// eta of all nodes, by number, before the sweep.
+class NodeEtas {
+public:
+    /// \param dense how many dense keys there are, or 0
+    explicit NodeEtas(std::size_t dense) : maxima_{dense, 0} {}
+
+    /// Raises eta of a node to a number that is not below the given one.
+    /// \throw InvalidInput where this is negative or not a number
+    void raise(std::size_t node, double eta);
+    NodeMaxima<std::uint16_t>& maxima() { return maxima_; }
+    /// Sweeps, and moves the numbers out.
+    detail::NodeStops saturate(const Spread& spread, bool dense);
+
+private:
+    NodeMaxima<std::uint16_t> maxima_;
+};
+
+/// What is measured. A source may keep numbers of its own by node, until finish().
+class EtaSource {
+public:
+    /// Whether the source looks at values.
+    virtual bool wants_values() const { return true; }
+    /// \param nodes numbers of the corners and, behind them, of the new nodes
+    virtual void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
+                       NodeEtas& etas) = 0;
+    /// Called when all splits were shown.
+    virtual void finish(NodeEtas& /*etas*/) {}
+
+protected:
+    EtaSource() = default;
+    ~EtaSource() = default;
+    EtaSource(const EtaSource&) = default;
+    EtaSource& operator=(const EtaSource&) = default;
+    EtaSource(EtaSource&&) noexcept = default;
+    EtaSource& operator=(EtaSource&&) noexcept = default;
+};
+
+/// Shows a source all splits, hidden ones included, and sweeps. Nodes at which no element may stop
+/// have the indicator infinity.
+template <class Real>
+SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
+                            const Spread& spread);
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+// How an indicator spreads from finer nodes to coarser ones, in bfloat16.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid::engine {
+
+/// \throw InvalidInput where the factor is below 1 or the slope below 0, or one is not finite
+inline void require_spread(const Spread& spread) {
+    if (spread.factor >= 1 && spread.slope >= 0 && std::isfinite(spread.factor) &&
+        std::isfinite(spread.slope)) {
+        return;
+    }
+    throw InvalidInput(
+        "an indicator is spread by a factor of at least 1 and a slope of at least 0, not by " +
+        std::to_string(spread.factor) + " and " + std::to_string(spread.slope));
+}
+
+/// factor * (stop + slope * reach), rounded up.
+inline std::uint16_t hand_on(const Spread& spread, std::uint16_t stop, float reach) {
+    if (spread.factor == 1 && spread.slope == 0) return stop;
+    const double to = static_cast<double>(bfloat16_value(stop)) + spread.slope * reach;
+    return bfloat16_above(float_above(spread.factor * to));
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/swept_indicator.hpp>
+
+#include <algorithm>
+
+#include <indicators/eta_source.hpp>
+#include <walk/interpolate.hpp>
+
+namespace nestgrid {
+
+double MeasuredSplit::offset(std::size_t n, std::size_t component) const {
+    const double* const value = values.data() + component;
+    return value[(corner_count() + n) * components] -
+           detail::interpolate(rule.new_nodes[n], value, components);
+}
+
+Point MeasuredSplit::position_offset(std::size_t n) const {
+    return positions[corner_count() + n] - detail::interpolate(rule.new_nodes[n], positions.data());
+}
+
+double MeasuredSplit::diameter() const {
+    const auto corners = positions.first(corner_count());
+    double greatest = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+            greatest = std::max(greatest, norm(corners[i] - corners[k]));
+        }
+    }
+    return greatest;
+}
+
+NodeMask SweptIndicator::stops_at_most(const Rule&, std::span<const NodeKey> nodes,
+                                       double epsilon) const {
+    if (!(epsilon >= 0)) return 0;
+    const std::uint16_t most = bfloat16_below(epsilon);
+    NodeMask mask = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        mask |= NodeMask{stops_.at(nodes[i]) <= most} << i;
+    }
+    return mask;
+}
+
+std::size_t SweptIndicator::memory_bytes() const {
+    return stops_.dense.size() * sizeof(std::uint16_t) + stops_.sparse.memory_bytes();
+}
+
+namespace {
+
+/// The numbers of a user's measure.
+class MeasureSource final : public engine::EtaSource {
+public:
+    explicit MeasureSource(const Measure& measure) : measure_{&measure} {}
+
+    void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
+               engine::NodeEtas& etas) override {
+        const auto made = nodes.subspan(split.corner_count());
+        eta_.assign(made.size(), 0);
+        (*measure_)(split, eta_);
+        for (std::size_t n = 0; n < made.size(); ++n) etas.raise(made[n], eta_[n]);
+    }
+
+private:
+    const Measure* measure_;
+    std::vector<double> eta_;
+};
+
+}  // namespace
+
+SweptIndicator measured_indicator(const Hierarchy<float>& hierarchy, const Measure& measure,
+                                  const Spread& spread) {
+    MeasureSource source(measure);
+    return engine::sweep_source(hierarchy, source, spread);
+}
+
+SweptIndicator measured_indicator(const Hierarchy<double>& hierarchy, const Measure& measure,
+                                  const Spread& spread) {
+    MeasureSource source(measure);
+    return engine::sweep_source(hierarchy, source, spread);
+}
+
+}  // namespace nestgrid

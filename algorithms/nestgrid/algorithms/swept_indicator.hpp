@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Indicators by any measure of the new nodes of a split (paper, sections 2, 4 and 5), saturated by
+// one sweep, fine to coarse.
+//
+// Invariant: eta(corner) >= factor * (eta(new node) + slope * |corner - new node|) for every split
+// element, also for a parent of a new node that is a new node of the same split. eta is the least
+// such function that is nowhere below the measure, rounded up to bfloat16.
+// Consequence: S(x) = (eta(x) <= epsilon) is a saturated criterion, whatever is measured. Bounds,
+// for the search and for the error, come from the data: take those of a HierarchicalIndicator.
+// Memory: 2 bytes a node (with its key where keys are not dense); while it is made, 4 for each node
+// of each split more.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+
+#include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/detail/erase.hpp>
+#include <nestgrid/detail/key_table.hpp>
+
+namespace nestgrid {
+
+/// One split with the true positions and values of its nodes; hanging nodes are interpolated.
+struct MeasuredSplit {
+    const Rule& rule;
+    int level;                         ///< of the element that is split
+    std::span<const Point> positions;  ///< of the corners and, behind them, of the new nodes
+    std::span<const double> values;    ///< likewise: component c of node k at k * components + c
+    std::size_t components;
+
+    std::size_t corner_count() const { return static_cast<std::size_t>(rule.corner_count()); }
+    /// U - sum omega U at new node n.
+    double offset(std::size_t n, std::size_t component = 0) const;
+    /// x - sum omega x at new node n.
+    Point position_offset(std::size_t n) const;
+    /// The greatest distance between two corners.
+    double diameter() const;
+};
+
+/// Sets eta[n], which starts as 0, of each new node n to a number that is not negative. Where
+/// several elements make a node, the greatest of their numbers counts.
+using Measure = std::function<void(const MeasuredSplit& split, std::span<double> eta)>;
+
+namespace detail {
+
+/// One bfloat16 for every node.
+struct NodeStops {
+    std::vector<std::uint16_t> dense;  ///< by node, where keys are dense; else empty
+    KeyTable<NodeKey, std::uint16_t> sparse;
+
+    std::uint16_t at(NodeKey node) const {
+        if (!dense.empty()) return dense[static_cast<std::size_t>(node)];
+        const std::uint16_t* stop = sparse.find(node);
+        return stop == nullptr ? std::uint16_t{0} : *stop;
+    }
+};
+
+}  // namespace detail
+
+/// An indicator that keeps eta for every node. Movable; functions that measure return it.
+class SweptIndicator final : public Indicator {
+public:
+    SweptIndicator(detail::NodeStops stops, const Spread& spread)
+        : stops_{std::move(stops)}, spread_{spread} {}
+
+    double stop(NodeKey node) const override { return bfloat16_value(stops_.at(node)); }
+    NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> nodes,
+                           double epsilon) const override;
+    Spread spread() const override { return spread_; }
+    std::size_t memory_bytes() const;
+
+private:
+    detail::NodeStops stops_;
+    Spread spread_;
+};
+
+/// The indicator of a measure of all components of a field.
+/// \throw InvalidInput where the measure is negative or not a number, and where the factor of the
+///        spread is below 1 or its slope below 0
+SweptIndicator measured_indicator(const Hierarchy<float>& hierarchy, const Measure& measure,
+                                  const Spread& spread = {});
+SweptIndicator measured_indicator(const Hierarchy<double>& hierarchy, const Measure& measure,
+                                  const Spread& spread = {});
+template <class Grid, class Field>
+SweptIndicator measured_indicator(const Grid& grid, const Field& field, const Measure& measure,
+                                  const Spread& spread = {}) {
+    return measured_indicator(erase(grid, field), measure, spread);
+}
+
+}  // namespace nestgrid
