@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include <indicators/spread.hpp>
@@ -36,6 +38,15 @@ detail::NodeStops NodeEtas::saturate(const Spread& spread, bool dense) {
     return stops;
 }
 
+double finite_offset(double offset) {
+    if (std::isfinite(offset)) return std::abs(offset);
+    throw InvalidInput("a value of the field is not a usable number");
+}
+
+double trace_of(double offset) {
+    return finite_offset(offset) == 0 ? 0 : double{std::numeric_limits<float>::denorm_min()};
+}
+
 namespace {
 
 /// Shows a source the splits that a walk meets.
@@ -59,11 +70,16 @@ public:
         const std::size_t components = source_->wants_values() ? walk_->components() : 0;
         put_positions(view, split);
         values_.assign(value, value + count * components);
+        means_.resize(rule.new_nodes.size() * components);
+        for (std::size_t i = 0; i < means_.size(); ++i) {
+            means_[i] = nestgrid::detail::interpolate(rule.new_nodes[i / components],
+                                                      value + i % components, components);
+        }
         const auto keys = walk_->split_keys(view, split, keys_);
         const auto nodes = std::span(nodes_).first(count);
         etas_->maxima().find(keys, nodes);
-        const MeasuredSplit measured{rule, view.level, std::span(positions_).first(count), values_,
-                                     components};
+        const MeasuredSplit measured{rule,    view.level, std::span(positions_).first(count),
+                                     values_, means_,     components};
         source_->split(measured, nodes, *etas_);
         for (NodeMask left = split.outside & rule.all(); left != 0; left &= left - 1) {
             etas_->maxima()[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
@@ -109,6 +125,7 @@ private:
     std::array<Point, max_corners + max_new_nodes> positions_;
     std::array<std::size_t, max_corners + max_new_nodes> nodes_{};
     std::vector<double> values_;
+    std::vector<double> means_;
 };
 
 }  // namespace

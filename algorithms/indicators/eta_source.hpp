@@ -27,6 +27,14 @@ private:
     NodeMaxima<std::uint16_t> maxima_;
 };
 
+/// |offset|.
+/// \throw InvalidInput where the offset is not finite
+double finite_offset(double offset);
+/// The least eta above 0 where the offset of a node is not 0, so that no node is dropped at
+/// threshold 0.
+/// \throw InvalidInput where the offset is not finite
+double trace_of(double offset);
+
 /// What is measured. A source may keep numbers of its own by node, until finish().
 class EtaSource {
 public:

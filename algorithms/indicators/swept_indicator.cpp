@@ -2,32 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
-#include <algorithm>
-
+#include <indicators/diameter.hpp>
 #include <indicators/eta_source.hpp>
 #include <walk/interpolate.hpp>
 
 namespace nestgrid {
-
-double MeasuredSplit::offset(std::size_t n, std::size_t component) const {
-    const double* const value = values.data() + component;
-    return value[(corner_count() + n) * components] -
-           detail::interpolate(rule.new_nodes[n], value, components);
-}
 
 Point MeasuredSplit::position_offset(std::size_t n) const {
     return positions[corner_count() + n] - detail::interpolate(rule.new_nodes[n], positions.data());
 }
 
 double MeasuredSplit::diameter() const {
-    const auto corners = positions.first(corner_count());
-    double greatest = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-            greatest = std::max(greatest, norm(corners[i] - corners[k]));
-        }
-    }
-    return greatest;
+    return engine::diameter_of(positions.first(corner_count()));
 }
 
 NodeMask SweptIndicator::stops_at_most(const Rule&, std::span<const NodeKey> nodes,

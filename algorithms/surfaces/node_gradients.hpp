@@ -15,6 +15,7 @@
 
 #include <nestgrid/keys.hpp>
 #include <nestgrid/shape.hpp>
+#include <walk/gradient.hpp>
 
 namespace nestgrid::engine {
 
@@ -38,18 +39,9 @@ inline CornerGradient corner_gradient(const Topology& t, std::span<const Point> 
             rise[count++] = value[other] - value[corner];
         }
     }
-    if (t.dimension == 2) {  // in the plane of the element, which may lie in space
-        along[2] = cross(along[0], along[1]);
-        const double area = norm(along[2]);
-        if (area > 0) along[2] = (1 / area) * along[2];
-    }
-    const std::array<Point, 3> dual{cross(along[1], along[2]), cross(along[2], along[0]),
-                                    cross(along[0], along[1])};
-    const double volume = dot(along[0], dual[0]);
-    if (volume == 0) return {};
-    Point g{0, 0, 0};
-    for (std::size_t i = 0; i < 3; ++i) g = g + (rise[i] / volume) * dual[i];
-    return {g, std::abs(volume)};
+    const DualVectors dual = dual_vectors(along, t.dimension);
+    if (dual.volume == 0) return {};
+    return {dual.gradient(rise), std::abs(dual.volume)};
 }
 
 /// Gradients at nodes: the weighted mean of the gradients that are added at each.

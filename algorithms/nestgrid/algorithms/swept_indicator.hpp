@@ -14,13 +14,10 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <span>
+#include <vector>
 
-#include <nestgrid/algorithms/criterion.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
-#include <nestgrid/detail/erase.hpp>
-#include <nestgrid/detail/key_table.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
 
@@ -30,11 +27,15 @@ struct MeasuredSplit {
     int level;                         ///< of the element that is split
     std::span<const Point> positions;  ///< of the corners and, behind them, of the new nodes
     std::span<const double> values;    ///< likewise: component c of node k at k * components + c
+    std::span<const double> means;     ///< sum omega U at the new nodes, as the projection takes it
     std::size_t components;
 
     std::size_t corner_count() const { return static_cast<std::size_t>(rule.corner_count()); }
     /// U - sum omega U at new node n.
-    double offset(std::size_t n, std::size_t component = 0) const;
+    double offset(std::size_t n, std::size_t component = 0) const {
+        const std::size_t at = n * components + component;
+        return values[corner_count() * components + at] - means[at];
+    }
     /// x - sum omega x at new node n.
     Point position_offset(std::size_t n) const;
     /// The greatest distance between two corners.
@@ -86,6 +87,7 @@ SweptIndicator measured_indicator(const Hierarchy<float>& hierarchy, const Measu
 SweptIndicator measured_indicator(const Hierarchy<double>& hierarchy, const Measure& measure,
                                   const Spread& spread = {});
 template <class Grid, class Field>
+    requires(!detail::AnyHierarchy<Grid>)
 SweptIndicator measured_indicator(const Grid& grid, const Field& field, const Measure& measure,
                                   const Spread& spread = {}) {
     return measured_indicator(erase(grid, field), measure, spread);
