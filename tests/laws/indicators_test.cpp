@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Laws of the indicators that are sources of one sweep (paper, sections 4.1, 4.2, 5.1 and 5.2), on
+// every family.
+#include <gtest/gtest.h>
+
+#include <nestgrid/algorithms/geometry_indicator.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/norm_indicator.hpp>
+#include <nestgrid/algorithms/numerical_indicator.hpp>
+#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/visual_indicator.hpp>
+
+#include "families.hpp"
+#include "projection_judge.hpp"
+#include "refusal.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+/// An indicator with a name, and a threshold that projects about half of a gyroid away.
+struct Named {
+    std::string name;
+    SweptIndicator indicator;
+    double middle;
+};
+
+/// All indicators that see the data.
+std::vector<Named> indicators(const Hierarchy<double>& h, const Spread& spread = {}) {
+    std::vector<Named> all;
+    all.push_back({"visual", visual_indicator(h, {.spread = spread}), 0.5});
+    all.push_back({"numerical", numerical_indicator(h, {.spread = spread}), 0.5});
+    all.push_back({"norm", norm_indicator(h, {.spread = spread}), 0.1});
+    return all;
+}
+
+/// Data with a surface at 0.
+std::vector<NodalSamples> fields(const std::vector<Point>& nodes) {
+    std::mt19937 random(21);
+    std::vector<NodalSamples> all;
+    const auto add = [&](const char* name, auto&& f) {
+        NodalSamples samples{name, {}, true};
+        for (const Point& x : nodes) samples.values.push_back(f(x));
+        all.push_back(std::move(samples));
+    };
+    add("gyroid", [](const Point& x) {
+        const auto [a, b, c] = 7.0 * x;
+        return std::sin(a) * std::cos(b) + std::sin(b) * std::cos(c) + std::sin(c) * std::cos(a);
+    });
+    add("noise", [&](const Point&) { return uniform(random) - 0.5; });
+    add("plateau with noise of 1e-15", [&](const Point& x) {
+        return std::max(0.0, norm(x - Point{0.5, 0.5, 0.5}) - 0.3) + 1e-15 * uniform(random) - 0.1;
+    });
+    const std::size_t peak = nodes.size() - 1;
+    std::size_t node = 0;
+    add("peak", [&](const Point&) { return node++ == peak ? 1 - 0.1 : -0.1; });
+    return all;
+}
+
+/// Calls test(hierarchy, grid) for the grids of a family and the fields on them.
+template <class Family, class Test>
+void on_hierarchies(Test&& test) {
+    for (auto& grid : Family::grids()) {
+        refine_at_sphere(grid, 3 * Family::steps);
+        for (const NodalSamples& samples : fields(grid.node_positions())) {
+            SCOPED_TRACE(samples.name);
+            const NodeField<typename Family::Grid, double> field(grid, samples.values);
+            test(erase(grid, field));
+        }
+    }
+}
+
+/// Calls test(hierarchy) for a function on the grids of a family.
+template <class Family, class Function, class Test>
+void with_function(const Function& f, Test&& test) {
+    for (auto& grid : Family::grids()) {
+        refine_at_sphere(grid, 3 * Family::steps);
+        const auto values = sample_nodes(grid, f);
+        const NodeField<typename Family::Grid, double> field(grid, values);
+        test(erase(grid, field));
+    }
+}
+
+void expect_closed_surface(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds) {
+    if (h.facts().dimension == 2) {
+        expect_closed(isosurface<2>(h, 0.0, s, bounds).surface);
+        return;
+    }
+    expect_closed(isosurface<3>(h, 0.0, s, bounds).surface);
+    const Plane plane({0.5, 0.45, 0.52}, {1, 2, -1});
+    expect_closed(slice(h, plane, s, bounds).surface);
+}
+
+double error_bound(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds) {
+    return h.facts().dimension == 2 ? isosurface<2>(h, 0.0, s, bounds).error_bound
+                                    : isosurface<3>(h, 0.0, s, bounds).error_bound;
+}
+
+template <class Family>
+class Indicators : public testing::Test {};
+TYPED_TEST_SUITE(Indicators, Families);
+
+TYPED_TEST(Indicators, AreSaturatedAtEverySplit) {
+    on_hierarchies<TypeParam>([](const Hierarchy<double>& h) {
+        for (const Spread& spread : {Spread{}, Spread{.factor = 1.5}, Spread{.slope = 0.5}}) {
+            for (const Named& named : indicators(h, spread)) {
+                SCOPED_TRACE(named.name);
+                expect_saturated(h, named.indicator);
+            }
+        }
+    });
+}
+
+TYPED_TEST(Indicators, DrawClosedSurfacesAloneAndCombined) {
+    on_hierarchies<TypeParam>([](const Hierarchy<double>& h) {
+        const HierarchicalIndicator offsets(h);
+        const Threshold small(&offsets, 0.02);
+        for (const Named& named : indicators(h)) {
+            SCOPED_TRACE(named.name);
+            for (const double times : {0.1, 1.0, 2.0}) {
+                const Threshold s(&named.indicator, times * named.middle);
+                expect_closed_surface(h, s, offsets);
+                expect_closed_surface(h, s && small, offsets);
+                expect_closed_surface(h, s || small, offsets);
+            }
+        }
+    });
+}
+
+TYPED_TEST(Indicators, ProjectWithinTheErrorBound) {
+    on_hierarchies<TypeParam>([](const Hierarchy<double>& h) {
+        const HierarchicalIndicator offsets(h);
+        const Projected data(h, Exact(), 0.0);
+        for (const Named& named : indicators(h)) {
+            SCOPED_TRACE(named.name);
+            std::size_t stopped = data.stopped();
+            for (const double times : {0.1, 1.0, 2.0}) {
+                const Threshold s(&named.indicator, times * named.middle);
+                const Projected projected(h, s, 0.0);
+                EXPECT_EQ(projected.interpolated_corners(), 0U);
+                EXPECT_LE(projected.difference_where_drawn(data), error_bound(h, s, offsets));
+                EXPECT_LE(projected.stopped(), stopped);
+                stopped = projected.stopped();
+            }
+        }
+    });
+}
+
+TYPED_TEST(Indicators, ChangeNothingAtThresholdZero) {
+    on_hierarchies<TypeParam>([](const Hierarchy<double>& h) {
+        const Projected data(h, Exact(), 0.0);
+        for (const Named& named : indicators(h)) {
+            SCOPED_TRACE(named.name);
+            const Projected projected(h, Threshold(&named.indicator, 0), 0.0);
+            EXPECT_EQ(projected.difference(data), 0);
+        }
+    });
+}
+
+/// The greatest eta of all nodes.
+double greatest(const Hierarchy<double>& h, const Indicator& indicator) {
+    double result = 0;
+    for_each_split(h, [&](const JudgedSplit& split) {
+        for (const NodeKey key : split.keys) result = std::max(result, indicator.stop(key));
+    });
+    return result;
+}
+
+/// Whether a grid is a surface in space: the tangential gradients of linear data jump there.
+bool is_bent(const Hierarchy<double>& h) {
+    bool bent = false;
+    for_each_split(h, [&](const JudgedSplit& split) {
+        for (const Point& x : split.positions)
+            bent = bent || (h.facts().dimension == 2 && x[2] != 0);
+    });
+    return bent;
+}
+
+TYPED_TEST(Indicators, AreZeroForLinearData) {
+    with_function<TypeParam>([](const Point& x) { return x[0] - 2 * x[1] + 0.5 * x[2]; },
+                             [](const Hierarchy<double>& h) {
+                                 if (is_bent(h)) return;
+                                 for (const Named& named : indicators(h)) {
+                                     EXPECT_LE(greatest(h, named.indicator), 1e-5) << named.name;
+                                 }
+                             });
+}
+
+TYPED_TEST(Indicators, OfFoldsDependOnNoAmplitude) {
+    const auto f = [](const Point& x) { return std::sin(5 * x[0]) * std::cos(4 * x[1] + x[2]); };
+    for (auto& grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        const auto values = sample_nodes(grid, f);
+        const auto scaled = sample_nodes(grid, [&](const Point& x) { return 1000 * f(x) - 3; });
+        const NodeField<typename TypeParam::Grid, double> field(grid, values);
+        const NodeField<typename TypeParam::Grid, double> scaled_field(grid, scaled);
+        const auto h = erase(grid, field);
+        const SweptIndicator eta = visual_indicator(h, {.tau = 1e-6});
+        const SweptIndicator of_scaled = visual_indicator(grid, scaled_field, {.tau = 1e-3});
+        double least = 2;
+        for_each_split(h, [&](const JudgedSplit& split) {
+            for (const NodeKey key : split.keys) {
+                EXPECT_NEAR(eta.stop(key), of_scaled.stop(key), 0.01);
+                least = std::min(least, eta.stop(key));
+            }
+        });
+        EXPECT_GT(least, 0);
+        EXPECT_LE(greatest(h, eta), 2.01);
+    }
+}
+
+TYPED_TEST(Indicators, KeepPeaks) {
+    for (auto& grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        std::vector<double> values(grid.node_count(), 0.0);
+        values.back() = 1;
+        const NodeField<typename TypeParam::Grid, double> field(grid, values);
+        const auto h = erase(grid, field);
+        const Projected data(h, Exact(), 0.5);
+        for (const Named& named : indicators(h)) {
+            const Projected projected(h, Threshold(&named.indicator, 0.9), 0.5);
+            EXPECT_EQ(projected.difference(data), 0) << named.name;
+        }
+    }
+}
+
+/// On hexahedra the gradient of x y jumps nowhere at nodes, but flat triangles fold.
+TEST(VisualIndicator, SeesSaddlesInsideHexahedra) {
+    with_function<BalancedOctree>([](const Point& x) { return (x[0] - 0.5) * (x[1] - 0.5); },
+                                  [](const Hierarchy<double>& h) {
+                                      const SweptIndicator eta = visual_indicator(h);
+                                      for_each_split(h, [&](const JudgedSplit& split) {
+                                          for (const NodeKey key : split.keys)
+                                              EXPECT_GT(eta.stop(key), 0.01);
+                                      });
+                                  });
+}
+
+/// Two gradients meet at an edge of two triangles; the numerical indicator is their difference
+/// times the diameter.
+TEST(NumericalIndicator, IsTheJumpTimesTheDiameter) {
+    BisectionGrid<2> grid(triangles(1));
+    grid.refine_uniformly();
+    const auto values = sample_nodes(grid, [](const Point& x) { return std::abs(x[0] - x[1]); });
+    const NodeField<BisectionGrid<2>, double> field(grid, values);
+    const auto h = erase(grid, field);
+    const SweptIndicator eta = numerical_indicator(h);
+    // The gradients on both sides of the diagonal are (1, -1) and (-1, 1), the diameter is sqrt(2).
+    EXPECT_NEAR(greatest(h, eta), std::sqrt(8.0) * std::sqrt(2.0), 0.05);
+}
+
+TEST(NormIndicator, RefusesScalesThatDoNotFit) {
+    BisectionGrid<2> grid(triangles(1));
+    const std::vector<double> values(grid.node_count(), 0.0);
+    const NodeField<BisectionGrid<2>, double> field(grid, values);
+    expect_refused([&] { norm_indicator(grid, field, {.scales = {1, 1}}); }, "scales");
+    expect_refused([&] { norm_indicator(grid, field, {.scales = {0}}); }, "scale");
+    expect_refused([&] { visual_indicator(grid, field, {.tau = -1}); }, "tau");
+    expect_refused([&] { visual_indicator(grid, field, {.spread = {.factor = 0.5}}); }, "factor");
+}
+
+TEST(VisualIndicator, RefusesValuesThatAreNotFinite) {
+    BisectionGrid<2> grid(triangles(1));
+    grid.refine_uniformly();
+    std::vector<double> values(grid.node_count(), 0.0);
+    values.back() = std::numeric_limits<double>::quiet_NaN();
+    const NodeField<BisectionGrid<2>, double> field(grid, values);
+    expect_refused([&] { visual_indicator(grid, field); }, "not a usable number");
+    expect_refused([&] { numerical_indicator(grid, field); }, "not a usable number");
+    expect_refused([&] { norm_indicator(grid, field); }, "not a usable number");
+}
+
+}  // namespace
