@@ -180,10 +180,11 @@ TYPED_TEST(UpdateOfFamily, FollowsRefinement) {
         };
         HierarchicalIndicator updated(seen, field());
         const Point middle{0.4, 0.6, 0.3};
-        for (const Mark mark : {Mark::refine, Mark::coarsen}) {
+        for (int i = 0; i < 2 + 4 * TypeParam::steps; ++i) {  // down to coarse leaves
+            const Mark mark = i == 0 ? Mark::refine : Mark::coarsen;
             const LeafCorners before = leaves_of(grid);
             grid.adapt([&](const Leaf& leaf) {
-                return norm(leaf.centre() - middle) < 0.25 ? mark : Mark::keep;
+                return norm(leaf.centre() - middle) < 0.5 ? mark : Mark::keep;
             });
             const ChangedPlaces changed = differing(before, leaves_of(grid));
             const auto now = field();
@@ -191,13 +192,13 @@ TYPED_TEST(UpdateOfFamily, FollowsRefinement) {
             const HierarchicalIndicator fresh(seen, now);
             const auto hierarchy = erase(seen, now);
             const engine::Walk<double> walk(hierarchy, {.values = false}, fresh.hanging());
-            engine::for_each_element(
-                walk, true, [&](const engine::ElementView<double>&, const engine::Split& split) {
-                    for (const NodeKey node : split.keys) {
-                        EXPECT_EQ(updated.stop(node), fresh.stop(node));
-                        EXPECT_EQ(updated.bound(node), fresh.bound(node));
-                    }
-                });
+            engine::for_each_element(walk, false, [&](const auto& view, const auto& split) {
+                engine::SplitKeys room;
+                for (const NodeKey node : walk.split_keys(view, split, room)) {
+                    EXPECT_EQ(updated.stop(node), fresh.stop(node));
+                    EXPECT_EQ(updated.bound(node), fresh.bound(node));
+                }
+            });
         }
     }
 }
