@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/indicator.hpp>
 
+#include <algorithm>
 #include <string>
 
 #include <indicators/preroll.hpp>
 #include <indicators/spread.hpp>
 #include <indicators/stars.hpp>
+#include <indicators/update.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/crossing_nodes.hpp>
 #include <walk/hanging_nodes.hpp>
@@ -27,11 +29,33 @@ void PrerollFacts::add(const PrerollFacts& other) {
     one_level_a_node = one_level_a_node && other.one_level_a_node;
 }
 
+void IndicatorEntries::resize(std::size_t from, std::size_t to) {
+    if (dense == nullptr || from == to) return;
+    auto resized = std::make_unique<IndicatorEntry[]>(to);
+    std::copy_n(dense.get(), std::min(from, to), resized.get());
+    dense = std::move(resized);
+}
+
 void PrerollFacts::refuse(double value) {
     throw InvalidInput("a value of the field is not a usable number: " + std::to_string(value));
 }
 
 }  // namespace detail
+
+bool ChangedBox::operator()(std::span<const Point> points) const {
+    Point least = points.front();
+    Point greatest = points.front();
+    for (const Point& x : points) {
+        for (std::size_t d = 0; d < 3; ++d) {
+            least[d] = std::min(least[d], x[d]);
+            greatest[d] = std::max(greatest[d], x[d]);
+        }
+    }
+    for (std::size_t d = 0; d < 3; ++d) {
+        if (greatest[d] < low[d] || least[d] > high[d]) return false;
+    }
+    return true;
+}
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy,
                                              const LeafErrors& leaf_errors,
@@ -70,6 +94,52 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
     facts_.one_level_a_node = sweeps.one_level_a_node() && hanging_.crossing() == nullptr;
     node_count_ = sweeps.node_count();
     sweeps.store(entries_);
+}
+
+template <class Real>
+void HierarchicalIndicator::update_dirty(const Hierarchy<Real>& hierarchy,
+                                         const ChangedPlaces& changed,
+                                         const LeafErrors& leaf_errors) {
+    if (own_errors_ != static_cast<bool>(leaf_errors)) {
+        throw InvalidInput(own_errors_
+                               ? "an indicator made of errors of leaves is updated with them"
+                               : "an indicator made of offsets is updated without errors of "
+                                 "leaves");
+    }
+    HangingNodes found;
+    const bool same_grid = hierarchy.epoch() == epoch_;
+    if (!same_grid) found = engine::find_hanging_nodes(hierarchy);
+    HangingNodes& hanging = same_grid ? hanging_ : found;
+    const engine::Walk<Real> marking(hierarchy, {.values = false, .keys = true, .positions = true},
+                                     &hanging);
+    const engine::DirtyNodes dirty(marking, changed, !same_grid);
+    const engine::Walk<Real> walk(
+        hierarchy, {.values = true, .keys = true, .positions = spread_.slope > 0}, &hanging);
+    const std::size_t dense = hierarchy.facts().node_count;
+    std::vector<std::pair<NodeKey, detail::IndicatorEntry>> made;
+    const detail::PrerollFacts facts =
+        engine::sweep_dirty(walk, dirty, entries_, leaf_errors, spread_,
+                            [&](NodeKey node, const detail::IndicatorEntry& entry) {
+                                if (dense != 0) engine::require_dense(node, dense);
+                                made.emplace_back(node, entry);
+                            });
+    entries_.resize(node_count_, dense);
+    for (const auto& [node, entry] : made) entries_.put(node, entry);
+    node_count_ = entries_.dense == nullptr ? entries_.sparse.size() : dense;
+    facts_.add(facts);
+    facts_.one_level_a_node = facts_.one_level_a_node && hanging.crossing() == nullptr;
+    if (!same_grid) hanging_ = std::move(found);
+    epoch_ = hierarchy.epoch();
+}
+
+void HierarchicalIndicator::update(const Hierarchy<float>& hierarchy, const ChangedPlaces& changed,
+                                   const LeafErrors& leaf_errors) {
+    update_dirty(hierarchy, changed, leaf_errors);
+}
+
+void HierarchicalIndicator::update(const Hierarchy<double>& hierarchy, const ChangedPlaces& changed,
+                                   const LeafErrors& leaf_errors) {
+    update_dirty(hierarchy, changed, leaf_errors);
 }
 
 std::size_t HierarchicalIndicator::memory_bytes() const {

@@ -12,6 +12,17 @@
 
 namespace nestgrid::engine {
 
+[[noreturn]] NESTGRID_NOINLINE inline void refuse_key(NodeKey key, std::size_t node_count) {
+    throw GridError("a node has the key " + std::to_string(static_cast<std::uint64_t>(key)) +
+                    ", but node_count() is " + std::to_string(node_count) +
+                    ": own keys must lie below it");
+}
+
+/// \throw GridError where a dense key is too large
+inline void require_dense(NodeKey key, std::size_t node_count) {
+    if (key >= node_count) refuse_key(key, node_count);
+}
+
 /// Numbers of nodes: the keys themselves where keys are dense, else 0, 1, ... in the order in which
 /// find() meets the nodes.
 class NodeNumbers {
@@ -29,7 +40,7 @@ public:
     void find(std::span<const NodeKey> keys, std::span<std::size_t> out) {
         if (are_keys()) {
             for (std::size_t i = 0; i < keys.size(); ++i) {
-                if (keys[i] >= dense_) refuse(keys[i]);
+                require_dense(keys[i], dense_);
                 out[i] = static_cast<std::size_t>(keys[i]);
             }
             return;
@@ -47,12 +58,6 @@ public:
     }
 
 private:
-    [[noreturn]] NESTGRID_NOINLINE void refuse(NodeKey key) const {
-        throw GridError("a node has the key " + std::to_string(static_cast<std::uint64_t>(key)) +
-                        ", but node_count() is " + std::to_string(dense_) +
-                        ": own keys must lie below it");
-    }
-
     std::size_t dense_;
     KeyTable<NodeKey, std::size_t> sparse_;
 };

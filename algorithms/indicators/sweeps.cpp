@@ -13,6 +13,12 @@ void Sweeps::leaf(std::span<const NodeKey> corners, float error) {
     }
 }
 
+void Sweeps::raise(NodeKey key, const Entry& known) {
+    Node& node = nodes_[numbers({&key, 1}).front()];
+    node.entry.stop = std::max(node.entry.stop, known.stop);
+    node.finer = std::max(node.finer, known.bound);
+}
+
 void Sweeps::saturate() {
     sweep(splits_, one_level_ && one_step_,
           [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
@@ -55,8 +61,7 @@ void Sweeps::store(detail::IndicatorEntries& entries) const {
         return;
     }
     entries.sparse.reserve(nodes_.size());
-    number_of_.for_each(
-        [&](NodeKey key, std::size_t at) { entries.sparse.insert(key, nodes_[at].entry); });
+    for_each([&](NodeKey node, const Entry& entry) { entries.sparse.insert(node, entry); });
 }
 
 }  // namespace nestgrid::engine

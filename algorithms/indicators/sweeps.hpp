@@ -43,6 +43,8 @@ public:
     void split(const MetSplit& s, Offset&& offset);
     /// A leaf and its error, or a coarse leaf and 0.
     void leaf(std::span<const NodeKey> corners, float error);
+    /// A node whose numbers are known to be at least these.
+    void raise(NodeKey node, const detail::IndicatorEntry& known);
 
     /// Completes the entries. To be called when all splits are known.
     void saturate();
@@ -52,6 +54,12 @@ public:
     bool one_level_a_node() const { return one_level_; }
     /// Puts the entries of all nodes into a table or, where keys are dense, an array.
     void store(detail::IndicatorEntries& entries) const;
+    /// Calls function(node, entry) for all nodes, where keys are not dense.
+    template <class Function>
+    void for_each(Function&& function) const {
+        number_of_.for_each(
+            [&](NodeKey node, std::size_t number) { function(node, nodes_[number].entry); });
+    }
 
 private:
     using Entry = detail::IndicatorEntry;

@@ -69,6 +69,19 @@ protected:
 /// The error of a leaf: not negative. Called by several threads where the executor has several.
 using LeafErrors = std::function<double(const Handle& leaf)>;
 
+/// Whether anything has changed within the hull of some points, which are the corners of an element
+/// or one node: a value at a node there, or the refinement of an element that reaches there.
+using ChangedPlaces = std::function<bool(std::span<const Point> points)>;
+
+/// Whether the box around some points meets a box, in which everything lies that has changed. For
+/// grids whose elements lie within the hull of their corners.
+struct ChangedBox {
+    Point low;
+    Point high;
+
+    bool operator()(std::span<const Point> points) const;
+};
+
 namespace detail {
 
 /// Stop and bound of a node as bfloat16, rounded up.
@@ -86,6 +99,16 @@ struct IndicatorEntries {
         if (dense != nullptr) return dense[static_cast<std::size_t>(node)];
         return at_sparse(node);
     }
+    /// Sets the entry of a node; dense keys must have room.
+    void put(NodeKey node, const IndicatorEntry& entry) {
+        if (dense != nullptr) {
+            dense[static_cast<std::size_t>(node)] = entry;
+        } else {
+            *sparse.insert(node, entry).first = entry;
+        }
+    }
+    /// Makes room for another number of dense keys.
+    void resize(std::size_t from, std::size_t to);
     NESTGRID_NOINLINE IndicatorEntry at_sparse(NodeKey node) const {
         const IndicatorEntry* e = sparse.find(node);
         return e == nullptr ? IndicatorEntry{} : *e;
@@ -163,6 +186,23 @@ public:
                                    const Executor& executor = SequentialExecutor{},
                                    const Spread& spread = {});
 
+    /// Makes this the indicator of the field as it is now, at a cost that depends on what has
+    /// changed and not on the size of the grid: bit for bit what a new one would be, but that
+    /// least() and greatest() also count values of before. The grid may have been refined and
+    /// coarsened, too, where nodes keep their keys; hanging nodes that it does not name are then
+    /// found by a walk over all of it. The indicator stays as it was where this throws.
+    /// \param leaf_errors errors of leaves, where it was made of these
+    /// \throw InvalidInput as the constructors do, and where errors of leaves are missing
+    template <class Grid, class Field>
+        requires(!detail::AnyHierarchy<Grid>)
+    void update(const Grid& grid, const Field& field, const ChangedPlaces& changed) {
+        update(erase(grid, field), changed);
+    }
+    void update(const Hierarchy<float>& hierarchy, const ChangedPlaces& changed,
+                const LeafErrors& leaf_errors = {});
+    void update(const Hierarchy<double>& hierarchy, const ChangedPlaces& changed,
+                const LeafErrors& leaf_errors = {});
+
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
     double stop(NodeKey node) const override { return bfloat16_value(entries_.at(node).stop); }
     NodeMask stops_at_most(const Rule& rule, std::span<const NodeKey> nodes,
@@ -221,6 +261,9 @@ private:
     template <class Real>
     void prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
                  const Executor& executor);
+    template <class Real>
+    void update_dirty(const Hierarchy<Real>& hierarchy, const ChangedPlaces& changed,
+                      const LeafErrors& leaf_errors);
 
     detail::IndicatorEntries entries_;
     HangingNodes hanging_;
