@@ -101,7 +101,7 @@ TYPED_TEST(Weights, MoveSurfacesOnSimplicesContinuously) {
 }
 
 /// Positions that the grid gives are blended like values.
-TEST(Weights, MovePositionsContinuously) {
+TEST(WeightsOnCurvedGrids, MovePositionsContinuously) {
     std::mt19937 random(16);
     const double c = 1.5;
     for (int i = 0; i < 4; ++i) {

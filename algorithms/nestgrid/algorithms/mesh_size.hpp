@@ -7,8 +7,9 @@
 // The paper measures h(x) by the distance of x from its parents. That number differs between the
 // new nodes of one split, and grows from a node to a finer one where a later edge is longer. The
 // diameter of the split element is the same for all of them, and spreading mends the rest.
-// With slope s the sum over all finer levels, s times a series of distances, comes on top of the
-// diameter: elements in a lens are finer than asked for by that much.
+// Spread by a slope, a size exceeds the diameter by at most slope times the sum of the distances
+// from corners to new nodes on all finer levels: elements in a lens are that much finer than asked
+// for.
 #pragma once
 
 #include <nestgrid/algorithms/swept_indicator.hpp>
