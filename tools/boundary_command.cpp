@@ -9,6 +9,7 @@ namespace {
 struct Options {
     Input input;
     SurfaceOptions surface;
+    LensText lens;
     bool outlines = false;
 };
 
@@ -19,6 +20,7 @@ Command add_boundary(CLI::App& program) {
     CLI::App* boundary = program.add_subcommand("boundary", "draw the boundary, coloured");
     add_input_options(*boundary, o->input);
     add_surface_options(*boundary, o->surface);
+    add_lens_options(*boundary, o->lens);
     boundary->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     return {boundary, [o] {
                 const nestgrid::detail::Everywhere everywhere;
@@ -26,6 +28,7 @@ Command add_boundary(CLI::App& program) {
                               {.function = &everywhere,
                                .cap = true,
                                .outlines = o->outlines,
-                               .empty = "the hierarchy has no boundary"});
+                               .empty = "the hierarchy has no boundary",
+                               .lens = parse(o->lens)});
             }};
 }

@@ -61,20 +61,28 @@ public:
         if (what.function == nullptr && !options.budgets.empty()) {
             throw nestgrid::InvalidInput("--max-triangles is for grids of dimension 3");
         }
+        if (what.lens && !options.budgets.empty()) {
+            throw nestgrid::InvalidInput("--max-triangles with --lens is for isosurfaces");
+        }
     }
 
     void draw_all(DrawnField& field) {
         const double start = now();
-        const bool plain = options_.thresholds.empty() && options_.budgets.empty();
+        const bool plain = options_.thresholds.empty() && options_.budgets.empty() && !what_.lens;
         if (!plain) indicator_.emplace(hierarchy_, nestgrid::LeafErrors{}, executor_);
+        if (what_.lens) size_.emplace(nestgrid::mesh_size(hierarchy_, what_.lens->spread));
         field.preroll_seconds = now() - start;
         if (plain) field.surfaces.push_back(draw({.cap = what_.cap}));
         for (const std::int64_t budget : options_.budgets) {
             field.surfaces.push_back(
                 draw({.max_triangles = static_cast<std::uint64_t>(budget), .cap = what_.cap}));
         }
+        std::vector<ThresholdText> thresholds;
         for (const std::string& text : options_.thresholds) {
-            const ThresholdText t = parse_threshold(text);
+            thresholds.push_back(parse_threshold(text));
+        }
+        if (what_.lens) set_default_threshold(thresholds, true);
+        for (const ThresholdText& t : thresholds) {
             const double range = indicator_->greatest() - indicator_->least();
             const double threshold = t.percent ? t.number / 100 * range : t.number;
             field.surfaces.push_back(draw({.threshold = threshold, .cap = what_.cap}));
@@ -93,6 +101,10 @@ private:
     }
 
     nestgrid::Slice slice_at(const nestgrid::IsosurfaceOptions& options) const {
+        if (what_.lens) {
+            return slice(hierarchy_, *what_.function, in_lens(options.threshold), *indicator_,
+                         options, executor_);
+        }
         return indicator_ ? slice(hierarchy_, *what_.function, *indicator_, options, executor_)
                           : slice(hierarchy_, *what_.function, options, executor_);
     }
@@ -105,8 +117,14 @@ private:
                        ? shading(hierarchy_, with..., options, executor_)
                        : height_field(hierarchy_, what_.scale, with..., options, executor_);
         };
-        nestgrid::Shading s = indicator_ ? draw(*indicator_) : draw();
+        nestgrid::Shading s = what_.lens   ? draw(in_lens(threshold), *indicator_)
+                              : indicator_ ? draw(*indicator_)
+                                           : draw();
         return {std::move(s.surface), s.counts, s.error_bound};
+    }
+
+    auto in_lens(double threshold) const {
+        return nestgrid::Threshold(&*indicator_, threshold) && what_.lens->criterion(*size_);
     }
 
     const nestgrid::Hierarchy<Real>& hierarchy_;
@@ -114,6 +132,7 @@ private:
     const ColouredSurface& what_;
     nestgrid::TbbExecutor executor_;
     std::optional<nestgrid::HierarchicalIndicator> indicator_;
+    std::optional<nestgrid::SweptIndicator> size_;
 };
 
 void print(const Drawn& d, const DrawnField& field) {

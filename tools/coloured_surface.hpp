@@ -5,6 +5,7 @@
 #include <nestgrid/algorithms/slice.hpp>
 
 #include "command_line.hpp"
+#include "lens_options.hpp"
 
 /// A surface that is coloured by the field.
 struct ColouredSurface {
@@ -20,6 +21,7 @@ struct ColouredSurface {
     /// number.
     std::vector<double> values{};
     int value_count = 0;
+    std::optional<LensRequest> lens{};
 };
 
 /// Draws, writes, paints and prints the surface at each threshold or budget.

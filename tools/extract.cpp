@@ -20,6 +20,9 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
+/// The threshold that all offsets are below: what is drawn depends on the lens alone.
+constexpr double any_offset = std::numeric_limits<double>::infinity();
+
 /// \param criterion_at the criterion for a threshold
 /// \param budget triangles at most, beside which `threshold` is not used; or 0
 template <class Grid, class Field, class MakeCriterion>
@@ -93,6 +96,15 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
                 extract_one(grid, field, criterion_at, indicator, threshold, 0, executor, request));
         }
     };
+    if (request.lens) {
+        if (request.progress) request.progress("sizes of elements");
+        const nestgrid::SweptIndicator size = nestgrid::mesh_size(grid, request.lens->spread);
+        const nestgrid::Lens lens = request.lens->criterion(size);
+        run.preroll_seconds = now() - start;
+        draw_all(
+            [&](double threshold) { return nestgrid::Threshold(&indicator, threshold) && lens; });
+        return;
+    }
     if (!request.box) {
         draw_all([&](double threshold) { return nestgrid::Threshold(&indicator, threshold); });
         return;
@@ -115,6 +127,10 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
+}
+
+void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_lens) {
+    if (thresholds.empty()) thresholds.push_back({with_lens ? any_offset : 0, false});
 }
 
 ThresholdText parse_threshold(const std::string& text) {

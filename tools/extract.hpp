@@ -12,6 +12,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
+#include "lens_options.hpp"
 #include "surface_file.hpp"
 #include "volume.hpp"
 
@@ -23,6 +24,9 @@ struct ThresholdText {
 
 /// \throw nestgrid::InvalidInput unless the text is a number >= 0, with or without %
 ThresholdText parse_threshold(const std::string& text);
+
+/// Where there is none: with a lens, whatever the data are; else 0.
+void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_lens);
 
 /// A box in the coordinates of the grid, and the threshold within it.
 struct FineBox {
@@ -36,6 +40,7 @@ struct ExtractionRequest {
     /// Triangles at most, beside which there are no thresholds.
     std::vector<std::uint64_t> budgets{};
     std::optional<FineBox> box{};
+    std::optional<LensRequest> lens{};
     int threads = 0;  ///< 0: all
     bool cap = false;
     bool normals = true;

@@ -13,6 +13,7 @@ struct Options {
     Input input;
     SurfaceOptions surface;
     SliceOptions slice;
+    LensText lens;
     std::vector<double> values;
     int count = 0;
 };
@@ -35,7 +36,8 @@ void run_isolines(Options& o) {
                    .normal = f.function == nullptr ? nestgrid::Point{0, 0, 1} : f.normal,
                    .empty = "the slice does not meet the domain",
                    .values = o.values,
-                   .value_count = o.count});
+                   .value_count = o.count,
+                   .lens = parse(o.lens)});
 }
 
 }  // namespace
@@ -50,5 +52,6 @@ Command add_isolines(CLI::App& program) {
     isolines->add_option("--count", o->count, "so many values, evenly within the range");
     add_slice_options(*isolines, o->slice);
     add_surface_options(*isolines, o->surface);
+    add_lens_options(*isolines, o->lens);
     return {isolines, [o] { run_isolines(*o); }};
 }

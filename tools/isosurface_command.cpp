@@ -18,6 +18,7 @@ struct Options {
     double value = 0;
     std::vector<double> box;
     double box_threshold = 0;
+    LensText lens;
     bool cap = false;
     bool flat = false;
     bool at_nodes = false;
@@ -44,11 +45,12 @@ void run_isosurface(Options& o) {
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     SurfaceOptions& s = o.surface;
     check(s);
-    if (s.thresholds.empty() && s.budgets.empty()) s.thresholds = {"0"};
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
     if (!o.box.empty()) request.box = fine_box(o);
+    request.lens = parse(o.lens);
     for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
+    if (s.budgets.empty()) set_default_threshold(request.thresholds, request.lens.has_value());
     if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
     if (is_hierarchy(o.input.path) && o.against_vtk) {
         throw nestgrid::InvalidInput("--against-vtk is for volumes");
@@ -111,6 +113,8 @@ Command add_isosurface(CLI::App& program) {
         ->expected(6);
     isosurface->add_option("--box-threshold", o->box_threshold, "in units of the data; default: 0")
         ->needs("--box");
+    add_lens_options(*isosurface, o->lens);
+    isosurface->get_option("--lens")->excludes("--box");
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume");
     isosurface->add_flag("--no-normals", o->flat, "leave out the normals");
     isosurface->add_flag("--at-nodes", o->at_nodes,

@@ -13,6 +13,7 @@ namespace {
 struct Options {
     Input input;
     SurfaceOptions surface;
+    LensText lens;
     double scale = 0;
     bool outlines = false;
 };
@@ -22,6 +23,7 @@ Command add(CLI::App& program, const char* name, const char* what, bool lifted) 
     CLI::App* command = program.add_subcommand(name, what);
     add_input_options(*command, o->input);
     add_surface_options(*command, o->surface);
+    add_lens_options(*command, o->lens);
     command->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     if (lifted) {
         command->add_option("--scale", o->scale, "heights in multiples of the field")->required();
@@ -34,7 +36,8 @@ Command add(CLI::App& program, const char* name, const char* what, bool lifted) 
                               {.scale = o->scale,
                                .outlines = o->outlines,
                                .flat = false,
-                               .empty = "the hierarchy has no elements"});
+                               .empty = "the hierarchy has no elements",
+                               .lens = parse(o->lens)});
             }};
 }
 

@@ -14,6 +14,7 @@ struct Options {
     Input input;
     SurfaceOptions surface;
     SliceOptions slice;
+    LensText lens;
     bool cap = false;
     bool outlines = false;
 };
@@ -26,7 +27,8 @@ void run_slice(Options& o) {
                    .outlines = o.outlines,
                    .flat = f.flat,
                    .normal = f.normal,
-                   .empty = "the slice does not meet the domain"});
+                   .empty = "the slice does not meet the domain",
+                   .lens = parse(o.lens)});
 }
 
 }  // namespace
@@ -37,6 +39,7 @@ Command add_slice(CLI::App& program) {
     add_input_options(*slice, o->input);
     add_slice_options(*slice, o->slice);
     add_surface_options(*slice, o->surface);
+    add_lens_options(*slice, o->lens);
     slice->add_flag(
         "--cap", o->cap,
         "close the slice along the boundary, around the side that the normal points to, "

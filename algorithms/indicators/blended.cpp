@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/blended.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
+#include <indicators/float_weight.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {
@@ -29,17 +29,10 @@ NodeMask Blended::holds(const NewNodes& nodes) const {
 }
 
 void Blended::weights(const NewNodes& nodes, std::span<float> s) const {
-    constexpr float below_one = 1 - 0x1p-24F;  // the greatest float below 1
-    const NodeMask whole = holds(nodes);
     for (std::size_t n = 0; n < s.size(); ++n) {
-        if ((whole >> n & 1U) != 0) {
-            s[n] = 1;
-        } else if ((nodes.outside >> n & 1U) != 0) {
-            s[n] = 0;
-        } else {
-            const double weight = blend_weight(indicator_->stop(nodes.keys[n]), epsilon_, factor_);
-            s[n] = std::min(static_cast<float>(weight), below_one);
-        }
+        const bool outside = (nodes.outside >> n & 1U) != 0;
+        s[n] =
+            outside ? 0 : engine::float_weight(indicator_->stop(nodes.keys[n]), epsilon_, factor_);
     }
 }
 

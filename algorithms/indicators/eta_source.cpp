@@ -11,7 +11,6 @@
 #include <indicators/spread.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/hanging_nodes.hpp>
-#include <walk/interpolate.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {
@@ -68,7 +67,7 @@ public:
         const std::size_t corners = view.corner_count();
         const std::size_t count = corners + rule.new_nodes.size();
         const std::size_t components = source_->wants_values() ? walk_->components() : 0;
-        put_positions(view, split);
+        const auto x = walk_->split_positions(view, split, positions_);
         values_.assign(value, value + count * components);
         means_.resize(rule.new_nodes.size() * components);
         for (std::size_t i = 0; i < means_.size(); ++i) {
@@ -78,51 +77,22 @@ public:
         const auto keys = walk_->split_keys(view, split, keys_);
         const auto nodes = std::span(nodes_).first(count);
         etas_->maxima().find(keys, nodes);
-        const MeasuredSplit measured{rule,    view.level, std::span(positions_).first(count),
-                                     values_, means_,     components};
+        const MeasuredSplit measured{rule, view.level, x, values_, means_, components};
         source_->split(measured, nodes, *etas_);
         for (NodeMask left = split.outside & rule.all(); left != 0; left &= left - 1) {
             etas_->maxima()[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
                 bfloat16_infinity;
         }
-        etas_->maxima().add_split(view.level, rule, nodes, reach(measured));
+        etas_->maxima().add_split(view.level, rule, nodes, measures_reach_ ? reach_of(rule, x) : 0);
     }
 
 private:
-    /// Puts the true positions of corners and new nodes in place; hanging nodes are interpolated.
-    void put_positions(const View& view, const Split& split) {
-        const Rule& rule = *split.rule;
-        const std::size_t corners = view.corner_count();
-        walk_->corners(view, nullptr, positions_.data());
-        walk_->new_positions(view, rule,
-                             std::span(positions_).subspan(corners, rule.new_nodes.size()));
-        for (NodeMask left = split.constrained & rule.all(); left != 0; left &= left - 1) {
-            const auto n = static_cast<std::size_t>(std::countr_zero(left));
-            positions_[corners + n] =
-                nestgrid::detail::interpolate(rule.new_nodes[n], positions_.data());
-        }
-    }
-
-    /// The greatest distance between a corner and a new node, rounded up; 0 where distances do not
-    /// count.
-    float reach(const MeasuredSplit& split) const {
-        if (!measures_reach_) return 0;
-        const std::size_t corners = split.corner_count();
-        double greatest = 0;
-        for (const Point& made : split.positions.subspan(corners)) {
-            for (const Point& corner : split.positions.first(corners)) {
-                greatest = std::max(greatest, norm(made - corner));
-            }
-        }
-        return float_above(greatest);
-    }
-
     const Walk<Real>* walk_;
     EtaSource* source_;
     bool measures_reach_;
     NodeEtas* etas_;
     SplitKeys keys_;
-    std::array<Point, max_corners + max_new_nodes> positions_;
+    SplitPositions positions_;
     std::array<std::size_t, max_corners + max_new_nodes> nodes_{};
     std::vector<double> values_;
     std::vector<double> means_;

@@ -9,6 +9,7 @@
 
 #include <indicators/offset.hpp>
 #include <indicators/preroll_log.hpp>
+#include <indicators/spread.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/frontier.hpp>
 #include <walk/interpolate.hpp>
@@ -65,7 +66,7 @@ public:
             facts_.add_value(static_cast<double>(value[(corners + n) * stride]), limit_);
         }
         std::ranges::copy(split.keys, keys_.data() + corners);
-        receiver_->split({split.rule, view.level, split.outside, reach_of(view, rule),
+        receiver_->split({split.rule, view.level, split.outside, reach(view, split),
                           std::span<const NodeKey>(keys_).first(corners + split.keys.size())},
                          [&](std::size_t n) {
                              if ((split.constrained >> n & 1U) != 0) return 0.0F;
@@ -97,21 +98,10 @@ private:
         }
     }
 
-    /// The greatest distance between a corner and a new node, rounded up; 0 where distances do not
-    /// count.
-    float reach_of(const View& view, const Rule& rule) const {
+    /// How far the split hands `stop` on; 0 where distances do not count.
+    float reach(const View& view, const Split& split) {
         if (!measures_) return 0;
-        std::array<Point, max_corners> corner;
-        std::array<Point, max_new_nodes> made;
-        walk_->corners(view, nullptr, corner.data());
-        walk_->new_positions(view, rule, std::span(made).first(rule.new_nodes.size()));
-        double greatest = 0;
-        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-            for (std::size_t k = 0; k < view.corner_count(); ++k) {
-                greatest = std::max(greatest, norm(made[n] - corner[k]));
-            }
-        }
-        return float_above(greatest);
+        return reach_of(*split.rule, walk_->split_positions(view, split, positions_));
     }
 
     float error_of(const View& leaf) const {
@@ -148,6 +138,7 @@ private:
     const ElementTest<Real>* enters_ = nullptr;
     detail::PrerollFacts facts_;
     std::array<NodeKey, max_corners + max_new_nodes> keys_;
+    SplitPositions positions_;
     std::vector<Real> given_;
 };
 

@@ -3,7 +3,9 @@
 // How an indicator spreads from finer nodes to coarser ones, in bfloat16.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include <nestgrid/algorithms/criterion.hpp>
@@ -21,6 +23,20 @@ inline void require_spread(const Spread& spread) {
     throw InvalidInput(
         "an indicator is spread by a factor of at least 1 and a slope of at least 0, not by " +
         std::to_string(spread.factor) + " and " + std::to_string(spread.slope));
+}
+
+/// How far a split hands an indicator on: the greatest distance, rounded up, between a new node and
+/// a corner, or another new node where one of them may be a parent.
+/// \param x positions of the corners and, behind them, of the new nodes
+inline float reach_of(const Rule& rule, std::span<const Point> x) {
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    double greatest = 0;
+    for (const Point& parent : x.first(rule.steps == 1 ? corners : x.size())) {
+        for (const Point& made : x.subspan(corners)) {
+            greatest = std::max(greatest, norm(made - parent));
+        }
+    }
+    return float_above(greatest);
 }
 
 /// factor * (stop + slope * reach), rounded up.

@@ -70,7 +70,7 @@ private:
         const Rule& rule = *split.rule;
         const std::size_t corners = view.corner_count();
         const std::size_t made = rule.new_nodes.size();
-        walk_->new_positions(view, rule, std::span(positions_).subspan(corners, made));
+        walk_->split_positions(view, split, positions_);
         std::array<bool, max_corners + max_new_nodes> moves;
         for (std::size_t k = 0; k < corners; ++k) {
             moves[k] = moved(keys[k]) || (*changed_)({&positions_[k], 1});
@@ -96,7 +96,7 @@ private:
     DirtyNodes* dirty_;
     NodeMaxima<std::uint8_t> splits_{0, 0};  // 1 at dirty nodes
     std::array<std::size_t, max_corners + max_new_nodes> nodes_{};
-    std::array<Point, max_corners + max_new_nodes> positions_;
+    SplitPositions positions_;
 };
 
 template <class Real>

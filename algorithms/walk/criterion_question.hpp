@@ -26,9 +26,8 @@ public:
                  const Split& split) {
         NewNodes nodes{*split.rule, split.keys, view.level + 1, split.outside};
         if (criterion.wants_positions()) {
-            positions_.resize(split.rule->new_nodes.size());
-            walk.new_positions(view, *split.rule, positions_);
-            nodes.positions = positions_;
+            nodes.positions =
+                walk.split_positions(view, split, positions_).subspan(view.corner_count());
         }
         const NodeMask mask = criterion.holds(nodes);
         Decision decision{mask == split.rule->all() ? Visit::stop : Visit::descend, mask};
@@ -41,7 +40,7 @@ public:
     }
 
 private:
-    std::vector<Point> positions_;
+    SplitPositions positions_;
     std::vector<float> weights_;
 };
 

@@ -37,6 +37,35 @@ template <class Real>
                     std::to_string(view.coarse));
 }
 
+/// Moves the numbers at new nodes where S has a weight towards their interpolants (section 6), in
+/// the order of the rule: an earlier node may be a parent of a later one.
+/// \param functions the first components, or null; affine ones are interpolated already
+/// \param value of the corners and, behind them, of the new nodes, `components` for each
+template <class Number>
+void blend(const Rule& rule, NodeMask mean, std::span<const float> weights,
+           const PositionFunctions* functions, Number* value, std::size_t components) {
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    const std::size_t function_count = functions == nullptr ? 0 : functions->count();
+    const auto rounded = [&](std::size_t c, Number number) {
+        if (c >= function_count) return number;
+        return static_cast<Number>(functions->rounded(c, static_cast<double>(number)));
+    };
+    for (std::size_t n = 0; n < weights.size(); ++n) {
+        const bool is_mean = (mean >> n & 1U) != 0;
+        if (!is_mean && !(weights[n] > 0)) continue;
+        Number* const at = value + (corners + n) * components;
+        for (std::size_t c = 0; c < components; ++c) {
+            if (c < function_count && functions->affine(c)) continue;
+            const Number between =
+                rounded(c, detail::interpolate(rule.new_nodes[n], value + c, components));
+            const auto [least, greatest] = std::minmax(between, at[c]);
+            const Number blended =
+                std::fma(static_cast<Number>(weights[n]), between - at[c], at[c]);
+            at[c] = is_mean ? between : rounded(c, std::clamp(blended, least, greatest));
+        }
+    }
+}
+
 }  // namespace
 
 template <class Real>
@@ -205,7 +234,11 @@ void Walk<Real>::descend(const View& view, const Split& split, const Decision& d
     if (carries_positions_) project_positions(view, split, mean, frame);
     if (functions_ != nullptr) put_functions(view, split, mean, frame);
     if (!decision.weights.empty()) {
-        blend(rule, mean, decision.weights, frame.value.data());
+        blend(rule, mean, decision.weights, functions_, frame.value.data(), components_);
+        if (carries_positions_ && new_positions_) {
+            blend(rule, mean, decision.weights, nullptr, frame.position.data()->data(),
+                  Point{}.size());
+        }
         for (std::size_t n = 0; n < decision.weights.size(); ++n) {
             interpolated |= NodeMask{decision.weights[n] > 0} << n;
         }
@@ -217,26 +250,6 @@ void Walk<Real>::descend(const View& view, const Split& split, const Decision& d
         closing = close(view, split, mean, frame);
     }
     visit_children(view, split, interpolated, closing, frame, visitor);
-}
-
-/// Moves the values at new nodes where S has a weight towards their interpolants (section 6), in
-/// the order of the rule: an earlier node may be a parent of a later one.
-/// \param value of the corners and, behind them, of the new nodes
-template <class Real>
-void Walk<Real>::blend(const Rule& rule, NodeMask mean, std::span<const float> weights,
-                       Real* value) const {
-    const auto corners = static_cast<std::size_t>(rule.corner_count());
-    for (std::size_t n = 0; n < weights.size(); ++n) {
-        const bool is_mean = (mean >> n & 1U) != 0;
-        if (!is_mean && !(weights[n] > 0)) continue;
-        Real* const at = value + (corners + n) * components_;
-        for (std::size_t c = 0; c < components_; ++c) {
-            const Real between = detail::interpolate(rule.new_nodes[n], value + c, components_);
-            const auto [least, greatest] = std::minmax(between, at[c]);
-            const Real blended = std::fma(static_cast<Real>(weights[n]), between - at[c], at[c]);
-            at[c] = is_mean ? between : std::clamp(blended, least, greatest);
-        }
-    }
 }
 
 /// Enters the element, and puts P_S U at its corners and new nodes into the frame, eq. (2).

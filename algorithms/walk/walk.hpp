@@ -5,7 +5,8 @@
 //
 // Invariants:
 //   - a new node's value is the interpolant where S holds or the node hangs, else U itself, or,
-//     where S is a weight between 0 and 1, S times the interpolant and 1 - S times U;
+//     where S is a weight between 0 and 1, S times the interpolant and 1 - S times U; and its
+//     position likewise, where the grid gives one;
 //   - U is asked for only where it is used, the children only when they are entered;
 //   - what the walk knows of an element lies in the frame of its father's split, one frame a level.
 // Consequences: memory is O(depth), allocated when a level is first reached and never in the loop;
@@ -27,6 +28,9 @@ namespace nestgrid::engine {
 
 /// Room for the keys of the corners and new nodes of any split.
 using SplitKeys = std::array<NodeKey, max_corners + max_new_nodes>;
+
+/// Room for the positions of the same nodes.
+using SplitPositions = std::array<Point, max_corners + max_new_nodes>;
 
 /// What a walk carries along.
 struct Needs {
@@ -102,8 +106,11 @@ public:
     std::span<const NodeKey> split_keys(const View& view, const Split& split, SplitKeys& out) const;
     /// Positions of the ends of a maximal edge.
     std::array<Point, 2> positions(const MaximalEdge<Real>& edge) const;
-    /// True positions of the new nodes of an element. The walk must carry positions.
-    void new_positions(const View& view, const Rule& rule, std::span<Point> out) const;
+    /// Positions of the corners of a split element and, behind them, of its new nodes: the true
+    /// ones, but where nodes hang. The walk must carry positions.
+    /// \param out takes them
+    std::span<const Point> split_positions(const View& view, const Split& split,
+                                           SplitPositions& out) const;
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(const View& view) const;
     /// Gradients of component 0 at the corners, where the field offers them.
@@ -116,7 +123,6 @@ private:
     void visit(const View& view, Visitor<Real>& visitor) const;
     void descend(const View& view, const Split& split, const Decision& decision,
                  Visitor<Real>& visitor) const;
-    void blend(const Rule& rule, NodeMask mean, std::span<const float> weights, Real* value) const;
     void project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
                  Frame<Real>& frame) const;
     void project_positions(const View& view, const Split& split, NodeMask mean,

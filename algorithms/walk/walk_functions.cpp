@@ -17,12 +17,12 @@ void Walk<Real>::put_functions(const View& view, const Split& split, NodeMask me
     const std::size_t corners = view.corner_count();
     const NodeMask fixed = fixed_ == nullptr ? 0 : fixed_->mask(split.keys);
     const NodeMask interpolated = functions_->affine() ? rule.all() : mean;
-    std::array<Point, max_new_nodes> own;
-    std::span<const Point> x(own);
+    SplitPositions own;
+    std::span<const Point> x;
     if (carries_positions_) {
         x = std::span(frame.position).subspan(corners);
     } else if ((interpolated | fixed) != rule.all()) {
-        new_positions(view, rule, std::span(own).first(rule.new_nodes.size()));
+        x = split_positions(view, split, own).subspan(corners);
     }
     Real* const value = frame.value.data();
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {

@@ -35,18 +35,23 @@ std::array<Point, 2> Walk<Real>::positions(const MaximalEdge<Real>& edge) const 
 }
 
 template <class Real>
-void Walk<Real>::new_positions(const View& view, const Rule& rule, std::span<Point> out) const {
-    if (new_positions_) {
-        hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(), out);
-        return;
-    }
+std::span<const Point> Walk<Real>::split_positions(const View& view, const Split& split,
+                                                   SplitPositions& out) const {
+    const Rule& rule = *split.rule;
     const std::size_t corners = view.corner_count();
-    std::array<Point, max_corners + max_new_nodes> x;
-    this->corners(view, nullptr, x.data());
-    for (std::size_t n = 0; n < out.size(); ++n) {
-        x[corners + n] = detail::interpolate(rule.new_nodes[n], x.data());
-        out[n] = x[corners + n];
+    const std::size_t count = rule.new_nodes.size();
+    this->corners(view, nullptr, out.data());
+    NodeMask interpolated = rule.all();
+    if (new_positions_) {
+        interpolated &= split.constrained;
+        hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(),
+                                  std::span(out).subspan(corners, count));
     }
+    for (std::size_t n = 0; n < count; ++n) {
+        if ((interpolated >> n & 1U) == 0) continue;
+        out[corners + n] = detail::interpolate(rule.new_nodes[n], out.data());
+    }
+    return std::span<const Point>(out).first(corners + count);
 }
 
 template <class Real>
@@ -68,8 +73,10 @@ template std::span<const NodeKey> Walk<double>::split_keys(const View&, const Sp
                                                            SplitKeys&) const;
 template std::array<Point, 2> Walk<float>::positions(const MaximalEdge<float>&) const;
 template std::array<Point, 2> Walk<double>::positions(const MaximalEdge<double>&) const;
-template void Walk<float>::new_positions(const View&, const Rule&, std::span<Point>) const;
-template void Walk<double>::new_positions(const View&, const Rule&, std::span<Point>) const;
+template std::span<const Point> Walk<float>::split_positions(const View&, const Split&,
+                                                             SplitPositions&) const;
+template std::span<const Point> Walk<double>::split_positions(const View&, const Split&,
+                                                              SplitPositions&) const;
 template unsigned Walk<float>::boundary(const View&) const;
 template unsigned Walk<double>::boundary(const View&) const;
 template void Walk<float>::gradients(const View&, std::span<Point>) const;

@@ -20,6 +20,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
+#include "lens_figures.hpp"
 #include "scenes.hpp"
 
 using namespace figures;
@@ -382,6 +383,8 @@ int main(int argc, char** argv) {
         {"isosurface_series", series_figure},
         {"budget", budget_figure},
         {"region", region_figure},
+        {"lens", lens_figure},
+        {"blended", blended_figure},
         {"criteria", criteria_figure},
         {"levels", levels_figure},
         {"measures", measures_figure},

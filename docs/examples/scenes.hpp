@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/octree_grid.hpp>
@@ -55,6 +56,16 @@ inline void draw(Picture& picture, const Surface<2>& lines, const Colour& colour
     }
 }
 
+/// Draws a circle across the z axis.
+inline void draw_circle(Picture& picture, const Point& centre, double radius) {
+    constexpr int sides = 90;
+    const auto at = [&](int i) {
+        const double angle = 2 * std::numbers::pi * i / sides;
+        return centre + radius * Point{std::cos(angle), std::sin(angle), 0};
+    };
+    for (int i = 0; i < sides; ++i) picture.line(at(i), at(i + 1), red, 2.5);
+}
+
 /// The colour of the level of the element that a triangle comes from.
 inline auto by_level(const Surface<3>& surface) {
     const auto [least, most] = std::ranges::minmax(surface.level_of);
@@ -90,6 +101,18 @@ inline CoarseGrid two_triangles() {
     cut.nodes = grid.nodes;
     cut.add(Shape::triangle, {0, 1, 3});
     cut.add(Shape::triangle, {0, 3, 2});
+    return cut;
+}
+
+/// Kuhn's six tetrahedra in the cube between -1 and 1.
+inline CoarseGrid six_tetrahedra() {
+    const CoarseGrid cube = box(3);
+    CoarseGrid cut;
+    cut.nodes = cube.nodes;
+    for (const auto& [a, b] :
+         {std::pair(1U, 3U), {3U, 2U}, {2U, 6U}, {6U, 4U}, {4U, 5U}, {5U, 1U}}) {
+        cut.add(Shape::tetrahedron, {0, a, b, 7});
+    }
     return cut;
 }
 

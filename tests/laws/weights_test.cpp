@@ -1,48 +1,23 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Criteria that the engine carries beyond a threshold: weights between 0 and 1 (paper, section 6)
-// and distances (section 4.3), on every family.
-#include <map>
-
+// Criteria with weights between 0 and 1 (paper, section 6), on every family.
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <walk/project.hpp>
 
 #include "closedness.hpp"
+#include "curved.hpp"
 #include "families.hpp"
+#include "hausdorff.hpp"
+#include "projection.hpp"
 #include "refusal.hpp"
 #include "sample_fields.hpp"
 
 using namespace nestgrid_test;
 
 namespace {
-
-/// Fine in a ball, coarser by the distance from it: eta <= distance + epsilon.
-class NearBall final : public Criterion {
-public:
-    NearBall(const HierarchicalIndicator& indicator, const Point& centre, double radius)
-        : indicator_{&indicator}, centre_{centre}, radius_{radius} {}
-
-    NodeMask holds(const NewNodes& nodes) const override {
-        NodeMask mask = 0;
-        for (std::size_t n = 0; n < nodes.keys.size(); ++n) {
-            const double distance = std::max(norm(nodes.positions[n] - centre_) - radius_, 0.0);
-            const double allowed = distance * (1 - 0x1p-10);
-            mask |= NodeMask{indicator_->stop(nodes.keys[n]) <= allowed} << n;
-        }
-        return mask & ~nodes.outside;
-    }
-    bool wants_positions() const override { return true; }
-    bool saturated() const override { return indicator_->spread().slope >= 1; }
-
-private:
-    const HierarchicalIndicator* indicator_;
-    Point centre_;
-    double radius_;
-};
 
 template <class Family>
 class Weights : public testing::Test {};
@@ -80,40 +55,75 @@ TYPED_TEST(Weights, OfOneOrNothingAreAThreshold) {
     });
 }
 
-/// P_S U at the nodes of the adaptive grid.
-template <class Grid>
-std::map<NodeKey, double> projection(const Grid& grid, const NodeField<Grid, double>& field,
-                                     const Criterion& criterion,
-                                     const HierarchicalIndicator& indicator) {
-    std::map<NodeKey, double> values;
-    const auto hierarchy = erase(grid, field);
-    const engine::Walk<double> walk(hierarchy, {.keys = true}, indicator.hanging());
-    engine::project(walk, criterion, [&](const engine::ElementView<double>& view) {
-        std::array<NodeKey, max_corners> keys{};
-        walk.corners(view, keys.data(), nullptr);
-        for (std::size_t i = 0; i < view.corner_count(); ++i) {
-            const auto [at, is_new] = values.emplace(keys[i], view.value[i]);
-            EXPECT_EQ(at->second, view.value[i]);
+/// |dP / d epsilon| <= C^2 / (C - 1).
+TYPED_TEST(Weights, MoveTheProjectionContinuously) {
+    const double step = 1e-4;
+    on_refined_grids<TypeParam>(13, [&](const auto& grid, const auto& field) {
+        for (const double c : {1.25, 2.0, 4.0}) {
+            const HierarchicalIndicator indicator(grid, field, Spread{.factor = c});
+            const auto at = [&](double epsilon) {
+                return projection(grid, field, Blended(&indicator, epsilon, c), indicator);
+            };
+            const double rounding = 1e-7 * (indicator.greatest() - indicator.least());
+            for (const double epsilon : {0.003, 0.05}) {
+                EXPECT_LE(greatest_moves(at(epsilon), at(epsilon + step)).value,
+                          c * c / (c - 1) * step + rounding);
+            }
         }
     });
-    return values;
 }
 
-/// |dP / d epsilon| <= C^2 / (C - 1), which is 4.5 for C = 1.5.
-TYPED_TEST(Weights, MoveTheProjectionContinuously) {
-    on_refined_grids<TypeParam>(13, [](const auto& grid, const auto& field) {
-        const HierarchicalIndicator indicator(grid, field, Spread{.factor = 1.5});
-        const double epsilon = 0.05;
-        const double step = 1e-6;
-        const auto before = projection(grid, field, Blended(&indicator, epsilon, 1.5), indicator);
-        const auto after =
-            projection(grid, field, Blended(&indicator, epsilon + step, 1.5), indicator);
-        for (const auto& [key, value] : before) {
-            const auto at = after.find(key);
-            if (at == after.end()) continue;
-            EXPECT_LE(std::abs(at->second - value), 4.6 * step);
+/// Where elements stop, simplices draw what their children drew: no step.
+TYPED_TEST(Weights, MoveSurfacesOnSimplicesContinuously) {
+    using Grid = typename TypeParam::Grid;
+    if constexpr (std::is_same_v<Grid, BisectionGrid<Grid::dimension>> ||
+                  std::is_same_v<Grid, RedGreenSimplices<Grid::dimension>>) {
+        for (auto& grid : TypeParam::grids()) {
+            for (int i = 0; i < 3 * TypeParam::steps; ++i) grid.refine_uniformly();
+            const auto values =
+                sample_nodes(grid, [](const Point& x) { return to_sphere(x, Grid::dimension); });
+            const NodeField<Grid, double> field(grid, values);
+            const HierarchicalIndicator indicator(grid, field, Spread{.factor = 1.5});
+            const auto at = [&](double epsilon) {
+                return isosurface(grid, field, 0.0, Blended(&indicator, epsilon, 1.5), indicator)
+                    .surface;
+            };
+            const double step = 1e-4;
+            auto before = at(0.004);
+            for (double epsilon = 0.004 + step; epsilon < 0.008; epsilon += step) {
+                auto after = at(epsilon);
+                // 4.5 for the values, and the gradient is not below 1/4.
+                EXPECT_LE(figures::hausdorff_distance(before, after), 4 * 4.5 * step) << epsilon;
+                before = std::move(after);
+            }
         }
-    });
+    }
+}
+
+/// Positions that the grid gives are blended like values.
+TEST(WeightsOnCurvedGrids, MovePositionsContinuously) {
+    std::mt19937 random(16);
+    const double c = 1.5;
+    for (int i = 0; i < 4; ++i) {
+        Forest<3> forest = boxes<3>(random, 2);
+        refine_randomly(forest, random, 60);
+        const CurvedGrid grid(forest);
+        const CurvedField field(grid, [](const Point& x) { return norm(x) - 1.1; });
+        const HierarchicalIndicator indicator(grid, field, Spread{.factor = c});
+        auto before = projection(grid, field, Blended(&indicator, 0.001, c), indicator);
+        double moved = 0;
+        for (double epsilon = 0.001; epsilon < 0.2; epsilon *= 1.02) {
+            const Blended s(&indicator, 1.02 * epsilon, c);
+            auto after = projection(grid, field, s, indicator);
+            const Moves moves = greatest_moves(before, after);
+            moved = std::max(moved, moves.position);
+            // Nodes lie at most 0.06 sqrt(3) from their interpolants.
+            EXPECT_LE(moves.position, c / (c - 1) * 0.02 * 0.06 * std::sqrt(3));
+            expect_closed(isosurface(grid, field, 0.0, s, indicator, {.verify = true}).surface);
+            before = std::move(after);
+        }
+        EXPECT_GT(moved, 0);
+    }
 }
 
 TYPED_TEST(Weights, AreRefusedWithoutTheFactor) {
@@ -126,18 +136,6 @@ TYPED_TEST(Weights, AreRefusedWithoutTheFactor) {
                    "not saturated");
     expect_refused([&] { HierarchicalIndicator(grid, field, Spread{.factor = 0.5}); }, "factor");
     expect_refused([&] { HierarchicalIndicator(grid, field, Spread{.slope = -1}); }, "slope");
-}
-
-TYPED_TEST(Weights, ByDistanceDrawClosedSurfaces) {
-    std::mt19937 random(14);
-    on_refined_grids<TypeParam>(15, [&](const auto& grid, const auto& field) {
-        const HierarchicalIndicator indicator(grid, field, Spread{.slope = 1});
-        for (int i = 0; i < 4; ++i) {
-            const Point centre{uniform(random), uniform(random), uniform(random)};
-            const NearBall near(indicator, centre, 0.3 * uniform(random));
-            expect_closed(isosurface(grid, field, 0.0, near, indicator).surface);
-        }
-    });
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fine inside a region, coarse outside (the lens of the paper, section 4.2).
+// Fine inside a region, coarse outside (the lens of the paper, section 4.3).
 //
 // Two thresholds on one indicator would crack: which of them holds at a node would depend on the
 // node alone, and a node outside may have finer nodes inside. So a node belongs to the region if it

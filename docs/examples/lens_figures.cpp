@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Figures of lenses, and of what moves with epsilon and with a lens.
+#include "lens_figures.hpp"
+
+#include <cstdio>
+
+#include <nestgrid/adapters/bisection_grid.hpp>
+#include <nestgrid/algorithms/blended.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/algorithms/mesh_size.hpp>
+#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/slice.hpp>
+
+#include "hausdorff.hpp"
+#include "plot.hpp"
+#include "scenes.hpp"
+
+namespace figures {
+
+void lens_figure(const std::string& file) {
+    const Bucky bucky;
+    const auto& grid = bucky.grid;
+    const auto& field = bucky.field;
+    const HierarchicalIndicator indicator(grid, field);
+    Picture picture(300, 300, 3);
+    int view = 0;
+    // [lens]
+    const Plane middle({0, 0, 32}, {0, 0, 1});
+    const SweptIndicator size = mesh_size(grid, {.slope = 0.5});  // once for all lenses
+    for (const Point& centre : {Point{16, 24, 32}, Point{28, 36, 32}, Point{44, 44, 32}}) {
+        const Lens lens(&size, Ball{centre, 9}, {.finest = 2});
+        const Slice result = slice(grid, field, middle, lens, indicator);
+        // [lens]
+        picture.look(view++, {.centre = {32, 32, 32}, .height = 66});
+        const Surface<3>& s = result.surface;
+        draw(picture, s, true, [&](std::size_t t) {
+            double sum = 0;
+            for (const std::uint32_t v : s.simplices[t]) sum += s.attributes[v];
+            return ramp(sum / 3);
+        });
+        draw_circle(picture, centre + Point{0, 0, 1}, 9);
+        std::printf("%zu triangles, |U - colour| <= %g\n", s.simplices.size(), result.error_bound);
+    }
+    picture.write(file);
+}
+
+namespace {
+
+/// A sphere in the cube between -1 and 1, through no node.
+double off_centre(const Point& x) { return norm(x - Point{0.11, 0.05, -0.07}) - 0.73; }
+
+/// A gyroid, whose gradient has about the length 1.
+double waves(const Point& x) {
+    const auto [a, b, c] = 2.0 * x + Point{0.3, 0.7, 1.1};
+    return 0.5 *
+           (std::sin(a) * std::cos(b) + std::sin(b) * std::cos(c) + std::sin(c) * std::cos(a));
+}
+
+/// The greatest change of the projection at any node, over the change of the threshold: of epsilon
+/// and of the place of a lens.
+struct Moduli {
+    double of_epsilon = 0;
+    double of_place = 0;
+};
+
+Moduli greatest_moduli(const OctreeGrid<3>& grid, double factor) {
+    const std::vector<double> u = values(grid, off_centre);
+    const NodeField<OctreeGrid<3>, double> field(grid, u);
+    const double slope = 0.02;
+    const HierarchicalIndicator indicator(grid, field, Spread{.factor = factor, .slope = slope});
+    const HierarchicalIndicator without_slope(grid, field, Spread{.factor = factor});
+    const std::vector<Point> nodes = grid.node_positions();
+    const auto move = [&](const Criterion& a, const Criterion& b) {
+        const auto before = probe(grid, field, nodes, a, indicator).values;
+        const auto after = probe(grid, field, nodes, b, indicator).values;
+        double greatest = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            greatest = std::max(greatest, std::abs(after[i] - before[i]));
+        }
+        return greatest;
+    };
+    Moduli greatest;
+    for (double epsilon = 0.0005; epsilon < 0.03; epsilon *= 1.02) {
+        const double step = 0.001 * epsilon;
+        const double moved = move(Blended(&without_slope, epsilon, factor),
+                                  Blended(&without_slope, epsilon + step, factor));
+        greatest.of_epsilon = std::max(greatest.of_epsilon, moved / step);
+    }
+    for (double place = -0.5; place < 0.5; place += 0.02) {
+        const double step = 0.001;
+        const auto lens_at = [&](double x) {
+            const LensOptions options{.finest = 0.001, .blend = factor};
+            return Lens(&indicator, Ball{{x, 0.3 * x, 0.1}, 0.2}, options);
+        };
+        const double way = step * std::hypot(1, 0.3);
+        const double moved = move(lens_at(place), lens_at(place + step));
+        greatest.of_place = std::max(greatest.of_place, moved / (slope * way));
+    }
+    return greatest;
+}
+
+/// The greatest distance of two surfaces whose thresholds differ by a relative step.
+template <class Grid>
+double greatest_step(const Grid& grid, double factor, double relative) {
+    const std::vector<double> u = values(grid, waves);
+    const NodeField<Grid, double> field(grid, u);
+    // [blended]
+    const HierarchicalIndicator indicator(grid, field, Spread{.factor = factor});
+    const auto at = [&](double epsilon) {
+        return isosurface(grid, field, 0.1, Blended(&indicator, epsilon, factor), indicator)
+            .surface;
+    };
+    // [blended]
+    double greatest = 0;
+    auto before = at(0.02);
+    for (double epsilon = 0.02; epsilon < 0.08; epsilon *= 1 + relative) {
+        auto after = at(epsilon * (1 + relative));
+        greatest = std::max(greatest, hausdorff_distance(before, after));
+        before = std::move(after);
+    }
+    return greatest;
+}
+
+}  // namespace
+
+void blended_figure(const std::string& file) {
+    OctreeGrid<3> hexahedra(box(3));
+    BisectionGrid<3> tetrahedra(six_tetrahedra());
+    for (int level = 0; level < 3; ++level) {
+        hexahedra.refine_uniformly();
+        for (int step = 0; step < 3; ++step) tetrahedra.refine_uniformly();
+    }
+    OctreeGrid<3> finer = hexahedra;
+    finer.refine_uniformly();
+    Picture picture(420, 420, 2);
+    const Plot moduli(picture, 0, {1, 4}, {0, 12}, false);
+    std::printf("factor  constant  of epsilon  of the place of a lens\n");
+    const auto constant = [](double c) { return c * c / (c - 1); };
+    for (double c = 1.1; c < 4; c += 0.05) {
+        moduli.line({c, constant(c)}, {c + 0.05, constant(c + 0.05)}, grey);
+    }
+    for (const double c : {1.125, 1.25, 1.5, 2.0, 3.0, 4.0}) {
+        const Moduli measured = greatest_moduli(finer, c);
+        moduli.dot({c, measured.of_epsilon}, blue);
+        moduli.dot({c, measured.of_place}, red);
+        std::printf("%6.3f %9.2f %11.2f %11.2f\n", c, constant(c), measured.of_epsilon,
+                    measured.of_place);
+    }
+    const Plot steps(picture, 1, {0.002, 0.2}, {0.001, 0.2}, true);
+    std::printf("step    tetrahedra: threshold  blended  hexahedra: threshold  blended\n");
+    std::vector<std::array<double, 5>> rows;
+    for (const double relative : {0.16, 0.08, 0.04, 0.02, 0.01, 0.005}) {
+        rows.push_back({relative, greatest_step(tetrahedra, 1, relative),
+                        greatest_step(tetrahedra, 1.5, relative),
+                        greatest_step(hexahedra, 1, relative),
+                        greatest_step(hexahedra, 1.5, relative)});
+        const auto& row = rows.back();
+        std::printf("%5.1f %% %21.5f %8.5f %21.5f %8.5f\n", 100 * relative, row[1], row[2], row[3],
+                    row[4]);
+    }
+    const std::array<Colour, 4> colours{Colour{0.6, 0.75, 0.95}, blue, {0.95, 0.65, 0.6}, red};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            const ImagePoint at{rows[i][0], rows[i][k + 1]};
+            steps.dot(at, colours[k]);
+            if (i > 0) steps.line({rows[i - 1][0], rows[i - 1][k + 1]}, at, colours[k]);
+        }
+    }
+    picture.write(file);
+}
+
+}  // namespace figures

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace figures {
+
+/// A slice of the bucky ball in a lens at three places.
+void lens_figure(const std::string& file);
+/// Left: moduli of continuity beside C^2 / (C - 1). Right: steps of surfaces beside steps of
+/// epsilon.
+void blended_figure(const std::string& file);
+
+}  // namespace figures

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Lenses of the program: results, and wrong input. Arguments: the program, the maker of volumes.
+. "$(dirname "$0")/functions.sh"
+
+# run COMMAND...: sets `triangles`.
+run() {
+    "$program" "$@" >out 2>err || fail "$*: $(cat err)"
+    [ ! -s err ] || fail "$*: wrote to standard error: $(cat err)"
+    [ "$(value open_edges)" = 0 ] || fail "$*: open edges"
+    triangles=$(value triangles)
+}
+
+# The volume is 9.5 x 23 x 34 long. A lens around all of it, in which no node is dropped, also none
+# without an offset; and one that is far away.
+run isosurface v.vti --value 130 --lens ball:5,11,17,100 && finest=$triangles
+run isosurface v.vti --value 130 && [ "$triangles" -le "$finest" ] && [ $((2 * triangles)) -gt "$finest" ] ||
+    fail "a lens around everything: $finest triangles, without it $triangles"
+run isosurface v.vti --value 130 --lens ball:1000,0,0,1 --slope 10 && coarsest=$triangles
+[ "$coarsest" -lt $((finest / 2)) ] || fail "a lens far away: $coarsest of $finest triangles"
+
+# Between them, more with every demand.
+last=$coarsest
+for more in "ball:5,11,8,3 --finest 3" "ball:5,11,8,3" "box:2,8,8,15,4,12 --lens ball:5,11,25,4"; do
+    run isosurface v.vti --value 130 --slope 0.5 --lens $more
+    [ "$triangles" -ge "$last" ] && [ "$triangles" -le "$finest" ] ||
+        fail "$more: $triangles triangles, before $last"
+    last=$triangles
+done
+run isosurface v.vti --value 130 --lens ball:1000,0,0,1 --slope 10 --coarsest 3
+[ "$triangles" -gt "$coarsest" ] || fail "coarsest: $triangles triangles"
+run isosurface v.vti --value 130 --lens ball:5,11,8,3 --threshold 2
+awk -v bound="$(value error_bound)" 'BEGIN { exit !(bound < 20) }' ||
+    fail "the threshold is not kept: $(value error_bound)"
+
+# The other domains, and the other commands.
+printf '0 0\n9 0\n9 10\n0 10\n' >half.txt
+for lens in halfspace:0,11,0,0,1,0 cone:5,-20,17,0,1,0,8 polygon:half.txt; do
+    run isosurface v.vti --value 130 --lens $lens
+    [ "$triangles" -gt "$coarsest" ] && [ "$triangles" -lt "$finest" ] ||
+        fail "$lens: $triangles triangles"
+done
+run slice v.vti --axis z --at 17 && all=$triangles
+run slice v.vti --axis z --at 17 --lens ball:5,11,17,3 -o s.vtp
+[ "$triangles" -lt "$all" ] && [ -s s.vtp ] || fail "slice: $triangles of $all triangles"
+run boundary v.vti && all=$triangles
+run boundary v.vti --lens ball:0,0,0,3 --threshold 20
+[ "$triangles" -lt "$all" ] || fail "boundary: $triangles of $all triangles"
+"$program" isolines v.vti --axis z --at 17 --count 4 --lens ball:5,11,17,3 >out 2>err ||
+    fail "isolines: $(cat err)"
+{
+    printf 'P5\n33 33\n255\n'
+    for ((i = 0; i < 33 * 33; ++i)); do printf "\\$(printf %o $((i % 33 * (i / 33) % 200 + 20)))"; done
+} >wave.pgm
+run height wave.pgm --scale 1 && all=$triangles
+run height wave.pgm --scale 1 --lens ball:10,10,0,4
+[ "$triangles" -lt "$all" ] || fail "height: $triangles of $all triangles"
+
+surface() { echo isosurface v.vti --value 130 -o x.vtp; }
+for lens in ball ball: ball:1,2,3 ball:1,2,3,4,5 ball:1,2,3,x ball:1,2,3,nan ring:1,2 :1; do
+    refused 1 "the lens '$lens' is none of ball" $(surface) --lens="$lens"
+done
+refused 1 'radius of .* is negative' $(surface) --lens=ball:1,2,3,-4
+refused 1 'is empty' $(surface) --lens=box:2,1,0,1,0,1
+refused 1 'normal of a half-space' $(surface) --lens=halfspace:1,2,3,0,0,0
+refused 1 'angle between' $(surface) --lens=cone:1,2,3,0,0,1,100
+refused 1 "'nothing.txt' is no file" $(surface) --lens=polygon:nothing.txt
+refused 1 "'.' is no file" $(surface) --lens=polygon:.
+: >empty.txt && refused 1 'no list of corners' $(surface) --lens=polygon:empty.txt
+echo 1 2 3 >odd.txt && refused 1 'no list of corners' $(surface) --lens=polygon:odd.txt
+echo 1 2 3 4 x >words.txt && refused 1 'no list of corners' $(surface) --lens=polygon:words.txt
+echo 1 2 3 4 >two.txt && refused 1 'fewer than three' $(surface) --lens=polygon:two.txt
+refused 1 'finest is negative' $(surface) --lens=ball:1,2,3,4 --finest=-1
+refused 1 'finest is negative' $(surface) --lens=ball:1,2,3,4 --finest=nan
+refused 1 'coarsest is below' $(surface) --lens=ball:1,2,3,4 --finest=2 --coarsest=1
+refused 1 'slope is negative' $(surface) --lens=ball:1,2,3,4 --slope=-1
+refused 2 'lens' $(surface) --finest=1
+refused 2 'excludes' $(surface) --lens=ball:1,2,3,4 --box=0,1,0,1,0,1
+refused 1 'max-triangles with --lens' slice v.vti --axis z --at 17 --lens ball:1,2,3,4 --max-triangles 100
+
+[ $failures = 0 ] && echo "all as it should be"
+exit $((failures > 0))

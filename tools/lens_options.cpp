@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lens_options.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include <nestgrid/error.hpp>
+
+namespace {
+
+using nestgrid::Distance;
+using nestgrid::Point;
+
+constexpr const char* known =
+    "ball:x,y,z,r, box:x,x,y,y,z,z, halfspace:x,y,z,x,y,z, cone:x,y,z,x,y,z,degrees or "
+    "polygon:FILE";
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw nestgrid::InvalidInput("the lens '" + text + "' is none of " + known);
+}
+
+/// \throw nestgrid::InvalidInput unless there are so many finite numbers between commas
+std::vector<double> numbers_of(const std::string& text, const std::string& list,
+                               std::size_t count) {
+    std::vector<double> numbers;
+    const char* at = list.c_str();
+    while (numbers.size() < count) {
+        char* end = nullptr;
+        numbers.push_back(std::strtod(at, &end));
+        const bool last = numbers.size() == count;
+        if (end == at || !std::isfinite(numbers.back()) || *end != (last ? '\0' : ',')) {
+            refuse(text);
+        }
+        at = end + 1;
+    }
+    return numbers;
+}
+
+Point point_at(const std::vector<double>& numbers, std::size_t first) {
+    return {numbers[first], numbers[first + 1], numbers[first + 2]};
+}
+
+/// \throw nestgrid::IoError where the file is no list of corners, of 10 MB at most
+Distance read_polygon(const std::string& path) {
+    constexpr std::uintmax_t most_bytes = 10000000;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+        throw nestgrid::IoError("'" + path + "' is no file");
+    }
+    std::ifstream file(path);
+    std::vector<double> numbers;
+    double number = 0;
+    const bool small = std::filesystem::file_size(path, error) <= most_bytes;
+    while (small && file >> number) numbers.push_back(number);
+    if (!file.eof() || numbers.empty() || numbers.size() % 2 != 0) {
+        throw nestgrid::IoError("'" + path + "' is no list of corners, x and y on each line");
+    }
+    std::vector<nestgrid::ImagePoint> corners;
+    for (std::size_t i = 0; i < numbers.size(); i += 2) {
+        corners.push_back({numbers[i], numbers[i + 1]});
+    }
+    return nestgrid::Polygon(std::move(corners));
+}
+
+Distance domain_of(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos) refuse(text);
+    const std::string kind = text.substr(0, colon);
+    const std::string list = text.substr(colon + 1);
+    if (kind == "ball") {
+        const auto n = numbers_of(text, list, 4);
+        if (n[3] < 0) throw nestgrid::InvalidInput("the radius of '" + text + "' is negative");
+        return nestgrid::Ball{point_at(n, 0), n[3]};
+    }
+    if (kind == "box") {
+        const auto n = numbers_of(text, list, 6);
+        if (!(n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5])) {
+            throw nestgrid::InvalidInput("'" + text +
+                                         "' is empty: bounds are x,x,y,y,z,z in ascending order");
+        }
+        return nestgrid::Box{{n[0], n[2], n[4]}, {n[1], n[3], n[5]}};
+    }
+    if (kind == "halfspace") {
+        const auto n = numbers_of(text, list, 6);
+        return nestgrid::HalfSpace(point_at(n, 0), point_at(n, 3));
+    }
+    if (kind == "cone") {
+        const auto n = numbers_of(text, list, 7);
+        return nestgrid::Cone(point_at(n, 0), point_at(n, 3), n[6] * std::numbers::pi / 180);
+    }
+    if (kind == "polygon") return read_polygon(list);
+    refuse(text);
+}
+
+}  // namespace
+
+void add_lens_options(CLI::App& command, LensText& text) {
+    auto* lens =
+        command
+            .add_option("--lens", text.domains,
+                        "draw finely in a domain and coarsely far from it: " + std::string(known) +
+                            "; give it again for several")
+            ->take_all();
+    command
+        .add_option("--finest", text.finest,
+                    "elements in the lens are at most so large; default: 0, the finest there are")
+        ->needs(lens);
+    command
+        .add_option("--coarsest", text.coarsest,
+                    "elements are at most so large anywhere; default: no limit")
+        ->needs(lens);
+    command
+        .add_option("--slope", text.slope,
+                    "by how much elements may grow with the distance from the lens")
+        ->capture_default_str()
+        ->needs(lens);
+}
+
+std::optional<LensRequest> parse(const LensText& text) {
+    if (text.domains.empty()) return {};
+    if (!(text.finest >= 0) || !std::isfinite(text.finest)) {
+        throw nestgrid::InvalidInput("--finest is negative or not a finite number");
+    }
+    if (!(text.coarsest >= text.finest)) {
+        throw nestgrid::InvalidInput("--coarsest is below --finest or not a number");
+    }
+    if (!(text.slope >= 0) || !std::isfinite(text.slope)) {
+        throw nestgrid::InvalidInput("--slope is negative or not a finite number");
+    }
+    Distance all = domain_of(text.domains.front());
+    for (std::size_t i = 1; i < text.domains.size(); ++i) {
+        all = nestgrid::union_of(std::move(all), domain_of(text.domains[i]));
+    }
+    return LensRequest{
+        std::move(all), {.finest = text.finest, .coarsest = text.coarsest}, {.slope = text.slope}};
+}
