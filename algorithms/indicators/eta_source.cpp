@@ -11,6 +11,7 @@
 #include <indicators/spread.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/hanging_nodes.hpp>
+#include <walk/interpolate.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {

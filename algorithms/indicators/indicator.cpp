@@ -25,6 +25,7 @@ void PrerollFacts::add(const PrerollFacts& other) {
     }
     largest_split = std::max(largest_split, other.largest_split);
     finest_level = std::max(finest_level, other.finest_level);
+    longest_chain = std::max(longest_chain, other.longest_chain);
     all_divided = all_divided && other.all_divided;
     one_level_a_node = one_level_a_node && other.one_level_a_node;
 }
@@ -76,6 +77,7 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
                                     const Executor& executor) {
     engine::require_spread(spread_);
     epoch_ = hierarchy.epoch();
+    roundoff_ = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
     own_errors_ = static_cast<bool>(leaf_errors);
     hanging_ = engine::find_hanging_nodes(hierarchy);
     const bool measures = spread_.slope > 0;

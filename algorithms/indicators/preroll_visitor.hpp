@@ -60,6 +60,7 @@ public:
         facts_.largest_split = std::max(facts_.largest_split, rule.new_nodes.size());
         facts_.all_divided = facts_.all_divided && rule.divides_all;
         facts_.finest_level = std::max(facts_.finest_level, view.level + 1);
+        facts_.longest_chain = std::max(facts_.longest_chain, rule.steps);
         if ((split.constrained & rule.all()) != 0) compare_hanging(view, split, value);
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             if ((split.constrained >> n & 1U) != 0) continue;

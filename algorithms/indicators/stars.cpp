@@ -160,6 +160,7 @@ void add_splits(const Hierarchy<Real>& hierarchy, detail::PrerollFacts& facts) {
         const Rule& rule = *element.rule;
         facts.largest_split = std::max(facts.largest_split, rule.new_nodes.size());
         facts.all_divided = facts.all_divided && rule.divides_all;
+        facts.longest_chain = std::max(facts.longest_chain, rule.steps);
         ++facts.finest_level;
         hierarchy.enter(task.get(), element.element, rule, 0, nullptr, first_child,
                         families[(level + 1) % 2]);

@@ -123,6 +123,7 @@ struct PrerollFacts {
     double hanging_violation = 0;
     std::size_t largest_split = 0;  ///< number of new nodes
     int finest_level = 0;
+    int longest_chain = 1;         ///< of new nodes of one split that are parents of each other
     bool all_divided = true;       ///< every rule divides all edges and faces
     bool one_level_a_node = true;  ///< every node is created on one level only
 
@@ -253,6 +254,11 @@ public:
     std::size_t node_count() const { return node_count_; }
     std::uint64_t epoch() const override { return epoch_; }
 
+    /// Every node is made of nodes of the coarse grid by at most so many means, one of the other.
+    int generations() const { return facts_.finest_level * facts_.longest_chain; }
+    /// The greatest relative error of one rounded operation on values of the field.
+    double roundoff() const { return roundoff_; }
+
     std::size_t memory_bytes() const;
 
     const detail::IndicatorEntries& entries() const { return entries_; }
@@ -271,6 +277,7 @@ private:
     Spread spread_;
     std::size_t node_count_ = 0;
     std::uint64_t epoch_ = 0;
+    double roundoff_ = 0;
     bool own_errors_ = false;  // of leaves, instead of offsets
 };
 

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Indicator and bounds at a time between frames (paper, section 5.3), from one preroll of each
+// frame and without a preroll of the time.
+//
+// U(t) = sum mu_i U_i is the field Between (between.hpp) with the same weights mu_i, and
+//     stop(t, x) = sum |mu_i| stop_i(x),    bound(t, x) = sum |mu_i| bound_i(x).
+// Invariants, up to the rounding of U(t), which bounds include:
+//   - stop(t, x) is not below the offset of U(t) at x, also where weights are negative;
+//   - S = (stop <= epsilon) is saturated, and U(t) within its bounds;
+//   - frames that are equal give their own stop at every time: neither the greatest of |mu_i|
+//   stop_i
+//     nor their Euclidean norm does, and still data would change their grid between two frames;
+//   - stop has the same bits wherever it is asked for: weights are float, so that each product is
+//     exact in double, and sums are taken in the order of the frames;
+//   - where one weight is 1 and the others are 0, everything is that of the frame, bit for bit.
+// Consequence: looser than a preroll of U(t) by what cancels between frames.
+// Memory: that of the prerolls, 4 bytes a node and frame. Cost: one look-up a node and frame whose
+// weight is not 0; a new time costs O(frames).
+#pragma once
+
+#include <vector>
+
+#include <nestgrid/algorithms/frame_weights.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+
+namespace nestgrid {
+
+class KeyFrames final : public Indicator, public Bounds {
+public:
+    /// \param frames of one hierarchy; borrowed
+    /// \param weights one for each frame, finite; such as linear_weights()
+    /// \throw GridError where the frames do not belong to one hierarchy in one state
+    /// \throw InvalidInput where there is no frame, or not one finite weight for each
+    KeyFrames(std::vector<const HierarchicalIndicator*> frames, std::span<const float> weights);
+
+    /// Goes to another time.
+    /// \throw InvalidInput where there is not one finite weight for each frame
+    void set_weights(std::span<const float> weights);
+
+    double stop(NodeKey node) const override {
+        return sum([node](const HierarchicalIndicator& frame) { return frame.stop(node); });
+    }
+    NodeMask stops_at_most(const Rule& rule, std::span<const NodeKey> nodes,
+                           double epsilon) const override;
+    double bound(const Rule& rule, std::span<const NodeKey> nodes) const override;
+    double offset_bound(NodeKey node) const override;
+
+    const HangingNodes* hanging() const override { return frames_.front()->hanging(); }
+    std::uint64_t epoch() const override { return frames_.front()->epoch(); }
+    bool stops_conform() const override { return frames_.front()->stops_conform(); }
+    int finest_level() const override { return frames_.front()->finest_level(); }
+    bool one_level_a_node() const override { return frames_.front()->one_level_a_node(); }
+
+    double least() const { return least_; }        ///< no value of U(t) is less
+    double greatest() const { return greatest_; }  ///< no value of U(t) is greater
+    /// What the rounding of values adds to bounds: of the order of 10^-5 of the greatest value
+    /// where values are float, of 10^-14 where they are double, 0 where one frame counts alone.
+    double rounding() const { return rounding_; }
+
+private:
+    struct Term {
+        const HierarchicalIndicator* frame;
+        double weight;  ///< positive
+    };
+
+    /// Sum of weight * of(frame), a float or a number of its precision, in the order of the frames.
+    template <class Of>
+    double sum(const Of& of) const {
+        double result = 0;
+        for (const auto& [frame, weight] : terms_) result += weight * of(*frame);
+        return result;
+    }
+    double with_rounding(double sum) const;
+    void set_range(std::span<const float> weights);
+
+    std::vector<const HierarchicalIndicator*> frames_;
+    std::vector<Term> terms_;  // of frames whose weight is not 0
+    double least_ = 0;
+    double greatest_ = 0;
+    double rounding_ = 0;
+};
+
+}  // namespace nestgrid
