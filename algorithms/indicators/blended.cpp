@@ -11,9 +11,11 @@
 namespace nestgrid {
 
 double blend_weight(double eta, double epsilon, double factor) {
+    // A little less than factor * epsilon, which covers the rounding of sums (KeyFrames).
+    const double end = factor * (1 - 0x1p-40) * epsilon;
     if (eta <= epsilon) return 1;
-    if (!(eta < factor * epsilon)) return 0;
-    return (factor * epsilon - eta) / ((factor - 1) * epsilon);
+    if (!(eta < end)) return 0;
+    return (end - eta) / (end - epsilon);
 }
 
 Blended::Blended(const Indicator* indicator, double epsilon, double factor)

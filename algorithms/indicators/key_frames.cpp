@@ -62,7 +62,17 @@ void KeyFrames::set_weights(std::span<const float> weights) {
             terms_.push_back({frames_[i], std::abs(static_cast<double>(weights[i]))});
         }
     }
+    set_spread();
     set_range(weights);
+}
+
+void KeyFrames::set_spread() {
+    spread_ = terms_.empty() ? Spread{} : terms_.front().frame->spread();
+    spread_.slope = 0;
+    for (const auto& [frame, weight] : terms_) {
+        spread_.factor = std::min(spread_.factor, frame->spread().factor);
+        spread_.slope += weight * frame->spread().slope;
+    }
 }
 
 /// Computes the range of U(t) and how far rounding can take its values.

@@ -9,8 +9,7 @@
 // Invariants, up to the rounding of U(t), which bounds include:
 //   - stop(t, x) is not below the offset of U(t) at x, also where weights are negative;
 //   - S = (stop <= epsilon) is saturated, and U(t) within its bounds;
-//   - frames that are equal give their own stop at every time: neither the greatest of |mu_i|
-//   stop_i
+//   - frames that are equal give their own stop at every time: neither the greatest of |mu_i| stop_i
 //     nor their Euclidean norm does, and still data would change their grid between two frames;
 //   - stop has the same bits wherever it is asked for: weights are float, so that each product is
 //     exact in double, and sums are taken in the order of the frames;
@@ -44,6 +43,8 @@ public:
     }
     NodeMask stops_at_most(const Rule& rule, std::span<const NodeKey> nodes,
                            double epsilon) const override;
+    /// The least factor of the frames, and the sum of their slopes, weighted like `stop`.
+    Spread spread() const override { return spread_; }
     double bound(const Rule& rule, std::span<const NodeKey> nodes) const override;
     double offset_bound(NodeKey node) const override;
 
@@ -73,10 +74,12 @@ private:
         return result;
     }
     double with_rounding(double sum) const;
+    void set_spread();
     void set_range(std::span<const float> weights);
 
     std::vector<const HierarchicalIndicator*> frames_;
     std::vector<Term> terms_;  // of frames whose weight is not 0
+    Spread spread_;
     double least_ = 0;
     double greatest_ = 0;
     double rounding_ = 0;
