@@ -30,7 +30,7 @@ void require_drawable(const Hierarchy<Real>& hierarchy, double scale, const Crit
         throw InvalidInput("the scale of the heights is not a finite number");
     if (!(options.flatness >= 0)) throw InvalidInput("the flatness is negative or not a number");
     engine::require_same_epoch(hierarchy, bounds);
-    engine::require_saturated(criterion, bounds);
+    engine::require_saturated(criterion, bounds, hierarchy.facts().decodes);
 }
 
 template <class Real>

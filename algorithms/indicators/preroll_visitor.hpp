@@ -120,14 +120,16 @@ private:
         const std::size_t stride = walk_->components();
         const Rule& rule = *split.rule;
         const NodeMask hanging = split.constrained & rule.all();
-        given_.resize(rule.new_nodes.size() * stride);
+        const std::size_t corners = view.corner_count() * stride;
+        given_.assign(value, value + corners);
+        given_.resize(corners + rule.new_nodes.size() * stride);
         const NodeMask missing = walk_->hierarchy().new_values(
             view.stack->task.get(), view.element(), rule, hanging, given_.data());
         for (NodeMask left = hanging & ~missing; left != 0; left &= left - 1) {
             const auto n = static_cast<std::size_t>(std::countr_zero(left));
             const Real used = value[(view.corner_count() + n) * stride];
-            const double off =
-                std::abs(static_cast<double>(given_[n * stride]) - static_cast<double>(used));
+            const double off = std::abs(static_cast<double>(given_[corners + n * stride]) -
+                                        static_cast<double>(used));
             if (!(off <= facts_.hanging_violation)) facts_.hanging_violation = off;
         }
     }

@@ -45,7 +45,12 @@ void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds) 
     }
 }
 
-void require_saturated(const Criterion& criterion, const Bounds& bounds) {
+void require_saturated(const Criterion& criterion, const Bounds& bounds, bool decodes) {
+    if (criterion.insists() && decodes) {
+        throw InvalidInput(
+            "the criterion is not saturated, and values of this field are decoded from those at "
+            "corners, which are not exact then");
+    }
     if (criterion.insists()) return;
     if (!criterion.saturated()) {
         throw InvalidInput(
@@ -65,7 +70,7 @@ std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const C
                                              const IsosurfaceOptions& options,
                                              const Executor& executor) {
     using Drawing = LevelSet<dimension, Real>;
-    require_saturated(criterion, bounds);
+    require_saturated(criterion, bounds, levels.hierarchy->facts().decodes);
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
@@ -148,7 +153,7 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     using Drawing = LevelSet<dimension, Real>;
     const std::size_t count = levels.levels.size();
     require_same_epoch(*levels.hierarchy, bounds);
-    require_saturated(criterion, bounds);
+    require_saturated(criterion, bounds, levels.hierarchy->facts().decodes);
     require_options<dimension>(options);
     require_targets(targets, count, options);
     std::vector<Surface<dimension>> chunks(count);

@@ -58,8 +58,8 @@ template <class Real>
 void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds);
 
 /// \throw InvalidInput where a criterion is not saturated on the grid of the bounds, and does not
-///        insist
-void require_saturated(const Criterion& criterion, const Bounds& bounds);
+///        insist, or insists on a field that is decoded on the way down
+void require_saturated(const Criterion& criterion, const Bounds& bounds, bool decodes);
 
 /// The number of triangles (segments) of the first level under a criterion, or nothing where it
 /// exceeds `most`.

@@ -88,7 +88,7 @@ template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
                   const Criterion& criterion, const Bounds& bounds) {
     engine::require_same_epoch(hierarchy, bounds);
-    engine::require_saturated(criterion, bounds);
+    engine::require_saturated(criterion, bounds, hierarchy.facts().decodes);
     require_points(points);
     return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true});
 }

@@ -19,7 +19,13 @@ template <class Real>
 void ask_field(const Hierarchy<Real>& hierarchy, const CrossingNodes& crossing,
                const FixedNode& node, Task* task, std::vector<Real>& values, Real* to) {
     NodeMask missing = 0;
+    std::size_t corners = 0;
     if (node.rule != nullptr) {
+        if (hierarchy.facts().decodes) {
+            throw GridError(
+                "nodes hang on others than their parents, where a field cannot be decoded");
+        }
+        corners = static_cast<std::size_t>(node.rule->corner_count());
         missing = hierarchy.new_values(task, crossing.elements().handle(node.element), *node.rule,
                                        NodeMask{1} << node.node, values.data());
     } else {
@@ -33,7 +39,7 @@ void ask_field(const Hierarchy<Real>& hierarchy, const CrossingNodes& crossing,
         throw GridError("the field has no value at a node between which another one hangs");
     }
     const auto components = static_cast<std::size_t>(hierarchy.facts().components);
-    std::copy_n(values.data() + node.node * components, components, to);
+    std::copy_n(values.data() + (corners + node.node) * components, components, to);
 }
 
 bool is_among(std::size_t node, NodeMask nodes, std::size_t corners) {

@@ -102,6 +102,25 @@ void WidenedHierarchy<Real>::copy(const Real* from, std::size_t nodes, double* t
     }
 }
 
+/// Copies the values at the corners of a split to where the inner hierarchy may need them.
+template <class Real>
+void WidenedHierarchy<Real>::give_corners(const Rule& rule, const double* from, Real* to) const {
+    if (!inner_->facts().decodes) return;
+    for (int k = 0; k < rule.corner_count(); ++k, from += front_ + inner_components_) {
+        for (std::size_t c = 0; c < inner_components_; ++c) {
+            *to++ = static_cast<Real>(from[front_ + c]);
+        }
+    }
+}
+
+/// Spreads the values at the new nodes of a split.
+template <class Real>
+void WidenedHierarchy<Real>::take_new(const Rule& rule, const Real* from, double* to) const {
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    copy(from + corners * inner_components_, rule.new_nodes.size(),
+         to + corners * (front_ + inner_components_));
+}
+
 template <class Real>
 void WidenedHierarchy<Real>::coarse(Task* task, std::size_t i, Coarse& coarse,
                                     Family& family) const {
@@ -122,9 +141,10 @@ NodeMask WidenedHierarchy<Real>::enter(Task* task, const Handle& element, const 
                                        NodeMask which, double* values, NodeMask wanted,
                                        Family& children) const {
     WidenedTask& t = own(task);
+    if (which != 0) give_corners(rule, values, t.values.data());
     const NodeMask missing =
         inner_->enter(t.inner.get(), element, rule, which, t.values.data(), wanted, children);
-    if (which != 0) copy(t.values.data(), rule.new_nodes.size(), values);
+    if (which != 0) take_new(rule, t.values.data(), values);
     return missing;
 }
 
@@ -132,9 +152,10 @@ template <class Real>
 NodeMask WidenedHierarchy<Real>::new_values(Task* task, const Handle& element, const Rule& rule,
                                             NodeMask which, double* values) const {
     WidenedTask& t = own(task);
+    give_corners(rule, values, t.values.data());
     const NodeMask missing =
         inner_->new_values(t.inner.get(), element, rule, which, t.values.data());
-    copy(t.values.data(), rule.new_nodes.size(), values);
+    take_new(rule, t.values.data(), values);
     return missing;
 }
 

@@ -94,6 +94,8 @@ private:
     struct WidenedTask;
 
     static WidenedTask& own(Task* task);
+    void give_corners(const Rule& rule, const double* from, Real* to) const;
+    void take_new(const Rule& rule, const Real* from, double* to) const;
     void copy(const Real* from, std::size_t nodes, double* to) const;
 
     const Hierarchy<Real>* inner_;

@@ -260,12 +260,12 @@ void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, No
     const std::size_t corners = view.corner_count();
     const std::size_t stride = components_;
     Real* const value = with_room(frame.value, (corners + rule.new_nodes.size()) * stride);
+    if (needs_.values) std::copy_n(view.value, corners * stride, value);
     const NodeMask which = needs_.values ? rule.all() & ~(mean | split.crossing) : NodeMask{0};
     const NodeMask missing = hierarchy_->enter(view.stack->task.get(), view.element(), rule, which,
-                                               value + corners * stride, wanted, frame.family);
+                                               value, wanted, frame.family);
     if ((missing & which) != 0) throw_missing(missing & which, view);
     if (!needs_.values) return;
-    std::copy_n(view.value, corners * stride, value);
     if (split.crossing != 0) fixed_->put_values(split, value + corners * stride);
     for (NodeMask left = mean; left != 0; left &= left - 1) {
         const auto n = static_cast<std::size_t>(std::countr_zero(left));

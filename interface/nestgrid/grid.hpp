@@ -22,6 +22,12 @@
 // of e. Only the nodes in `which` are asked for. The result holds the nodes that could not be
 // given, for example because they live on another process.
 //
+// A field that is stored as differences from interpolants may ask for the values at the corners:
+//     NodeMask new_values(const Element& e, NodeMask which, std::span<const value_type> corners,
+//                         std::span<value_type> out) const;
+// They are true values, or interpolants where a corner hangs. A new node that is not in `which` has
+// the weighted mean of its parents.
+//
 // All operations are const and reentrant. A grid that needs state per task (a rebuilt entity, a
 // cache) names it `Context`, offers `Context make_context() const`, and takes a `Context&` as an
 // additional last argument of any operation it likes; so does its field.
@@ -130,6 +136,20 @@ concept HasNewValues = HasValueType<F> && HasElement<G> &&(
              std::span<typename F::value_type> out, typename ContextOf<G>::type& c) {
         { f.new_values(e, m, out, c) } -> std::same_as<NodeMask>;
     });
+template <class F, class G>
+concept DecodesNewValues =
+    HasValueType<F> && HasElement<G> && !HasNewValues<F, G> &&
+    (
+        requires(const F& f, const typename G::Element& e, NodeMask m,
+                 std::span<const typename F::value_type> corners,
+                 std::span<typename F::value_type> out) {
+            { f.new_values(e, m, corners, out) } -> std::same_as<NodeMask>;
+        } ||
+        requires(const F& f, const typename G::Element& e, NodeMask m,
+                 std::span<const typename F::value_type> corners,
+                 std::span<typename F::value_type> out, typename ContextOf<G>::type& c) {
+            { f.new_values(e, m, corners, out, c) } -> std::same_as<NodeMask>;
+        });
 
 }  // namespace detail
 
@@ -139,8 +159,8 @@ concept NestedGrid =
     detail::HasCoarse<G> && detail::HasSplit<G> && detail::HasChildren<G>;
 
 template <class F, class G>
-concept NodalField =
-    detail::HasValueType<F> && detail::HasCoarseValues<F, G> && detail::HasNewValues<F, G>;
+concept NodalField = detail::HasValueType<F> && detail::HasCoarseValues<F, G> &&
+    (detail::HasNewValues<F, G> || detail::DecodesNewValues<F, G>);
 
 /// Says in English what a class lacks to be a nested grid; every algorithm asks.
 template <class G>
@@ -170,7 +190,7 @@ consteval bool require_nodal_field() {
     static_assert(detail::HasCoarseValues<F, G>,
                   "A nodal field must define 'NodeMask coarse_values(std::size_t, "
                   "std::span<value_type> out) const'.");
-    static_assert(detail::HasNewValues<F, G>,
+    static_assert(detail::HasNewValues<F, G> || detail::DecodesNewValues<F, G>,
                   "A nodal field must define 'NodeMask new_values(const Element&, NodeMask which, "
                   "std::span<value_type> out) const'.");
     return NodalField<F, G>;

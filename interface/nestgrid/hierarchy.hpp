@@ -87,6 +87,7 @@ struct HierarchyFacts {
     bool knows_star_positions = false;  ///< star_rows() and node_position() work
     bool knows_patches = false;         ///< bisection_rows() or bisect() work
     bool fills_rows = false;            ///< every node is in a star row
+    bool decodes = false;               ///< values at new nodes need those at the corners
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
 
     bool offers(Feature feature) const { return (features & static_cast<unsigned>(feature)) != 0; }
@@ -152,12 +153,13 @@ public:
                                    Real* out) const = 0;
     /// Enters an element.
     /// \param which new nodes whose values are asked for
-    /// \param values likewise of new node n at values[n * components]
+    /// \param values component c of node n at values[n * components + c]; where facts().decodes,
+    ///        the caller sets them at the corners. Set at the new nodes, behind the corners
     /// \param wanted children that are asked for, one bit each; the others stay undefined
     /// \return the nodes without a value
     virtual NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                            Real* values, NodeMask wanted, Family& children) const = 0;
-    /// Values at new nodes alone.
+    /// Values at new nodes alone, likewise.
     virtual NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                                 Real* values) const = 0;
     /// What the grid itself says of the corners and faces of an element. Each pointer may be null.

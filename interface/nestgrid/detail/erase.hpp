@@ -135,11 +135,7 @@ public:
         return with(task, [&](auto& context) {
             const auto& e = element_of<Element>(element);
             NodeMask missing = 0;
-            if (which != 0) {
-                missing =
-                    call_new_values(*field_, context, e, which,
-                                    std::span<Real>(values, rule.new_nodes.size() * components_));
-            }
+            if (which != 0) missing = ask(context, e, rule, which, values);
             const std::size_t count = rule.children.size();
             constexpr std::size_t most = child_capacity<Grid>();
             if (count > most) throw_too_many_children(rule, most);
@@ -158,8 +154,7 @@ public:
     NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                         Real* values) const override {
         return with(task, [&](auto& context) {
-            return call_new_values(*field_, context, element_of<Element>(element), which,
-                                   std::span<Real>(values, rule.new_nodes.size() * components_));
+            return ask(context, element_of<Element>(element), rule, which, values);
         });
     }
 
@@ -233,6 +228,7 @@ public:
 private:
     static constexpr auto components_ = static_cast<std::size_t>(components_of<Field>());
     static constexpr bool has_context_ = !std::is_same_v<Context<Grid>, NoContext>;
+    static constexpr bool decodes_ = DecodesNewValues<Field, Grid>;
     static constexpr bool has_star_rows_ = requires(const Grid& grid) {
         grid.for_each_star_row([](const StarRow&) {});
     };
@@ -264,6 +260,7 @@ private:
     static HierarchyFacts facts_of(const Grid& grid, const Field& field) {
         HierarchyFacts facts = facts_of_grid(grid);
         facts.components = components_of<Field>();
+        facts.decodes = decodes_;
         if constexpr (may_have_gradients_) {
             if (offers_gradients<Grid>(field)) {
                 facts.features |= static_cast<unsigned>(Feature::gradients);
@@ -288,6 +285,20 @@ private:
             auto& elements = *static_cast<std::vector<Element>*>(family.elements.get());
             if (elements.size() < count) elements.resize(count);
             return std::span(elements).first(count);
+        }
+    }
+
+    /// Values at new nodes, behind those at the corners.
+    template <class AnyContext>
+    NodeMask ask(AnyContext& context, const Element& e, const Rule& rule, NodeMask which,
+                 Real* values) const {
+        const std::size_t corners = static_cast<std::size_t>(rule.corner_count()) * components_;
+        const std::span<Real> out(values + corners, rule.new_nodes.size() * components_);
+        if constexpr (decodes_) {
+            return call_new_values(*field_, context, e, which,
+                                   std::span<const Real>(values, corners), out);
+        } else {
+            return call_new_values(*field_, context, e, which, out);
         }
     }
 

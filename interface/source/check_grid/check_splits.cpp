@@ -21,16 +21,26 @@ void GridChecker::walk(const State& s) {
     if (rule == nullptr) return check_leaf_state(s);
     check_rule(s, *rule);
     Frame& frame = this->frame(s.level);
-    frame.value.resize(max_new_nodes * components_);
+    put_corner_values(s, frame);
     const NodeMask missing = hierarchy_->enter(task_.get(), s.member->element, *rule, rule->all(),
                                                frame.value.data(), ~NodeMask{0}, frame.children);
     if ((missing & rule->all()) != 0) {
         fail(Law::value_present, "the field lacks a value at a new node of " + name(s.step));
     }
     std::vector<Corner> nodes(s.corner.begin(), s.corner.begin() + topology(s.shape).corners);
-    check_new_nodes(s, *rule, frame.value, nodes);
+    check_new_nodes(s, *rule, std::span(frame.value).subspan(nodes.size() * components_), nodes);
     check_hidden(s);
     walk_children(s, nodes);
+}
+
+/// Puts the values at the corners into a frame, behind which those at new nodes have room.
+void GridChecker::put_corner_values(const State& s, Frame& frame) const {
+    frame.value.resize((max_corners + max_new_nodes) * components_);
+    for (std::size_t k = 0; k < topology(s.shape).corners; ++k) {
+        const Node& node = *nodes_.find(s.corner[k].place);
+        std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(node.first), components_,
+                    frame.value.begin() + static_cast<std::ptrdiff_t>(k * components_));
+    }
 }
 
 void GridChecker::walk_children(const State& s, const std::vector<Corner>& nodes) {

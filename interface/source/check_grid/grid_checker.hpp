@@ -103,7 +103,7 @@ private:
     /// The split of an element on one level of the way down.
     struct Frame {
         Family children;
-        std::vector<double> value;  // at the new nodes
+        std::vector<double> value;  // at the corners and new nodes
     };
     static constexpr std::size_t root_ = ~std::size_t{0};
 
@@ -143,6 +143,7 @@ private:
     void make_node(const Rule& rule, std::size_t n, std::vector<Corner>& nodes) const;
     void check_stencil(const State& s, const Rule& rule, std::size_t n,
                        const std::vector<Corner>& nodes);
+    void put_corner_values(const State& s, Frame& frame) const;
     void check_new_nodes(const State& s, const Rule& rule, std::span<const double> values,
                          std::vector<Corner>& nodes);
     bool deviates(double mean, double value) const;

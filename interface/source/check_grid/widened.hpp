@@ -28,13 +28,14 @@ public:
     }
     NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                    double* values, NodeMask wanted, Family& children) const override {
-        return widen(which == 0 ? 0 : rule.new_nodes.size(), values, [&](float* narrow) {
+        if (which == 0) return from_->enter(task, element, rule, 0, nullptr, wanted, children);
+        return widen_split(rule, values, [&](float* narrow) {
             return from_->enter(task, element, rule, which, narrow, wanted, children);
         });
     }
     NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                         double* values) const override {
-        return widen(rule.new_nodes.size(), values, [&](float* narrow) {
+        return widen_split(rule, values, [&](float* narrow) {
             return from_->new_values(task, element, rule, which, narrow);
         });
     }
@@ -62,6 +63,18 @@ private:
         std::vector<float> values(max_new_nodes * components);
         const NodeMask missing = ask(values.data());
         std::copy_n(values.begin(), nodes * components, out);
+        return missing;
+    }
+
+    /// Likewise at new nodes, behind the values at the corners of a split, which are given.
+    template <class Ask>
+    NodeMask widen_split(const Rule& rule, double* split, Ask&& ask) const {
+        const auto components = static_cast<std::size_t>(facts().components);
+        const std::size_t corners = static_cast<std::size_t>(rule.corner_count()) * components;
+        std::vector<float> values((max_corners + max_new_nodes) * components);
+        for (std::size_t i = 0; i < corners; ++i) values[i] = static_cast<float>(split[i]);
+        const NodeMask missing = ask(values.data());
+        std::copy_n(values.data() + corners, rule.new_nodes.size() * components, split + corners);
         return missing;
     }
 

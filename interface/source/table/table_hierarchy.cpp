@@ -67,8 +67,10 @@ public:
     }
     NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                         Real* values) const override {
-        return field_.new_values(of(element), which, values_at(values, rule.new_nodes.size()),
-                                 context_of(task));
+        Real* const behind_corners =
+            values + static_cast<std::size_t>(rule.corner_count() * this->facts().components);
+        return field_.new_values(
+            of(element), which, values_at(behind_corners, rule.new_nodes.size()), context_of(task));
     }
     void corners(Task* task, const Handle& element, std::size_t count, NodeKey* keys,
                  Point* positions, unsigned* boundary) const override {

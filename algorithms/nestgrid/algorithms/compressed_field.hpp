@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Fields that are kept as differences from their interpolants, and decoded on the way down (paper,
+// sections 4.4 and 7).
+//
+// A new node keeps the difference between its value and the weighted mean of its parents, which is
+// small where the data are smooth. Differences are those of ordered integers, so that every value
+// comes back bit for bit, or those of multiples of a step; there the parents are decoded ones, so
+// that errors of levels do not add up. Differences lie in blocks of 64 nodes, each with as many
+// bits as its largest one takes.
+// Consequences: a value is decoded from the corners of the element that makes the node, which are
+// exact wherever a saturated criterion lets the walk descend; nothing is unpacked that the walk
+// does not reach. Criteria that are not saturated are refused.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <nestgrid/detail/erase.hpp>
+
+namespace nestgrid {
+
+struct CompressionOptions {
+    /// 0: values are kept bit for bit. Else they become multiples of the step, off by at most half
+    /// of it and the rounding of their type: exactly the values where these are multiples already.
+    double step = 0;
+};
+
+/// The values at all nodes of a hierarchy with dense keys.
+template <class Real>
+class CompressedValues {
+public:
+    /// Walks the whole hierarchy. Takes as much memory as the values while it is made.
+    /// \throw InvalidInput where keys are not dense, the step is negative or not a number, or a
+    ///        value has no place among its multiples
+    explicit CompressedValues(const Hierarchy<Real>& hierarchy,
+                              const CompressionOptions& options = {});
+
+    int components() const { return static_cast<int>(components_); }
+    std::size_t memory_bytes() const;
+
+    /// Decodes the values at nodes of the coarse grid.
+    void decode_coarse(std::span<const NodeKey> nodes, std::span<Real> out) const;
+    /// Decodes the values at new nodes of a split.
+    /// \param which the nodes that are wanted; others have the mean of their parents
+    /// \param corners values at the corners
+    void decode(const Rule& rule, NodeMask which, std::span<const NodeKey> nodes,
+                std::span<const Real> corners, std::span<Real> out) const;
+
+private:
+    class Encoder;
+
+    std::uint64_t code(std::size_t at) const;
+    void pack(const std::vector<std::uint64_t>& codes);
+
+    std::size_t components_;
+    double step_;
+    std::vector<std::uint32_t> block_;  // where each block of codes begins; the end
+    std::vector<std::uint64_t> words_;  // block k has block_[k + 1] - block_[k] bits a code
+};
+
+/// Compressed values as a field. Grid and values must outlive it.
+template <class Grid, class Real>
+class CompressedField {
+public:
+    using value_type = Real;
+    using Element = ElementOf<Grid>;
+
+    CompressedField(const Grid& grid, const CompressedValues<Real>& values)
+        : grid_{&grid}, values_{&values} {}
+
+    NodeMask coarse_values(std::size_t i, std::span<Real> out, Context<Grid>& context) const {
+        std::array<NodeKey, max_corners> nodes;
+        const auto coarse = detail::call_coarse(*grid_, context, i);
+        const auto corners = std::span(nodes).first(topology(coarse.shape).corners);
+        detail::call_corner_keys(*grid_, context, coarse.element, corners);
+        values_->decode_coarse(corners, out);
+        return 0;
+    }
+    NodeMask new_values(const Element& e, NodeMask which, std::span<const Real> corners,
+                        std::span<Real> out, Context<Grid>& context) const {
+        const Rule& rule = *detail::call_split(*grid_, context, e);
+        std::array<NodeKey, max_new_nodes> nodes;
+        const auto made = std::span(nodes).first(rule.new_nodes.size());
+        detail::call_new_keys(*grid_, context, e, made);
+        values_->decode(rule, which, made, corners, out);
+        return 0;
+    }
+
+private:
+    const Grid* grid_;
+    const CompressedValues<Real>* values_;
+};
+
+}  // namespace nestgrid
