@@ -137,12 +137,11 @@ TYPED_TEST(Lenses, KeepWhatIsLargerThanTheFinestInTheDomain) {
                 const Lens lens(&size, domain, {.finest = finest, .coarsest = coarsest});
                 for_each_asked_split(hierarchy, &hanging, lens, [&](const AskedSplit& split) {
                     const std::size_t corners = split.corner_count();
-                    const MeasuredSplit measured{split.rule, 0, split.positions, {}, 0};
                     for (std::size_t n = corners; n < split.s.size(); ++n) {
                         if (split.s[n] == 0) continue;
                         ++dropped;
                         const bool inside = domain(split.positions[n]) == 0;
-                        EXPECT_LE(measured.diameter(), inside ? finest : coarsest);
+                        EXPECT_LE(split.diameter(), inside ? finest : coarsest);
                     }
                 });
             }

@@ -72,6 +72,16 @@ struct AskedSplit {
     std::vector<float> s;
 
     std::size_t corner_count() const { return static_cast<std::size_t>(rule.corner_count()); }
+    /// The greatest distance between two corners.
+    double diameter() const {
+        double greatest = 0;
+        for (const Point& a : positions.first(corner_count())) {
+            for (const Point& b : positions.first(corner_count())) {
+                greatest = std::max(greatest, norm(a - b));
+            }
+        }
+        return greatest;
+    }
 };
 
 /// Asks a criterion about all splits of a grid. S at a node is the same in all elements, and 1
