@@ -139,7 +139,7 @@ void blended_figure(const std::string& file) {
     const Plot moduli(picture, 0, {1, 4}, {0, 12}, false);
     std::printf("factor  constant  of epsilon  of the place of a lens\n");
     const auto constant = [](double c) { return c * c / (c - 1); };
-    for (double c = 1.1; c < 4; c += 0.05) {
+    for (double c = 1.12; c < 3.97; c += 0.05) {
         moduli.line({c, constant(c)}, {c + 0.05, constant(c + 0.05)}, grey);
     }
     for (const double c : {1.125, 1.25, 1.5, 2.0, 3.0, 4.0}) {

@@ -125,25 +125,28 @@ TYPED_TEST(Lenses, KeepWhatIsLargerThanTheFinestInTheDomain) {
     on_grids<TypeParam>(22, [](const auto& grid, RandomDomains& domains) {
         const auto hierarchy = erase(grid, ZeroField<std::decay_t<decltype(grid)>>{});
         const HangingNodes hanging = derive_hanging_nodes(grid);
-        const SweptIndicator size = mesh_size(grid, {.slope = 1});
-        std::size_t dropped = 0;
-        for (int i = 0; i < 8; ++i) {
-            const Distance domain = domains();
-            const double finest = 0.1 + uniform(domains.random());
-            const Lens lens(&size, domain, {.finest = finest, .coarsest = 1.5});
-            for_each_asked_split(hierarchy, &hanging, lens, [&](const AskedSplit& split) {
-                const std::size_t corners = split.corner_count();
-                const MeasuredSplit measured{split.rule, 0, split.positions, {}, 0};
-                for (std::size_t n = corners; n < split.s.size(); ++n) {
-                    if (split.s[n] == 0) continue;
-                    ++dropped;
-                    EXPECT_LE(measured.diameter(), 1.5);
-                    if (domain(split.positions[n]) > 0) continue;
-                    EXPECT_LE(measured.diameter(), finest);
-                }
-            });
+        for (const double slope : {0.1, 1.0}) {
+            const SweptIndicator size = mesh_size(grid, {.slope = slope});
+            const double greatest = greatest_size(size, grid);
+            std::size_t dropped = 0;
+            for (int i = 0; i < 16; ++i) {
+                const Distance domain =
+                    i % 2 == 0 ? domains() : HalfSpace(domains.near_node(), domains.direction());
+                const double finest = uniform(domains.random()) * greatest;
+                const double coarsest = 1.1 * finest;
+                const Lens lens(&size, domain, {.finest = finest, .coarsest = coarsest});
+                for_each_asked_split(hierarchy, &hanging, lens, [&](const AskedSplit& split) {
+                    const std::size_t corners = split.corner_count();
+                    for (std::size_t n = corners; n < split.s.size(); ++n) {
+                        if (split.s[n] == 0) continue;
+                        ++dropped;
+                        const bool inside = domain(split.positions[n]) == 0;
+                        EXPECT_LE(split.diameter(), inside ? finest : coarsest);
+                    }
+                });
+            }
+            EXPECT_GT(dropped, 0U);
         }
-        EXPECT_GT(dropped, 0U);
     });
 }
 

@@ -72,9 +72,20 @@ struct AskedSplit {
     std::vector<float> s;
 
     std::size_t corner_count() const { return static_cast<std::size_t>(rule.corner_count()); }
+    /// The greatest distance between two corners.
+    double diameter() const {
+        double greatest = 0;
+        for (const Point& a : positions.first(corner_count())) {
+            for (const Point& b : positions.first(corner_count())) {
+                greatest = std::max(greatest, norm(a - b));
+            }
+        }
+        return greatest;
+    }
 };
 
-/// Asks a criterion about all splits of a grid. S at a node is the same in all elements.
+/// Asks a criterion about all splits of a grid. S at a node is the same in all elements, and 1
+/// where the criterion holds.
 template <class Real, class Function>
 void for_each_asked_split(const Hierarchy<Real>& hierarchy, const HangingNodes* hanging,
                           const Criterion& criterion, const Function& function) {
@@ -93,9 +104,13 @@ void for_each_asked_split(const Hierarchy<Real>& hierarchy, const HangingNodes* 
                              walk.split_positions(view, split, positions),
                              {}};
             asked.s.resize(asked.keys.size());
-            criterion.weights({*split.rule, split.keys, view.level + 1, split.outside,
-                               asked.positions.subspan(corners)},
-                              std::span(asked.s).subspan(corners));
+            const NewNodes nodes{*split.rule, split.keys, view.level + 1, split.outside,
+                                 asked.positions.subspan(corners)};
+            criterion.weights(nodes, std::span(asked.s).subspan(corners));
+            const NodeMask holds = criterion.holds(nodes);
+            for (std::size_t n = 0; n < nodes.keys.size(); ++n) {
+                EXPECT_EQ((holds >> n & 1U) != 0, asked.s[corners + n] == 1);
+            }
             for (std::size_t i = 0; i < corners; ++i) asked.s[i] = known[asked.keys[i]];
             for (std::size_t i = corners; i < asked.keys.size(); ++i) {
                 const auto [at, is_new] = known.emplace(asked.keys[i], asked.s[i]);
