@@ -16,12 +16,8 @@
 
 namespace nestgrid::engine {
 
-void NodeEtas::raise(std::size_t node, double eta) {
-    if (!(eta >= 0)) {
-        throw InvalidInput("the measure of a node is not a usable number: " + std::to_string(eta));
-    }
-    std::uint16_t& at = maxima_[node];
-    at = std::max(at, bfloat16_above(float_above(eta)));
+void NodeEtas::refuse(double eta) {
+    throw InvalidInput("the measure of a node is not a usable number: " + std::to_string(eta));
 }
 
 detail::NodeStops NodeEtas::saturate(const Spread& spread, bool dense) {
@@ -71,9 +67,11 @@ public:
         put_positions(view, split);
         values_.assign(value, value + count * components);
         means_.resize(rule.new_nodes.size() * components);
-        for (std::size_t i = 0; i < means_.size(); ++i) {
-            means_[i] = nestgrid::detail::interpolate(rule.new_nodes[i / components],
-                                                      value + i % components, components);
+        double* mean = means_.data();
+        for (const Stencil& stencil : rule.new_nodes) {
+            for (std::size_t c = 0; c < components; ++c) {
+                *mean++ = nestgrid::detail::interpolate(stencil, value + c, components);
+            }
         }
         const auto keys = walk_->split_keys(view, split, keys_);
         const auto nodes = std::span(nodes_).first(count);
