@@ -227,6 +227,64 @@ TYPED_TEST(Indicators, KeepPeaks) {
     }
 }
 
+/// A grid whose new nodes lie beside the means of their parents.
+template <class Base>
+class Bent : public Base {
+public:
+    explicit Bent(const Base& grid) : Base(grid), straight_{grid.node_positions()} {}
+
+    void new_positions(const typename Base::Element& e, NodeMask which, std::span<Point> out,
+                       typename Base::Context& context) const {
+        const auto nodes = this->new_nodes(e, context);
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            const Point& x = straight_[nodes[n]];
+            const double bend = 0.02 * std::sin(7 * x[0] + 5 * x[1] + 3 * x[2]);
+            if ((which >> n & 1U) != 0) out[n] = x + bend * Point{1, -1, x[2] == 0 ? 0.0 : 1.0};
+        }
+    }
+
+private:
+    std::vector<Point> straight_;
+};
+
+double position_bound(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds,
+                      const Indicator& positions) {
+    const IsosurfaceOptions options{.position_bounds = &positions};
+    if (h.facts().dimension == 2) return isosurface<2>(h, 0.0, s, bounds, options).position_bound;
+    return isosurface<3>(h, 0.0, s, bounds, options).position_bound;
+}
+
+TYPED_TEST(Indicators, OfGeometryBoundTheProjectedPositions) {
+    for (const auto& straight : TypeParam::grids()) {
+        auto refined = straight;
+        refine_at_sphere(refined, 3 * TypeParam::steps);
+        const Bent<typename TypeParam::Grid> grid(refined);
+        const auto values = fields(refined.node_positions())[0].values;
+        const NodeField<typename TypeParam::Grid, double> field(refined, values);
+        const auto h = erase(grid, field);
+        const SweptIndicator geometry = geometry_indicator(h);
+        const SweptIndicator bounds = position_bounds(h);
+        expect_saturated(h, geometry);
+        expect_saturated(h, bounds);
+        const HierarchicalIndicator offsets(h);
+        const Projected data(h, Exact(), 0.0);
+        const Projected exact(h, Threshold(&geometry, 0), 0.0);
+        EXPECT_EQ(exact.distance_where_drawn(data), 0);
+        for (const double epsilon : {0.002, 0.01, 0.03}) {
+            const Threshold by_bounds(&bounds, epsilon);
+            EXPECT_LE(Projected(h, by_bounds, 0.0).distance_where_drawn(data), epsilon);
+            const Threshold by_geometry(&geometry, epsilon);
+            const Threshold by_data(&offsets, 10 * epsilon);
+            const auto both = by_geometry && by_data;
+            expect_closed_surface(h, both, offsets);
+            EXPECT_LE(Projected(h, by_data, 0.0).distance_where_drawn(data),
+                      position_bound(h, by_data, offsets, bounds));
+            EXPECT_LE(Projected(h, both, 0.0).distance_where_drawn(data),
+                      position_bound(h, both, offsets, bounds));
+        }
+    }
+}
+
 /// On hexahedra the gradient of x y jumps nowhere at nodes, but flat triangles fold.
 TEST(VisualIndicator, SeesSaddlesInsideHexahedra) {
     with_function<BalancedOctree>([](const Point& x) { return (x[0] - 0.5) * (x[1] - 0.5); },
@@ -250,6 +308,67 @@ TEST(NumericalIndicator, IsTheJumpTimesTheDiameter) {
     const SweptIndicator eta = numerical_indicator(h);
     // The gradients on both sides of the diagonal are (1, -1) and (-1, 1), the diameter is sqrt(2).
     EXPECT_NEAR(greatest(h, eta), std::sqrt(8.0) * std::sqrt(2.0), 0.05);
+}
+
+/// Three components a node.
+template <class Grid>
+class Triples {
+public:
+    using value_type = double;
+    static constexpr int components = 3;
+
+    Triples(const Grid& grid, std::span<const Point> at_nodes)
+        : grid_{&grid}, at_nodes_{at_nodes} {}
+    NodeMask coarse_values(std::size_t i, std::span<double> out) const {
+        return copy(grid_->coarse_grid().element(i), out);
+    }
+    NodeMask new_values(const typename Grid::Element& e, NodeMask, std::span<double> out,
+                        typename Grid::Context& context) const {
+        return copy(grid_->new_nodes(e, context), out);
+    }
+
+private:
+    NodeMask copy(std::span<const std::uint32_t> nodes, std::span<double> out) const {
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            for (std::size_t c = 0; c < 3; ++c) out[3 * k + c] = at_nodes_[nodes[k]][c];
+        }
+        return 0;
+    }
+    const Grid* grid_;
+    std::span<const Point> at_nodes_;
+};
+
+TYPED_TEST(Indicators, OfNormsAreOrderedAndCountAllComponents) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    auto grid = std::move(TypeParam::grids()[0]);
+    refine_at_sphere(grid, 3 * TypeParam::steps);
+    std::vector<Point> flow;
+    std::vector<double> second;
+    for (const Point& x : grid.node_positions()) {
+        flow.push_back({std::sin(5 * x[1]) - 0.3, std::cos(4 * x[0] + x[1]), x[0] * x[1]});
+        second.push_back(flow.back()[1]);
+    }
+    const Triples<typename TypeParam::Grid> field(grid, flow);
+    const NodeField<typename TypeParam::Grid, double> second_alone(grid, second);
+    const auto h = erase(grid, field);
+    const SweptIndicator sum = norm_indicator(h, {.norm = OffsetNorm::sum});
+    const SweptIndicator euclid = norm_indicator(h);
+    const SweptIndicator most = norm_indicator(h, {.norm = OffsetNorm::greatest});
+    const SweptIndicator of_second = norm_indicator(h, {.scales = {infinity, 2, infinity}});
+    const SweptIndicator alone = norm_indicator(grid, second_alone);
+    for (const SweptIndicator* indicator : {&sum, &euclid, &most}) expect_saturated(h, *indicator);
+    for_each_split(h, [&](const JudgedSplit& split) {
+        for (const NodeKey key : split.keys) {
+            EXPECT_LE(alone.stop(key), most.stop(key));
+            EXPECT_LE(most.stop(key), euclid.stop(key));
+            EXPECT_LE(euclid.stop(key), sum.stop(key));
+            EXPECT_LE(sum.stop(key), 1.01 * 3 * most.stop(key));
+            EXPECT_EQ(2 * of_second.stop(key), alone.stop(key));
+        }
+    });
+    const HierarchicalIndicator offsets(h);
+    const Threshold s(&euclid, 0.02);
+    expect_closed_surface(h, s, offsets);
 }
 
 TEST(NormIndicator, RefusesScalesThatDoNotFit) {
