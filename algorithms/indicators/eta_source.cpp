@@ -55,7 +55,11 @@ public:
         : walk_{&walk}, source_{&source}, measures_reach_{measures_reach}, etas_{&etas} {}
 
     bool sees_hidden() const override { return true; }
-    Leaves leaves(const Rule&, const Real*, NodeMask, bool) override { return {}; }
+    Leaves leaves(const Rule& rule, const Real*, NodeMask which, bool) override {
+        // entered() is not called for copies.
+        if (!rule.new_nodes.empty()) source_->leaves(measured(rule), nodes_of(rule), which);
+        return {};
+    }
     Decision inspect(const View&, const Split&) override { return {}; }
     void extract(const View&) override {}
 
@@ -63,30 +67,38 @@ public:
         const Rule& rule = *split.rule;
         const std::size_t corners = view.corner_count();
         const std::size_t count = corners + rule.new_nodes.size();
-        const std::size_t components = source_->wants_values() ? walk_->components() : 0;
+        level_ = view.level;
+        components_ = source_->wants_values() ? walk_->components() : 0;
         put_positions(view, split);
-        values_.assign(value, value + count * components);
-        means_.resize(rule.new_nodes.size() * components);
+        values_.assign(value, value + count * components_);
+        means_.resize(rule.new_nodes.size() * components_);
         double* mean = means_.data();
         for (const Stencil& stencil : rule.new_nodes) {
-            for (std::size_t c = 0; c < components; ++c) {
-                *mean++ = nestgrid::detail::interpolate(stencil, value + c, components);
+            for (std::size_t c = 0; c < components_; ++c) {
+                *mean++ = nestgrid::detail::interpolate(stencil, value + c, components_);
             }
         }
-        const auto keys = walk_->split_keys(view, split, keys_);
-        const auto nodes = std::span(nodes_).first(count);
-        etas_->maxima().find(keys, nodes);
-        const MeasuredSplit measured{rule,    view.level, std::span(positions_).first(count),
-                                     values_, means_,     components};
-        source_->split(measured, nodes, *etas_);
+        etas_->maxima().find(walk_->split_keys(view, split, keys_), std::span(nodes_).first(count));
+        const auto nodes = nodes_of(rule);
+        const MeasuredSplit all = measured(rule);
+        source_->split(all, nodes, *etas_);
         for (NodeMask left = split.outside & rule.all(); left != 0; left &= left - 1) {
             etas_->maxima()[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
                 bfloat16_infinity;
         }
-        etas_->maxima().add_split(view.level, rule, nodes, reach(measured));
+        etas_->maxima().add_split(view.level, rule, nodes, reach(all));
     }
 
 private:
+    /// The split that was entered last, and the numbers of its nodes.
+    MeasuredSplit measured(const Rule& rule) const {
+        const std::size_t count = nodes_of(rule).size();
+        return {rule, level_, std::span(positions_).first(count), values_, means_, components_};
+    }
+    std::span<const std::size_t> nodes_of(const Rule& rule) const {
+        return std::span(nodes_).first(static_cast<std::size_t>(rule.corner_count()) +
+                                       rule.new_nodes.size());
+    }
     /// Puts the true positions of corners and new nodes in place; hanging nodes are interpolated.
     void put_positions(const View& view, const Split& split) {
         const Rule& rule = *split.rule;
@@ -120,6 +132,8 @@ private:
     bool measures_reach_;
     NodeEtas* etas_;
     SplitKeys keys_;
+    int level_ = 0;
+    std::size_t components_ = 0;
     std::array<Point, max_corners + max_new_nodes> positions_;
     std::array<std::size_t, max_corners + max_new_nodes> nodes_{};
     std::vector<double> values_;

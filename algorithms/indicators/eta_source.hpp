@@ -51,6 +51,9 @@ public:
     /// \param nodes numbers of the corners and, behind them, of the new nodes
     virtual void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                        NodeEtas& etas) = 0;
+    /// Called behind split(), with the children of it that are leaves, one bit each.
+    virtual void leaves(const MeasuredSplit& /*split*/, std::span<const std::size_t> /*nodes*/,
+                        NodeMask /*which*/) {}
     /// Called when all splits were shown.
     virtual void finish(NodeEtas& /*etas*/) {}
 

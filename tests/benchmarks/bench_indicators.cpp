@@ -8,6 +8,7 @@
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "bucky_samples.hpp"
 #include "sample_grids.hpp"
@@ -59,11 +60,13 @@ void measure(const std::string& name, const Grid& grid, const Field& field, doub
     contest.add("visual", [&] { visual_indicator(h, {.tau = tau}); });
     contest.add("visual_finds_tau", [&] { visual_indicator(h); });
     contest.add("numerical", [&] { numerical_indicator(h); });
+    contest.add("wavelet", [&] { wavelet_indicator(h); });
     contest.add("norm", [&] { norm_indicator(h); });
     contest.add("geometry", [&] { geometry_indicator(h); });
     contest.run();
     Contest::print_figure(name + "_offset_ns_per_node", contest.time("offset") * 1e6 / nodes);
-    for (const char* other : {"visual", "visual_finds_tau", "numerical", "norm", "geometry"}) {
+    for (const char* other :
+         {"visual", "visual_finds_tau", "numerical", "wavelet", "norm", "geometry"}) {
         Contest::print_figure(name + "_" + other + "_over_offset",
                               contest.time(other) / contest.time("offset"));
     }

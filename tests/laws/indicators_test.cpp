@@ -3,14 +3,18 @@
 //
 // Laws of the indicators that are sources of one sweep (paper, sections 4.1, 4.2, 5.1 and 5.2), on
 // every family.
+#include <map>
+
 #include <gtest/gtest.h>
 
+#include <indicators/lifting.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "families.hpp"
 #include "projection_judge.hpp"
@@ -33,6 +37,7 @@ std::vector<Named> indicators(const Hierarchy<double>& h, const Spread& spread =
     std::vector<Named> all;
     all.push_back({"visual", visual_indicator(h, {.spread = spread}), 0.5});
     all.push_back({"numerical", numerical_indicator(h, {.spread = spread}), 0.5});
+    all.push_back({"wavelet", wavelet_indicator(h, {.spread = spread}), 0.1});
     all.push_back({"norm", norm_indicator(h, {.spread = spread}), 0.1});
     return all;
 }
@@ -225,6 +230,61 @@ TYPED_TEST(Indicators, KeepPeaks) {
             EXPECT_EQ(projected.difference(data), 0) << named.name;
         }
     }
+}
+
+/// A transform of random values with random integrals of hat functions.
+struct RandomLifting {
+    engine::Lifting lifting;
+    std::map<std::size_t, double> offsets;  ///< by the number of the node, of all new nodes
+
+    RandomLifting(const Hierarchy<double>& h, std::mt19937& random) {
+        std::unordered_map<NodeKey, std::size_t> numbers;
+        for_each_split(h, [&](const JudgedSplit& split) {
+            std::vector<std::size_t> nodes;
+            for (const NodeKey key : split.keys) {
+                const auto [at, is_new] = numbers.emplace(key, numbers.size());
+                nodes.push_back(at->second);
+                if (!is_new) continue;
+                lifting.set_value(at->second, uniform(random));
+                lifting.add_integral(at->second, 0.01 + uniform(random));
+            }
+            for (std::size_t n = split.corner_count(); n < nodes.size(); ++n) {
+                const Stencil& stencil = split.rule.new_nodes[n - split.corner_count()];
+                lifting.add_parents(nodes[n], stencil, nodes);
+                double offset = lifting.nodes()[nodes[n]].value;
+                for (std::size_t i = 0; i < stencil.count; ++i) {
+                    const std::size_t parent = nodes[stencil.parent[i]];
+                    offset -= stencil.weight[i] * lifting.nodes()[parent].value;
+                }
+                offsets[nodes[n]] = offset;
+            }
+        });
+    }
+};
+
+TYPED_TEST(Indicators, OfWaveletsKeepTheIntegral) {
+    std::mt19937 random(22);
+    const auto zero = [](const Point&) { return 0.0; };
+    with_function<TypeParam>(zero, [&](const Hierarchy<double>& h) {
+        RandomLifting sample(h, random);
+        engine::Lifting& lifting = sample.lifting;
+        double finest = 0;
+        std::size_t last = 0;
+        for (const auto& node : lifting.nodes()) {
+            finest += node.value * node.integral;
+            last = std::max(last, node.generation);
+        }
+        lifting.run([&](std::size_t node, double detail, double integral) {
+            EXPECT_GT(integral, 0);
+            if (lifting.nodes()[node].generation < last) return;
+            EXPECT_NEAR(detail, sample.offsets.at(node), 1e-14);
+        });
+        double coarsest = 0;
+        for (const auto& node : lifting.nodes()) {
+            if (node.generation == 0) coarsest += node.value * node.integral;
+        }
+        EXPECT_NEAR(coarsest, finest, 1e-12 * static_cast<double>(lifting.nodes().size()));
+    });
 }
 
 /// A grid whose new nodes lie beside the means of their parents.
