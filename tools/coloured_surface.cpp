@@ -66,46 +66,55 @@ public:
     void draw_all(DrawnField& field) {
         const double start = now();
         const bool plain = options_.thresholds.empty() && options_.budgets.empty();
-        if (!plain) indicator_.emplace(hierarchy_, nestgrid::LeafErrors{}, executor_);
+        if (!plain) indicators_.emplace(hierarchy_, options_.projection, executor_);
         field.preroll_seconds = now() - start;
-        if (plain) field.surfaces.push_back(draw({.cap = what_.cap}));
+        if (plain) field.surfaces.push_back(draw(0, [&] { return draw_exactly(); }));
         for (const std::int64_t budget : options_.budgets) {
             field.surfaces.push_back(
-                draw({.max_triangles = static_cast<std::uint64_t>(budget), .cap = what_.cap}));
+                draw(0, [&] { return draw_within(static_cast<std::uint64_t>(budget)); }));
         }
         for (const std::string& text : options_.thresholds) {
-            const ThresholdText t = parse_threshold(text);
-            const double range = indicator_->greatest() - indicator_->least();
-            const double threshold = t.percent ? t.number / 100 * range : t.number;
-            field.surfaces.push_back(draw({.threshold = threshold, .cap = what_.cap}));
+            const double threshold = indicators_->threshold(parse_threshold(text));
+            indicators_->with_criteria([&](const auto& criterion_at) {
+                field.surfaces.push_back(
+                    draw(threshold, [&] { return draw_with(criterion_at(threshold)); }));
+            });
         }
     }
 
 private:
-    Drawn draw(const nestgrid::IsosurfaceOptions& options) {
+    template <class Draw>
+    Drawn draw(double threshold, const Draw& make_slice) {
         Drawn drawn;
-        drawn.threshold = options.threshold;
+        drawn.threshold = threshold;
         const double start = now();
-        drawn.slice = what_.function == nullptr ? triangles(options.threshold) : slice_at(options);
+        drawn.slice = make_slice();
         drawn.seconds = now() - start;
         drawn.report = nestgrid::surface_report(drawn.slice.surface);
         return drawn;
     }
 
-    nestgrid::Slice slice_at(const nestgrid::IsosurfaceOptions& options) const {
-        return indicator_ ? slice(hierarchy_, *what_.function, *indicator_, options, executor_)
-                          : slice(hierarchy_, *what_.function, options, executor_);
+    nestgrid::Slice draw_exactly() const {
+        if (what_.function == nullptr) return triangles();
+        return slice(hierarchy_, *what_.function, {.cap = what_.cap}, executor_);
+    }
+    nestgrid::Slice draw_within(std::uint64_t budget) const {
+        return slice(hierarchy_, *what_.function, indicators_->offsets(),
+                     {.max_triangles = budget, .cap = what_.cap}, executor_);
+    }
+    nestgrid::Slice draw_with(const nestgrid::Criterion& criterion) const {
+        const nestgrid::HierarchicalIndicator& bounds = indicators_->offsets();
+        if (what_.function == nullptr) return triangles(criterion, bounds);
+        return slice(hierarchy_, *what_.function, criterion, bounds, {.cap = what_.cap}, executor_);
     }
 
     /// The grid of dimension 2.
-    nestgrid::Slice triangles(double threshold) const {
-        const nestgrid::ShadingOptions options{.threshold = threshold};
-        const auto draw = [&](const auto&... with) {
-            return what_.scale == 0
-                       ? shading(hierarchy_, with..., options, executor_)
-                       : height_field(hierarchy_, what_.scale, with..., options, executor_);
-        };
-        nestgrid::Shading s = indicator_ ? draw(*indicator_) : draw();
+    template <class... With>
+    nestgrid::Slice triangles(const With&... with) const {
+        const nestgrid::ShadingOptions options;
+        nestgrid::Shading s =
+            what_.scale == 0 ? shading(hierarchy_, with..., options, executor_)
+                             : height_field(hierarchy_, what_.scale, with..., options, executor_);
         return {std::move(s.surface), s.counts, s.error_bound};
     }
 
@@ -113,7 +122,7 @@ private:
     const SurfaceOptions& options_;
     const ColouredSurface& what_;
     nestgrid::TbbExecutor executor_;
-    std::optional<nestgrid::HierarchicalIndicator> indicator_;
+    std::optional<ChosenIndicator> indicators_;
 };
 
 void print(const Drawn& d, const DrawnField& field) {

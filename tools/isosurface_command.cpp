@@ -47,6 +47,10 @@ void run_isosurface(Options& o) {
     if (s.thresholds.empty() && s.budgets.empty()) s.thresholds = {"0"};
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
+    request.projection = s.projection;
+    if (!o.box.empty() && s.projection.blend != 1) {
+        throw nestgrid::InvalidInput("--box has two thresholds: leave out --blend");
+    }
     if (!o.box.empty()) request.box = fine_box(o);
     for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
     if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
@@ -109,7 +113,8 @@ Command add_isosurface(CLI::App& program) {
                      "bounds x,x,y,y,z,z of a region with a threshold of its own, --box-threshold")
         ->delimiter(',')
         ->expected(6);
-    isosurface->add_option("--box-threshold", o->box_threshold, "in units of the data; default: 0")
+    isosurface
+        ->add_option("--box-threshold", o->box_threshold, "in units of --threshold; default: 0")
         ->needs("--box");
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume");
     isosurface->add_flag("--no-normals", o->flat, "leave out the normals");
