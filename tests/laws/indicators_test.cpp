@@ -59,6 +59,8 @@ std::vector<NodalSamples> fields(const std::vector<Point>& nodes) {
     add("plateau with noise of 1e-15", [&](const Point& x) {
         return std::max(0.0, norm(x - Point{0.5, 0.5, 0.5}) - 0.3) + 1e-15 * uniform(random) - 0.1;
     });
+    add("plane with noise of 1e-13",
+        [&](const Point& x) { return x[0] + 0.7 * x[1] - 0.6 + 1e-13 * uniform(random); });
     const std::size_t peak = nodes.size() - 1;
     std::size_t node = 0;
     add("peak", [&](const Point&) { return node++ == peak ? 1 - 0.1 : -0.1; });
@@ -343,6 +345,26 @@ TYPED_TEST(Indicators, OfGeometryBoundTheProjectedPositions) {
                       position_bound(h, both, offsets, bounds));
         }
     }
+}
+
+/// Noise of 1e-15 beside one large value.
+TEST(VisualIndicator, SeesNoNoiseBelowTau) {
+    std::mt19937 random(23);
+    OctreeGrid<3> grid(hexahedra(1));
+    for (int i = 0; i < 3; ++i) grid.refine_uniformly();
+    std::vector<double> values;
+    while (values.size() < grid.node_count()) values.push_back(1e-15 * uniform(random));
+    values.back() = 1;
+    const NodeField<OctreeGrid<3>, double> field(grid, values);
+    const auto h = erase(grid, field);
+    const auto folds = [&](const SweptIndicator& eta) {
+        std::size_t count = 0;
+        for_each_split(h, [&](const JudgedSplit& split) {
+            for (const NodeKey key : split.keys) count += eta.stop(key) > 0.5 ? 1U : 0U;
+        });
+        return count;
+    };
+    EXPECT_LT(5 * folds(visual_indicator(h)), folds(visual_indicator(h, {.tau = 0})));
 }
 
 /// On hexahedra the gradient of x y jumps nowhere at nodes, but flat triangles fold.
