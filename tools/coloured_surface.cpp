@@ -69,13 +69,14 @@ public:
     void draw_all(DrawnField& field) {
         const double start = now();
         const bool plain = options_.thresholds.empty() && options_.budgets.empty() && !what_.lens;
-        if (!plain) indicator_.emplace(hierarchy_, nestgrid::LeafErrors{}, executor_);
-        if (what_.lens) size_.emplace(nestgrid::mesh_size(hierarchy_, what_.lens->spread));
+        if (!plain) {
+            indicators_.emplace(hierarchy_, options_.projection, what_.lens, executor_);
+        }
         field.preroll_seconds = now() - start;
-        if (plain) field.surfaces.push_back(draw({.cap = what_.cap}));
+        if (plain) field.surfaces.push_back(draw(0, [&] { return draw_exactly(); }));
         for (const std::int64_t budget : options_.budgets) {
             field.surfaces.push_back(
-                draw({.max_triangles = static_cast<std::uint64_t>(budget), .cap = what_.cap}));
+                draw(0, [&] { return draw_within(static_cast<std::uint64_t>(budget)); }));
         }
         std::vector<ThresholdText> thresholds;
         for (const std::string& text : options_.thresholds) {
@@ -83,56 +84,55 @@ public:
         }
         if (what_.lens) set_default_threshold(thresholds, true);
         for (const ThresholdText& t : thresholds) {
-            const double range = indicator_->greatest() - indicator_->least();
-            const double threshold = t.percent ? t.number / 100 * range : t.number;
-            field.surfaces.push_back(draw({.threshold = threshold, .cap = what_.cap}));
+            const double threshold = indicators_->threshold(t);
+            indicators_->with_criteria([&](const auto& criterion_at) {
+                field.surfaces.push_back(
+                    draw(threshold, [&] { return draw_with(criterion_at(threshold)); }));
+            });
         }
     }
 
 private:
-    Drawn draw(const nestgrid::IsosurfaceOptions& options) {
+    template <class Draw>
+    Drawn draw(double threshold, const Draw& make_slice) {
         Drawn drawn;
-        drawn.threshold = options.threshold;
+        drawn.threshold = threshold;
         const double start = now();
-        drawn.slice = what_.function == nullptr ? triangles(options.threshold) : slice_at(options);
+        drawn.slice = make_slice();
         drawn.seconds = now() - start;
         drawn.report = nestgrid::surface_report(drawn.slice.surface);
         return drawn;
     }
 
-    nestgrid::Slice slice_at(const nestgrid::IsosurfaceOptions& options) const {
-        if (what_.lens) {
-            return slice(hierarchy_, *what_.function, in_lens(options.threshold), *indicator_,
-                         options, executor_);
-        }
-        return indicator_ ? slice(hierarchy_, *what_.function, *indicator_, options, executor_)
-                          : slice(hierarchy_, *what_.function, options, executor_);
+    nestgrid::Slice draw_exactly() const {
+        if (what_.function == nullptr) return triangles();
+        return slice(hierarchy_, *what_.function, {.cap = what_.cap}, executor_);
+    }
+    nestgrid::Slice draw_within(std::uint64_t budget) const {
+        return slice(hierarchy_, *what_.function, indicators_->offsets(),
+                     {.max_triangles = budget, .cap = what_.cap}, executor_);
+    }
+    nestgrid::Slice draw_with(const nestgrid::Criterion& criterion) const {
+        const nestgrid::HierarchicalIndicator& bounds = indicators_->offsets();
+        if (what_.function == nullptr) return triangles(criterion, bounds);
+        return slice(hierarchy_, *what_.function, criterion, bounds, {.cap = what_.cap}, executor_);
     }
 
     /// The grid of dimension 2.
-    nestgrid::Slice triangles(double threshold) const {
-        const nestgrid::ShadingOptions options{.threshold = threshold};
-        const auto draw = [&](const auto&... with) {
-            return what_.scale == 0
-                       ? shading(hierarchy_, with..., options, executor_)
-                       : height_field(hierarchy_, what_.scale, with..., options, executor_);
-        };
-        nestgrid::Shading s = what_.lens   ? draw(in_lens(threshold), *indicator_)
-                              : indicator_ ? draw(*indicator_)
-                                           : draw();
+    template <class... With>
+    nestgrid::Slice triangles(const With&... with) const {
+        const nestgrid::ShadingOptions options;
+        nestgrid::Shading s =
+            what_.scale == 0 ? shading(hierarchy_, with..., options, executor_)
+                             : height_field(hierarchy_, what_.scale, with..., options, executor_);
         return {std::move(s.surface), s.counts, s.error_bound};
-    }
-
-    auto in_lens(double threshold) const {
-        return nestgrid::Threshold(&*indicator_, threshold) && what_.lens->criterion(*size_);
     }
 
     const nestgrid::Hierarchy<Real>& hierarchy_;
     const SurfaceOptions& options_;
     const ColouredSurface& what_;
     nestgrid::TbbExecutor executor_;
-    std::optional<nestgrid::HierarchicalIndicator> indicator_;
-    std::optional<nestgrid::SweptIndicator> size_;
+    std::optional<ChosenIndicator> indicators_;
 };
 
 void print(const Drawn& d, const DrawnField& field) {

@@ -48,8 +48,8 @@ Volume read_volume(Input& input) {
 void add_surface_options(CLI::App& command, SurfaceOptions& options) {
     command
         .add_option("--threshold", options.thresholds,
-                    "offsets up to this are projected away: in units of the data, or in percent "
-                    "of their range (2%); give it again for several")
+                    "detail up to this is projected away: in units of --indicator, or in percent "
+                    "of the range of the data (2%); give it again for several")
         ->take_all();
     command
         .add_option("--max-triangles", options.budgets,
@@ -57,6 +57,7 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
                     "it again for several")
         ->take_all()
         ->excludes("--threshold");
+    add_projection_options(command, options.projection);
     command.add_option("--threads", options.threads,
                        "how many to use; default: all. The surface does not depend on it");
     command.add_option("-o,--output", options.output, ".vtp, .ply, .stl, .obj or .gltf");
@@ -66,6 +67,11 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
 void check(const SurfaceOptions& options) {
     for (const std::int64_t budget : options.budgets) {
         if (budget <= 0) throw nestgrid::InvalidInput("--max-triangles is not positive");
+    }
+    check(options.projection);
+    if (!options.budgets.empty() && !options.projection.is_default()) {
+        throw nestgrid::InvalidInput(
+            "--max-triangles searches thresholds of offsets: leave out --indicator and --blend");
     }
     if (options.threads < 0) throw nestgrid::InvalidInput("--threads is negative");
     if (!options.output.empty()) check_output(options.output);

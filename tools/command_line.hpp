@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "projection.hpp"
 #include "volume.hpp"
 
 /// A subcommand: its options, and what it does once they are parsed.
@@ -46,12 +47,14 @@ Volume read_volume(Input& input);
 struct SurfaceOptions {
     std::vector<std::string> thresholds;
     std::vector<std::int64_t> budgets;
+    ProjectionChoice projection;
     int threads = 0;
     std::filesystem::path output;
     std::filesystem::path image;
 };
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
-/// \throw nestgrid::InvalidInput for a number that is out of range
+/// \throw nestgrid::InvalidInput for a number that is out of range, and for options that exclude
+///        each other
 /// \throw nestgrid::IoError where a file cannot be written
 void check(const SurfaceOptions& options);
 

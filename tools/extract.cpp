@@ -3,7 +3,6 @@
 #include "extract.hpp"
 
 #include <chrono>
-#include <cstdlib>
 
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/adapters/vtk_surface.hpp>
@@ -19,9 +18,6 @@ std::string millions(std::uint64_t count) {
     return std::to_string(count / 100000 / 10) + "." + std::to_string(count / 100000 % 10) +
            " million";
 }
-
-/// The threshold that all offsets are below: what is drawn depends on the lens alone.
-constexpr double any_offset = std::numeric_limits<double>::infinity();
 
 /// \param criterion_at the criterion for a threshold
 /// \param budget triangles at most, beside which `threshold` is not used; or 0
@@ -72,41 +68,34 @@ Extraction extract_one(const Grid& grid, const Field& field, const MakeCriterion
 template <class Grid, class Field>
 void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& request,
                  ExtractionRun& run) {
+    using Real = typename Field::value_type;
     run.dimension = Grid::dimension;
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
     if (request.progress) request.progress("preroll");
     const nestgrid::TbbExecutor executor(request.threads);
-    const nestgrid::HierarchicalIndicator indicator(grid, field, executor);
+    const ChosenIndicator indicators(
+        static_cast<const nestgrid::Hierarchy<Real>&>(nestgrid::erase(grid, field)),
+        request.projection, request.lens, executor);
+    const nestgrid::HierarchicalIndicator& offsets = indicators.offsets();
     run.preroll_seconds = now() - start;
     run.preroll_peak_bytes = memory::peak() - before;
-    run.preroll_kept_bytes = indicator.memory_bytes();
-    run.least = indicator.least();
-    run.greatest = indicator.greatest();
+    run.preroll_kept_bytes = indicators.memory_bytes();
+    run.least = offsets.least();
+    run.greatest = offsets.greatest();
     const auto draw_all = [&](const auto& criterion_at) {
         for (const std::uint64_t budget : request.budgets) {
             run.surfaces.push_back(
-                extract_one(grid, field, criterion_at, indicator, 0, budget, executor, request));
+                extract_one(grid, field, criterion_at, offsets, 0, budget, executor, request));
         }
         for (const ThresholdText& t : request.thresholds) {
-            const double threshold =
-                t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
-            run.surfaces.push_back(
-                extract_one(grid, field, criterion_at, indicator, threshold, 0, executor, request));
+            run.surfaces.push_back(extract_one(grid, field, criterion_at, offsets,
+                                               indicators.threshold(t), 0, executor, request));
         }
     };
-    if (request.lens) {
-        if (request.progress) request.progress("sizes of elements");
-        const nestgrid::SweptIndicator size = nestgrid::mesh_size(grid, request.lens->spread);
-        const nestgrid::Lens lens = request.lens->criterion(size);
-        run.preroll_seconds = now() - start;
-        draw_all(
-            [&](double threshold) { return nestgrid::Threshold(&indicator, threshold) && lens; });
-        return;
-    }
     if (!request.box) {
-        draw_all([&](double threshold) { return nestgrid::Threshold(&indicator, threshold); });
+        indicators.with_criteria(draw_all);
         return;
     }
     if (request.progress) request.progress("region");
@@ -118,7 +107,7 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
         return true;
     });
     draw_all([&](double threshold) {
-        return nestgrid::fine_inside(region, indicator, threshold, box.threshold);
+        return nestgrid::fine_inside(region, indicators.chosen(), threshold, box.threshold);
     });
 }
 
@@ -127,22 +116,6 @@ void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
-}
-
-void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_lens) {
-    if (thresholds.empty()) thresholds.push_back({with_lens ? any_offset : 0, false});
-}
-
-ThresholdText parse_threshold(const std::string& text) {
-    char* end = nullptr;
-    ThresholdText t{std::strtod(text.c_str(), &end), false};
-    t.percent = *end == '%';
-    if (end == text.c_str() || *(end + (t.percent ? 1 : 0)) != '\0' || !(t.number >= 0) ||
-        !std::isfinite(t.number)) {
-        throw nestgrid::InvalidInput("the threshold '" + text +
-                                     "' is no number >= 0, with or without %");
-    }
-    return t;
 }
 
 ExtractionRun extract(const Volume& volume, const ExtractionRequest& request) {

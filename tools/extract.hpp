@@ -12,21 +12,9 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
-#include "lens_options.hpp"
+#include "projection.hpp"
 #include "surface_file.hpp"
 #include "volume.hpp"
-
-/// A threshold as the user gave it: in units of the data, or in percent of their range.
-struct ThresholdText {
-    double number = 0;
-    bool percent = false;
-};
-
-/// \throw nestgrid::InvalidInput unless the text is a number >= 0, with or without %
-ThresholdText parse_threshold(const std::string& text);
-
-/// Where there is none: with a lens, whatever the data are; else 0.
-void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_lens);
 
 /// A box in the coordinates of the grid, and the threshold within it.
 struct FineBox {
@@ -37,6 +25,7 @@ struct FineBox {
 struct ExtractionRequest {
     double isovalue = 0;
     std::vector<ThresholdText> thresholds{};
+    ProjectionChoice projection{};
     /// Triangles at most, beside which there are no thresholds.
     std::vector<std::uint64_t> budgets{};
     std::optional<FineBox> box{};

@@ -47,6 +47,10 @@ void run_isosurface(Options& o) {
     check(s);
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
+    request.projection = s.projection;
+    if (!o.box.empty() && s.projection.blend != 1) {
+        throw nestgrid::InvalidInput("--box has two thresholds: leave out --blend");
+    }
     if (!o.box.empty()) request.box = fine_box(o);
     request.lens = parse(o.lens);
     for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
@@ -111,7 +115,8 @@ Command add_isosurface(CLI::App& program) {
                      "bounds x,x,y,y,z,z of a region with a threshold of its own, --box-threshold")
         ->delimiter(',')
         ->expected(6);
-    isosurface->add_option("--box-threshold", o->box_threshold, "in units of the data; default: 0")
+    isosurface
+        ->add_option("--box-threshold", o->box_threshold, "in units of --threshold; default: 0")
         ->needs("--box");
     add_lens_options(*isosurface, o->lens);
     isosurface->get_option("--lens")->excludes("--box");

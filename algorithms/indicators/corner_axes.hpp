@@ -43,4 +43,15 @@ constexpr CornerAxes corner_axes(Shape shape, std::size_t i) {
     return axes;
 }
 
+/// corner_axes() of all shapes.
+inline constexpr auto corner_axes_of = [] {
+    std::array<std::array<CornerAxes, max_corners>, shape_count> of{};
+    for (std::size_t shape = 0; shape < shape_count; ++shape) {
+        for (std::size_t i = 0; i < max_corners; ++i) {
+            of[shape][i] = corner_axes(static_cast<Shape>(shape), i);
+        }
+    }
+    return of;
+}();
+
 }  // namespace nestgrid::engine

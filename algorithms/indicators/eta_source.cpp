@@ -16,12 +16,8 @@
 
 namespace nestgrid::engine {
 
-void NodeEtas::raise(std::size_t node, double eta) {
-    if (!(eta >= 0)) {
-        throw InvalidInput("the measure of a node is not a usable number: " + std::to_string(eta));
-    }
-    std::uint16_t& at = maxima_[node];
-    at = std::max(at, bfloat16_above(float_above(eta)));
+void NodeEtas::refuse(double eta) {
+    throw InvalidInput("the measure of a node is not a usable number: " + std::to_string(eta));
 }
 
 detail::NodeStops NodeEtas::saturate(const Spread& spread, bool dense) {
@@ -59,7 +55,11 @@ public:
         : walk_{&walk}, source_{&source}, measures_reach_{measures_reach}, etas_{&etas} {}
 
     bool sees_hidden() const override { return true; }
-    Leaves leaves(const Rule&, const Real*, NodeMask, bool) override { return {}; }
+    Leaves leaves(const Rule& rule, const Real*, NodeMask which, bool) override {
+        // entered() is not called for copies.
+        if (!rule.new_nodes.empty()) source_->leaves(measured(rule), nodes_of(rule), which);
+        return {};
+    }
     Decision inspect(const View&, const Split&) override { return {}; }
     void extract(const View&) override {}
 
@@ -67,32 +67,46 @@ public:
         const Rule& rule = *split.rule;
         const std::size_t corners = view.corner_count();
         const std::size_t count = corners + rule.new_nodes.size();
-        const std::size_t components = source_->wants_values() ? walk_->components() : 0;
-        const auto x = walk_->split_positions(view, split, positions_);
-        values_.assign(value, value + count * components);
-        means_.resize(rule.new_nodes.size() * components);
-        for (std::size_t i = 0; i < means_.size(); ++i) {
-            means_[i] = nestgrid::detail::interpolate(rule.new_nodes[i / components],
-                                                      value + i % components, components);
+        level_ = view.level;
+        components_ = source_->wants_values() ? walk_->components() : 0;
+        walk_->split_positions(view, split, positions_);
+        values_.assign(value, value + count * components_);
+        means_.resize(rule.new_nodes.size() * components_);
+        double* mean = means_.data();
+        for (const Stencil& stencil : rule.new_nodes) {
+            for (std::size_t c = 0; c < components_; ++c) {
+                *mean++ = nestgrid::detail::interpolate(stencil, value + c, components_);
+            }
         }
-        const auto keys = walk_->split_keys(view, split, keys_);
-        const auto nodes = std::span(nodes_).first(count);
-        etas_->maxima().find(keys, nodes);
-        const MeasuredSplit measured{rule, view.level, x, values_, means_, components};
-        source_->split(measured, nodes, *etas_);
+        etas_->maxima().find(walk_->split_keys(view, split, keys_), std::span(nodes_).first(count));
+        const auto nodes = nodes_of(rule);
+        const MeasuredSplit all = measured(rule);
+        source_->split(all, nodes, *etas_);
         for (NodeMask left = split.outside & rule.all(); left != 0; left &= left - 1) {
             etas_->maxima()[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
                 bfloat16_infinity;
         }
-        etas_->maxima().add_split(view.level, rule, nodes, measures_reach_ ? reach_of(rule, x) : 0);
+        etas_->maxima().add_split(view.level, rule, nodes,
+                                  measures_reach_ ? reach_of(rule, all.positions) : 0);
     }
 
 private:
+    /// The split that was entered last, and the numbers of its nodes.
+    MeasuredSplit measured(const Rule& rule) const {
+        const std::size_t count = nodes_of(rule).size();
+        return {rule, level_, std::span(positions_).first(count), values_, means_, components_};
+    }
+    std::span<const std::size_t> nodes_of(const Rule& rule) const {
+        return std::span(nodes_).first(static_cast<std::size_t>(rule.corner_count()) +
+                                       rule.new_nodes.size());
+    }
     const Walk<Real>* walk_;
     EtaSource* source_;
     bool measures_reach_;
     NodeEtas* etas_;
     SplitKeys keys_;
+    int level_ = 0;
+    std::size_t components_ = 0;
     SplitPositions positions_;
     std::array<std::size_t, max_corners + max_new_nodes> nodes_{};
     std::vector<double> values_;

@@ -5,6 +5,8 @@
 // all splits in one walk, raises eta at nodes, and the sweep saturates what it has raised.
 #pragma once
 
+#include <algorithm>
+
 #include <indicators/fine_to_coarse.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
@@ -18,12 +20,18 @@ public:
 
     /// Raises eta of a node to a number that is not below the given one.
     /// \throw InvalidInput where this is negative or not a number
-    void raise(std::size_t node, double eta);
+    void raise(std::size_t node, double eta) {
+        if (!(eta >= 0)) refuse(eta);
+        std::uint16_t& at = maxima_[node];
+        at = std::max(at, bfloat16_above(float_above(eta)));
+    }
     NodeMaxima<std::uint16_t>& maxima() { return maxima_; }
     /// Sweeps, and moves the numbers out.
     detail::NodeStops saturate(const Spread& spread, bool dense);
 
 private:
+    [[noreturn]] static void refuse(double eta);
+
     NodeMaxima<std::uint16_t> maxima_;
 };
 
@@ -43,6 +51,9 @@ public:
     /// \param nodes numbers of the corners and, behind them, of the new nodes
     virtual void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                        NodeEtas& etas) = 0;
+    /// Called behind split(), with the children of it that are leaves, one bit each.
+    virtual void leaves(const MeasuredSplit& /*split*/, std::span<const std::size_t> /*nodes*/,
+                        NodeMask /*which*/) {}
     /// Called when all splits were shown.
     virtual void finish(NodeEtas& /*etas*/) {}
 

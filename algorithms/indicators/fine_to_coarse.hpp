@@ -114,6 +114,7 @@ public:
         });
     }
 
+    const SplitsByLevel& splits() const { return splits_; }
     /// Moves the numbers out: by key where keys are dense, else in the order of for_each().
     std::vector<Number> take() { return std::move(values_); }
     /// Calls function(key, number of the node), where keys are not dense.

@@ -3,12 +3,14 @@
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
+#include <vector>
 
 #include <indicators/eta_source.hpp>
+#include <indicators/gradient_lanes.hpp>
 #include <indicators/vector_box.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
-#include <walk/gradient.hpp>
 
 namespace nestgrid {
 
@@ -40,19 +42,23 @@ ShapeSlopes shape_slopes(Shape shape, const Point& s) {
     return slopes;
 }
 
-/// The gradient of component 0 in the element of a split, where its shape functions have these
-/// derivatives.
-Point gradient(const MeasuredSplit& split, const ShapeSlopes& slopes) {
-    const Topology& t = topology(split.rule.parent);
-    std::array<Point, 3> along{};
-    std::array<double, 3> rise{};
-    for (std::size_t k = 0; k < t.corners; ++k) {
-        for (std::size_t d = 0; d < t.dimension; ++d) {
-            along[d] = along[d] + slopes[k][d] * split.positions[k];
-            rise[d] += slopes[k][d] * split.values[k * split.components];
+/// A derivative that is not 0: of the shape function of a corner, along an axis.
+struct Slope {
+    std::uint8_t corner;
+    std::uint8_t axis;
+    double value;
+};
+
+/// Of all shape functions at a node.
+std::vector<Slope> slopes_at(Shape shape, const Point& s) {
+    const ShapeSlopes all = shape_slopes(shape, s);
+    std::vector<Slope> slopes;
+    for (std::uint8_t k = 0; k < topology(shape).corners; ++k) {
+        for (std::uint8_t d = 0; d < topology(shape).dimension; ++d) {
+            if (all[k][d] != 0) slopes.push_back({k, d, all[k][d]});
         }
     }
-    return dual_vectors(along, t.dimension).gradient(rise);
+    return slopes;
 }
 
 /// The gradients in the elements that make a node, and the greatest diameter of these.
@@ -67,15 +73,21 @@ public:
                NodeEtas& etas) override {
         const Rule& rule = split.rule;
         const auto made = nodes.subspan(split.corner_count());
-        const std::vector<ShapeSlopes>& slopes = slopes_of(rule);
+        const std::vector<std::vector<Slope>>& slopes = slopes_of(rule);
         const float diameter = float_above(split.diameter());
-        const bool one = is_simplex(rule.parent);
-        Point g{};
+        // On a simplex there is one gradient.
+        const std::size_t different = is_simplex(rule.parent) ? 1 : made.size();
         for (std::size_t n = 0; n < made.size(); ++n) {
+            const std::size_t lane = n % GradientLanes::count;
+            if (n < different && lane == 0) {
+                for (std::size_t k = n; k < std::min(n + GradientLanes::count, different); ++k) {
+                    put(split, slopes[k], k - n);
+                }
+                gradients_.solve(topology(rule.parent).dimension, 1);
+            }
             if (made[n] >= jumps_.size()) jumps_.resize(made[n] + 1);
-            if (n == 0 || !one) g = gradient(split, slopes[n]);
             Jump& jump = jumps_[made[n]];
-            jump.gradients.add(g);
+            jump.gradients.add(gradient(different == 1 ? 0 : lane));
             jump.diameter = std::max(jump.diameter, diameter);
             etas.raise(made[n], finite_offset(split.offset(n)));
         }
@@ -88,20 +100,39 @@ public:
     }
 
 private:
+    /// Puts the function of a split into a lane, as it is where shape functions have these slopes.
+    void put(const MeasuredSplit& split, const std::vector<Slope>& slopes, std::size_t lane) {
+        std::array<Point, 3> along{};
+        std::array<double, 3> rise{};
+        for (const auto& [corner, axis, value] : slopes) {
+            along[axis] = along[axis] + value * split.positions[corner];
+            rise[axis] += value * split.values[corner * split.components];
+        }
+        for (std::size_t d = 0; d < 3; ++d) gradients_.set(lane, d, along[d], rise[d]);
+    }
+    std::array<float, 3> gradient(std::size_t lane) {
+        constexpr double most = std::numeric_limits<float>::max();
+        std::array<float, 3> g;
+        for (std::size_t d = 0; d < 3; ++d) {
+            g[d] = static_cast<float>(std::clamp(gradients_.result()[d][lane], -most, most));
+        }
+        return g;
+    }
     /// At the new nodes of a rule.
-    const std::vector<ShapeSlopes>& slopes_of(const Rule& rule) {
-        std::vector<ShapeSlopes>& slopes = slopes_[&rule];
+    const std::vector<std::vector<Slope>>& slopes_of(const Rule& rule) {
+        std::vector<std::vector<Slope>>& slopes = slopes_[&rule];
         if (!slopes.empty()) return slopes;
         const std::vector<Point> reference = reference_nodes(rule);
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             const auto corners = static_cast<std::size_t>(rule.corner_count());
-            slopes.push_back(shape_slopes(rule.parent, reference[corners + n]));
+            slopes.push_back(slopes_at(rule.parent, reference[corners + n]));
         }
         return slopes;
     }
 
     std::vector<Jump> jumps_;
-    std::unordered_map<const Rule*, std::vector<ShapeSlopes>> slopes_;
+    GradientLanes gradients_;
+    std::unordered_map<const Rule*, std::vector<std::vector<Slope>>> slopes_;
 };
 
 template <class Real>

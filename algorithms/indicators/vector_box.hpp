@@ -15,12 +15,10 @@ namespace nestgrid::engine {
 /// The least and the greatest of each coordinate of some vectors, as floats.
 class VectorBox {
 public:
-    void add(const Point& vector) {
-        constexpr double most = std::numeric_limits<float>::max();
+    void add(const std::array<float, 3>& vector) {
         for (std::size_t d = 0; d < 3; ++d) {
-            const auto x = static_cast<float>(std::clamp(vector[d], -most, most));
-            low_[d] = std::min(low_[d], x);
-            high_[d] = std::max(high_[d], x);
+            low_[d] = std::min(low_[d], vector[d]);
+            high_[d] = std::max(high_[d], vector[d]);
         }
     }
     void add(const VectorBox& other) {

@@ -169,7 +169,9 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
         drawing.report(i, results[i]);
         results[i].cancelled = cancelled;
         if (criterion.insists()) {
-            results[i].error_bound = std::numeric_limits<double>::infinity();
+            constexpr double unknown = std::numeric_limits<double>::infinity();
+            results[i].error_bound = unknown;
+            if (options.position_bounds != nullptr) results[i].position_bound = unknown;
         }
     }
     hand_over(targets, chunks, options, results);

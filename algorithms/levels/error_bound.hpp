@@ -39,4 +39,23 @@ double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& se
                                        std::span(u).first(t.corners));
 }
 
+/// The greatest eta of some nodes.
+inline double greatest_eta(const Indicator& indicator, std::span<const NodeKey> nodes) {
+    double greatest = 0;
+    for (const NodeKey node : nodes) greatest = std::max(greatest, indicator.stop(node));
+    return greatest;
+}
+
+/// How far points of an element may be from their true positions.
+/// \param bounds of positions, at least their offsets
+/// \param below what S projected away below the element
+template <class Real>
+double position_bound(const ElementCuts<Real>& element, const Indicator& bounds, double below) {
+    struct Offsets {
+        const Indicator* bounds;
+        double offset_bound(NodeKey node) const { return bounds->stop(node); }
+    };
+    return below + corner_offset(element.view(), element.keys(), Offsets{&bounds});
+}
+
 }  // namespace nestgrid::engine

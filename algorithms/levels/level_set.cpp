@@ -83,7 +83,7 @@ void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::draws_plainly() const {
     return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->normals &&
-           !options_->reference && !options_->at_nodes;
+           !options_->reference && !options_->at_nodes && options_->position_bounds == nullptr;
 }
 
 template <int dimension, class Real>
@@ -123,6 +123,7 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
     result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
     result.counts.extracted = surfaces_[i].extracted();
     result.error_bound = surfaces_[i].error_bound();
+    result.position_bound = surfaces_[i].position_bound();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
     result.table_bytes = normals_.memory_bytes() + walks_.memory_bytes();
     for (const auto& surface : surfaces_) result.table_bytes += surface.memory_bytes();
@@ -144,6 +145,9 @@ Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
     const bool caps = options_->cap && walk_->boundary(view) != 0;
     const auto [decision, bound] = search_->look(view, split, caps, at_hand_.question);
     at_hand_.bound = bound;
+    if (options_->position_bounds != nullptr && decision.visit == Visit::stop) {
+        at_hand_.position_bound = greatest_eta(*options_->position_bounds, split.keys);
+    }
     return decision;
 }
 
@@ -192,7 +196,10 @@ bool LevelSet<dimension, Real>::takes(const View& view) {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::extract(const View& view) {
-    if (view.is_leaf()) at_hand_.bound = 0;
+    if (view.is_leaf()) {
+        at_hand_.bound = 0;
+        at_hand_.position_bound = 0;
+    }
     const bool records = walks_.is_recording();
     if (records && !walks_.draws_finest() && !view.closed.any && !tally_.limited()) return;
     if (walks_.is_drawn(view)) return;
@@ -301,6 +308,10 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);
     surface.raise_error_bound(error_bound(at_hand_.cuts, *search_, at_hand_.bound));
+    if (options_->position_bounds != nullptr) {
+        surface.raise_position_bound(
+            position_bound(at_hand_.cuts, *options_->position_bounds, at_hand_.position_bound));
+    }
     if (!surface.counts_only()) surface.builder().flush_if_full();
 }
 

@@ -95,7 +95,8 @@ private:
         TransitionAdoption<dimension, Real> adoption;
         CapContour<dimension, Real> cap;
         CriterionQuestion question;
-        Real bound = 0;  // how far U may leave the range of its corners
+        Real bound = 0;             // how far U may leave the range of its corners
+        double position_bound = 0;  // how far true positions may be from the mapped ones, below it
         bool loaded = false;
         bool loads_keys = false;
         bool plainly = false;  // options ask for vertices and triangles alone

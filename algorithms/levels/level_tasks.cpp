@@ -72,6 +72,7 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
         LevelSurface<dimension>& surface = leader.surfaces_[i];
         surface.add_extracted(drawn.surfaces_[i].extracted());
         surface.raise_error_bound(drawn.surfaces_[i].error_bound());
+        surface.raise_position_bound(drawn.surfaces_[i].position_bound());
         if (leader.walks_.is_recording()) {
             leader.transitions_[i].record.append(drawn.transitions_[i].record);
         }

@@ -25,6 +25,7 @@ void LevelSurface<dimension>::begin(Builder builder, NodeGradients* gradients, b
     sums_areas_ = gradients != nullptr && builder_.target() == nullptr;
     extracted_ = 0;
     error_bound_ = 0;
+    position_bound_ = 0;
 }
 
 template <int dimension>

@@ -107,6 +107,8 @@ public:
     /// Raises the bound of |U - level| on the surface to `bound` at least.
     void raise_error_bound(double bound) { error_bound_ = std::max(error_bound_, bound); }
     double error_bound() const { return error_bound_; }
+    void raise_position_bound(double bound) { position_bound_ = std::max(position_bound_, bound); }
+    double position_bound() const { return position_bound_; }
 
     /// Makes the normals. Requires that everything is drawn.
     void set_normals();
@@ -140,6 +142,7 @@ private:
     std::vector<Point> areas_;  // area vectors around each vertex, where a sink takes the simplices
     std::uint64_t extracted_ = 0;
     double error_bound_ = 0;
+    double position_bound_ = 0;
     bool sums_areas_ = false;
     bool verifies_ = false;
     bool counts_only_ = false;

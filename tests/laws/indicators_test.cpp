@@ -3,14 +3,18 @@
 //
 // Laws of the indicators that are sources of one sweep (paper, sections 4.1, 4.2, 5.1 and 5.2), on
 // every family.
+#include <map>
+
 #include <gtest/gtest.h>
 
+#include <indicators/lifting.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "families.hpp"
 #include "projection_judge.hpp"
@@ -33,6 +37,7 @@ std::vector<Named> indicators(const Hierarchy<double>& h, const Spread& spread =
     std::vector<Named> all;
     all.push_back({"visual", visual_indicator(h, {.spread = spread}), 0.5});
     all.push_back({"numerical", numerical_indicator(h, {.spread = spread}), 0.5});
+    all.push_back({"wavelet", wavelet_indicator(h, {.spread = spread}), 0.1});
     all.push_back({"norm", norm_indicator(h, {.spread = spread}), 0.1});
     return all;
 }
@@ -54,6 +59,8 @@ std::vector<NodalSamples> fields(const std::vector<Point>& nodes) {
     add("plateau with noise of 1e-15", [&](const Point& x) {
         return std::max(0.0, norm(x - Point{0.5, 0.5, 0.5}) - 0.3) + 1e-15 * uniform(random) - 0.1;
     });
+    add("plane with noise of 1e-13",
+        [&](const Point& x) { return x[0] + 0.7 * x[1] - 0.6 + 1e-13 * uniform(random); });
     const std::size_t peak = nodes.size() - 1;
     std::size_t node = 0;
     add("peak", [&](const Point&) { return node++ == peak ? 1 - 0.1 : -0.1; });
@@ -227,6 +234,139 @@ TYPED_TEST(Indicators, KeepPeaks) {
     }
 }
 
+/// A transform of random values with random integrals of hat functions.
+struct RandomLifting {
+    engine::Lifting lifting;
+    std::map<std::size_t, double> offsets;  ///< by the number of the node, of all new nodes
+
+    RandomLifting(const Hierarchy<double>& h, std::mt19937& random) {
+        std::unordered_map<NodeKey, std::size_t> numbers;
+        for_each_split(h, [&](const JudgedSplit& split) {
+            std::vector<std::size_t> nodes;
+            for (const NodeKey key : split.keys) {
+                const auto [at, is_new] = numbers.emplace(key, numbers.size());
+                nodes.push_back(at->second);
+                if (!is_new) continue;
+                lifting.set_value(at->second, uniform(random));
+                lifting.add_integral(at->second, 0.01 + uniform(random));
+            }
+            for (std::size_t n = split.corner_count(); n < nodes.size(); ++n) {
+                const Stencil& stencil = split.rule.new_nodes[n - split.corner_count()];
+                lifting.add_parents(nodes[n], stencil, nodes);
+                double offset = lifting.nodes()[nodes[n]].value;
+                for (std::size_t i = 0; i < stencil.count; ++i) {
+                    const std::size_t parent = nodes[stencil.parent[i]];
+                    offset -= stencil.weight[i] * lifting.nodes()[parent].value;
+                }
+                offsets[nodes[n]] = offset;
+            }
+        });
+    }
+};
+
+TYPED_TEST(Indicators, OfWaveletsKeepTheIntegral) {
+    std::mt19937 random(22);
+    const auto zero = [](const Point&) { return 0.0; };
+    with_function<TypeParam>(zero, [&](const Hierarchy<double>& h) {
+        RandomLifting sample(h, random);
+        engine::Lifting& lifting = sample.lifting;
+        double finest = 0;
+        std::size_t last = 0;
+        for (const auto& node : lifting.nodes()) {
+            finest += node.value * node.integral;
+            last = std::max(last, node.generation);
+        }
+        lifting.run([&](std::size_t node, double detail, double integral) {
+            EXPECT_GT(integral, 0);
+            if (lifting.nodes()[node].generation < last) return;
+            EXPECT_NEAR(detail, sample.offsets.at(node), 1e-14);
+        });
+        double coarsest = 0;
+        for (const auto& node : lifting.nodes()) {
+            if (node.generation == 0) coarsest += node.value * node.integral;
+        }
+        EXPECT_NEAR(coarsest, finest, 1e-12 * static_cast<double>(lifting.nodes().size()));
+    });
+}
+
+/// A grid whose new nodes lie beside the means of their parents.
+template <class Base>
+class Bent : public Base {
+public:
+    explicit Bent(const Base& grid) : Base(grid), straight_{grid.node_positions()} {}
+
+    void new_positions(const typename Base::Element& e, NodeMask which, std::span<Point> out,
+                       typename Base::Context& context) const {
+        const auto nodes = this->new_nodes(e, context);
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            const Point& x = straight_[nodes[n]];
+            const double bend = 0.02 * std::sin(7 * x[0] + 5 * x[1] + 3 * x[2]);
+            if ((which >> n & 1U) != 0) out[n] = x + bend * Point{1, -1, x[2] == 0 ? 0.0 : 1.0};
+        }
+    }
+
+private:
+    std::vector<Point> straight_;
+};
+
+double position_bound(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds,
+                      const Indicator& positions) {
+    const IsosurfaceOptions options{.position_bounds = &positions};
+    if (h.facts().dimension == 2) return isosurface<2>(h, 0.0, s, bounds, options).position_bound;
+    return isosurface<3>(h, 0.0, s, bounds, options).position_bound;
+}
+
+TYPED_TEST(Indicators, OfGeometryBoundTheProjectedPositions) {
+    for (const auto& straight : TypeParam::grids()) {
+        auto refined = straight;
+        refine_at_sphere(refined, 3 * TypeParam::steps);
+        const Bent<typename TypeParam::Grid> grid(refined);
+        const auto values = fields(refined.node_positions())[0].values;
+        const NodeField<typename TypeParam::Grid, double> field(refined, values);
+        const auto h = erase(grid, field);
+        const SweptIndicator geometry = geometry_indicator(h);
+        const SweptIndicator bounds = position_bounds(h);
+        expect_saturated(h, geometry);
+        expect_saturated(h, bounds);
+        const HierarchicalIndicator offsets(h);
+        const Projected data(h, Exact(), 0.0);
+        const Projected exact(h, Threshold(&geometry, 0), 0.0);
+        EXPECT_EQ(exact.distance_where_drawn(data), 0);
+        for (const double epsilon : {0.002, 0.01, 0.03}) {
+            const Threshold by_bounds(&bounds, epsilon);
+            EXPECT_LE(Projected(h, by_bounds, 0.0).distance_where_drawn(data), epsilon);
+            const Threshold by_geometry(&geometry, epsilon);
+            const Threshold by_data(&offsets, 10 * epsilon);
+            const auto both = by_geometry && by_data;
+            expect_closed_surface(h, both, offsets);
+            EXPECT_LE(Projected(h, by_data, 0.0).distance_where_drawn(data),
+                      position_bound(h, by_data, offsets, bounds));
+            EXPECT_LE(Projected(h, both, 0.0).distance_where_drawn(data),
+                      position_bound(h, both, offsets, bounds));
+        }
+    }
+}
+
+/// Noise of 1e-15 beside one large value.
+TEST(VisualIndicator, SeesNoNoiseBelowTau) {
+    std::mt19937 random(23);
+    OctreeGrid<3> grid(hexahedra(1));
+    for (int i = 0; i < 3; ++i) grid.refine_uniformly();
+    std::vector<double> values;
+    while (values.size() < grid.node_count()) values.push_back(1e-15 * uniform(random));
+    values.back() = 1;
+    const NodeField<OctreeGrid<3>, double> field(grid, values);
+    const auto h = erase(grid, field);
+    const auto folds = [&](const SweptIndicator& eta) {
+        std::size_t count = 0;
+        for_each_split(h, [&](const JudgedSplit& split) {
+            for (const NodeKey key : split.keys) count += eta.stop(key) > 0.5 ? 1U : 0U;
+        });
+        return count;
+    };
+    EXPECT_LT(5 * folds(visual_indicator(h)), folds(visual_indicator(h, {.tau = 0})));
+}
+
 /// On hexahedra the gradient of x y jumps nowhere at nodes, but flat triangles fold.
 TEST(VisualIndicator, SeesSaddlesInsideHexahedra) {
     with_function<BalancedOctree>([](const Point& x) { return (x[0] - 0.5) * (x[1] - 0.5); },
@@ -250,6 +390,67 @@ TEST(NumericalIndicator, IsTheJumpTimesTheDiameter) {
     const SweptIndicator eta = numerical_indicator(h);
     // The gradients on both sides of the diagonal are (1, -1) and (-1, 1), the diameter is sqrt(2).
     EXPECT_NEAR(greatest(h, eta), std::sqrt(8.0) * std::sqrt(2.0), 0.05);
+}
+
+/// Three components a node.
+template <class Grid>
+class Triples {
+public:
+    using value_type = double;
+    static constexpr int components = 3;
+
+    Triples(const Grid& grid, std::span<const Point> at_nodes)
+        : grid_{&grid}, at_nodes_{at_nodes} {}
+    NodeMask coarse_values(std::size_t i, std::span<double> out) const {
+        return copy(grid_->coarse_grid().element(i), out);
+    }
+    NodeMask new_values(const typename Grid::Element& e, NodeMask, std::span<double> out,
+                        typename Grid::Context& context) const {
+        return copy(grid_->new_nodes(e, context), out);
+    }
+
+private:
+    NodeMask copy(std::span<const std::uint32_t> nodes, std::span<double> out) const {
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            for (std::size_t c = 0; c < 3; ++c) out[3 * k + c] = at_nodes_[nodes[k]][c];
+        }
+        return 0;
+    }
+    const Grid* grid_;
+    std::span<const Point> at_nodes_;
+};
+
+TYPED_TEST(Indicators, OfNormsAreOrderedAndCountAllComponents) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    auto grid = std::move(TypeParam::grids()[0]);
+    refine_at_sphere(grid, 3 * TypeParam::steps);
+    std::vector<Point> flow;
+    std::vector<double> second;
+    for (const Point& x : grid.node_positions()) {
+        flow.push_back({std::sin(5 * x[1]) - 0.3, std::cos(4 * x[0] + x[1]), x[0] * x[1]});
+        second.push_back(flow.back()[1]);
+    }
+    const Triples<typename TypeParam::Grid> field(grid, flow);
+    const NodeField<typename TypeParam::Grid, double> second_alone(grid, second);
+    const auto h = erase(grid, field);
+    const SweptIndicator sum = norm_indicator(h, {.norm = OffsetNorm::sum});
+    const SweptIndicator euclid = norm_indicator(h);
+    const SweptIndicator most = norm_indicator(h, {.norm = OffsetNorm::greatest});
+    const SweptIndicator of_second = norm_indicator(h, {.scales = {infinity, 2, infinity}});
+    const SweptIndicator alone = norm_indicator(grid, second_alone);
+    for (const SweptIndicator* indicator : {&sum, &euclid, &most}) expect_saturated(h, *indicator);
+    for_each_split(h, [&](const JudgedSplit& split) {
+        for (const NodeKey key : split.keys) {
+            EXPECT_LE(alone.stop(key), most.stop(key));
+            EXPECT_LE(most.stop(key), euclid.stop(key));
+            EXPECT_LE(euclid.stop(key), sum.stop(key));
+            EXPECT_LE(sum.stop(key), 1.01 * 3 * most.stop(key));
+            EXPECT_EQ(2 * of_second.stop(key), alone.stop(key));
+        }
+    });
+    const HierarchicalIndicator offsets(h);
+    const Threshold s(&euclid, 0.02);
+    expect_closed_surface(h, s, offsets);
 }
 
 TEST(NormIndicator, RefusesScalesThatDoNotFit) {

@@ -39,6 +39,14 @@ run slice v.vti --axis x --at 5 --threshold 0 --threshold 20 -o s.vtp
 run slice v.vti --axis z --at 17 --max-triangles 600
 [ "$(value triangles)" -le 600 ] || fail "more triangles than asked for"
 
+for indicator in visual numerical wavelet; do
+    run slice v.vti --axis z --at 17 --threshold 0.5 --indicator $indicator --blend 1.25
+    expect area 218.5
+    expect open_edges 0
+done
+refused 1 'no percentages' slice v.vti --axis z --at 17 --threshold 2% --indicator visual
+refused 1 'leave out --indicator' slice v.vti --axis z --at 17 --max-triangles 600 --blend 2
+
 run isolines v.vti --axis z --at 17 --count 4 -o l.vtp
 [ "$(grep -c '^isoline' out)" -ge 4 ] || fail "no isolines"
 grep -q 'Name="value"' l.vtp || fail "isolines without values"
@@ -53,6 +61,9 @@ grep -q 'Name="value"' l.vtp || fail "isolines without values"
 run height ramp.pgm --scale 1
 expect area 107.331263
 expect open_edges 0
+run height ramp.pgm --scale 1 --threshold 0.3 --indicator visual
+expect open_edges 0
+run isolines ramp.pgm --values 25 --threshold 0.3 --indicator numerical
 run surface ramp.pgm --threshold 1 --outlines -o ramp.vtp
 expect area 48
 run isolines ramp.pgm --values 25,31 -o r.vtp

@@ -52,6 +52,29 @@ cmp -s one.vtp three.vtp || fail "three threads draw something else"
 "$program" isosurface v.vti --value 130 --threshold 50 --box=2,5,2,5,2,5 --box-threshold 1 >out ||
     fail "box"
 [ "$(value triangles)" -lt "$finest" ] && [ "$(value open_edges)" = 0 ] || fail "small box"
+# Indicators. At threshold 0 each draws the finest surface; above it the surface stays closed.
+"$program" isosurface v.vti --value 130 >out && area=$(value area)
+for indicator in visual numerical wavelet; do
+    run_indicator() { "$program" isosurface v.vti --value 130 --indicator $indicator "$@" >out 2>err; }
+    run_indicator --threshold 0 || fail "$indicator: $(cat err)"
+    awk -v a="$(value area)" -v b="$area" 'BEGIN { exit !((a - b)^2 < 1e-10 * b^2) }' ||
+        fail "$indicator at 0: the area is $(value area), not $area"
+    threshold=$([ $indicator = visual ] && echo 0.7 || echo 10%)
+    run_indicator --threshold $threshold --blend 1.5 || fail "$indicator: $(cat err)"
+    [ "$(value triangles)" -lt "$finest" ] && [ "$(value open_edges)" = 0 ] || fail "$indicator"
+    run_indicator --threshold 2 --box=2,5,2,5,2,5 --box-threshold 0 || fail "$indicator: $(cat err)"
+    [ "$(value open_edges)" = 0 ] || fail "$indicator in a box"
+done
+"$program" isosurface v.vti --value 130 --threshold 4 --indicator offset --blend 1 >out && a=$(value triangles)
+"$program" isosurface v.vti --value 130 --threshold 4 >out && b=$(value triangles)
+[ "$a" = "$b" ] || fail "the indicator is not the offset by default: $a, $b"
+refused 1 'blend is not a finite number' isosurface v.vti --value 130 --threshold 1 --blend 0.5
+refused 1 'blend is not a finite number' isosurface v.vti --value 130 --threshold 1 --blend inf
+refused 1 'leave out --blend' isosurface v.vti --value 130 --threshold 1 --blend 2 --box 0,1,0,1,0,1
+refused 1 'leave out --indicator' isosurface v.vti --value 130 --indicator visual --max-triangles 9
+refused 1 'no percentages' isosurface v.vti --value 130 --threshold 2% --indicator visual
+refused 1 'curved grids' isosurface v.vti --value 130 --threshold 2 --indicator geometry
+refused 2 'indicator: ' isosurface v.vti --value 130 --threshold 2 --indicator colour
 refused 1 'even the coarsest surface has more than 1' isosurface v.vti --value 130 --max-triangles 1
 refused 1 'max-triangles is not positive' isosurface v.vti --value 130 --max-triangles 0
 refused 2 'excludes' isosurface v.vti --value 130 --max-triangles 9 --threshold 1

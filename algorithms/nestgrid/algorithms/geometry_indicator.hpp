@@ -7,6 +7,10 @@
 // Grids that follow a curved or deformed surface are refined for their shape by it; on all others
 // it is 0. It does not see the data: combine it, Threshold(&offsets, a) && Threshold(&geometry, b).
 // At threshold 0 the projected positions are the true ones.
+//
+// Offsets of several levels add up. position_bounds() are their recursive sum (section 4.4): points
+// of an element that stops at nodes with bounds up to epsilon are within epsilon of their true
+// positions. As an indicator they are saturated, too, and the stricter criterion.
 #pragma once
 
 #include <nestgrid/algorithms/swept_indicator.hpp>
@@ -27,6 +31,17 @@ template <class Grid, class Field>
 SweptIndicator geometry_indicator(const Grid& grid, const Field& field,
                                   const GeometryOptions& options = {}) {
     return geometry_indicator(erase(grid, field), options);
+}
+
+/// The offset of each node and the greatest bound of finer ones; see
+/// IsosurfaceOptions::position_bounds.
+/// \throw InvalidInput where a position is not finite
+SweptIndicator position_bounds(const Hierarchy<float>& hierarchy);
+SweptIndicator position_bounds(const Hierarchy<double>& hierarchy);
+template <class Grid, class Field>
+    requires(!detail::AnyHierarchy<Grid>)
+SweptIndicator position_bounds(const Grid& grid, const Field& field) {
+    return position_bounds(erase(grid, field));
 }
 
 }  // namespace nestgrid

@@ -12,6 +12,8 @@
 
 namespace nestgrid {
 
+class Indicator;
+
 /// How many elements a traversal met.
 struct TraversalCounts {
     std::uint64_t calls = 0;      ///< calls of Inspect(): elements looked at
@@ -42,6 +44,9 @@ struct IsosurfaceOptions {
     /// Compute every shared vertex again from every element and throw a GridError where one bit
     /// differs: finds keys and positions that do not belong together.
     bool verify = false;
+    /// The position_bounds() of the grid (geometry_indicator.hpp), borrowed, to be told how far off
+    /// vertices are; or null.
+    const Indicator* position_bounds = nullptr;
     /// Called now and then with the counts so far; returning false ends the traversal.
     std::function<bool(const TraversalCounts&)> progress{};
 };
@@ -55,6 +60,10 @@ struct Isosurface {
     /// the triangles adds. Exact as far as triangles lie in their elements, which curved faces of
     /// deformed elements do not quite allow. Infinity under a criterion that is not saturated.
     double error_bound = 0;
+    /// Every vertex is at most this far from the true position of its point, in units of length, on
+    /// a grid with true positions (curved elements). 0 where options.position_bounds is null;
+    /// infinity as the error bound.
+    double position_bound = 0;
     bool cancelled = false;       ///< by options.progress; the surface is then a part
     std::size_t table_bytes = 0;  ///< hash tables used while extracting
     std::size_t stack_bytes = 0;  ///< depth of the traversal times the size of one state
