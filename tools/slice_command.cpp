@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -16,12 +17,20 @@ struct Options {
     SliceOptions slice;
     bool cap = false;
     bool outlines = false;
+    std::optional<double> isovalue;
 };
 
 void run_slice(Options& o) {
     const SliceFunction f = slice_function(o.slice);
+    if (o.isovalue && !std::isfinite(*o.isovalue)) {
+        throw nestgrid::InvalidInput("--with-isosurface is not a finite number");
+    }
+    if (o.isovalue && !o.surface.budgets.empty()) {
+        throw nestgrid::InvalidInput("--max-triangles is for a slice without an isosurface");
+    }
     draw_coloured(o.input, o.surface,
                   {.function = f.function.get(),
+                   .isovalue = o.isovalue,
                    .cap = o.cap,
                    .outlines = o.outlines,
                    .flat = f.flat,
@@ -37,10 +46,14 @@ Command add_slice(CLI::App& program) {
     add_input_options(*slice, o->input);
     add_slice_options(*slice, o->slice);
     add_surface_options(*slice, o->surface);
-    slice->add_flag(
+    CLI::Option* with_isosurface =
+        slice->add_option("--with-isosurface", o->isovalue,
+                          "draw the isosurface with this value beside the slice, in the same walk");
+    CLI::Option* cap = slice->add_flag(
         "--cap", o->cap,
         "close the slice along the boundary, around the side that the normal points to, "
         "or the outside");
+    cap->excludes(with_isosurface);
     slice->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     return {slice, [o] { run_slice(*o); }};
 }
