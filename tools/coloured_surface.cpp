@@ -16,6 +16,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/detail/geometry.hpp>
 
+#include "expression.hpp"
 #include "extract.hpp"
 #include "input_hierarchy.hpp"
 #include "picture.hpp"
@@ -31,16 +32,19 @@ using nestgrid::operator-;
 /// One surface and what it cost.
 struct Drawn {
     double threshold = 0;
-    nestgrid::Slice slice;
+    nestgrid::Slice slice;  ///< or an isosurface without one
     nestgrid::SurfaceReport report;
+    nestgrid::Surface<3> isosurface;  ///< beside a slice
+    nestgrid::SurfaceReport isosurface_report;
     nestgrid::Polylines isolines;
     double seconds = 0;
 };
 
 /// All surfaces of one field.
 struct DrawnField {
-    std::string name;
-    double least = 0;  ///< of the colours
+    std::string name;        ///< of the colours
+    std::string input_name;  ///< of the field that isosurfaces are of
+    double least = 0;        ///< of the colours
     double greatest = 0;
     double preroll_seconds = 0;
     std::vector<Drawn> surfaces;
@@ -53,12 +57,13 @@ public:
     Drawing(const nestgrid::Hierarchy<Real>& hierarchy, const SurfaceOptions& options,
             const ColouredSurface& what)
         : hierarchy_{hierarchy}, options_{options}, what_{what}, executor_{options.threads} {
-        if (what.function == nullptr && hierarchy.facts().dimension == 3) {
+        const bool in_space = what.function != nullptr || what.isovalue;
+        if (!in_space && hierarchy.facts().dimension == 3) {
             throw nestgrid::InvalidInput(
                 "the field is one in space: give a slice, for isolines, or use 'isosurface'");
         }
-        hierarchy.facts().require_dimension(what.function == nullptr ? 2 : 3);
-        if (what.function == nullptr && !options.budgets.empty()) {
+        hierarchy.facts().require_dimension(in_space ? 3 : 2);
+        if (!in_space && !options.budgets.empty()) {
             throw nestgrid::InvalidInput("--max-triangles is for grids of dimension 3");
         }
         if (what.lens && !options.budgets.empty()) {
@@ -68,39 +73,43 @@ public:
 
     void draw_all(DrawnField& field) {
         const double start = now();
-        const bool plain = options_.thresholds.empty() && options_.budgets.empty() && !what_.lens;
+        const bool unlimited = options_.thresholds.empty() && options_.budgets.empty();
+        const bool plain = unlimited && !what_.lens && !what_.isovalue;
         if (!plain) {
             indicators_.emplace(hierarchy_, options_.projection, what_.lens, executor_);
         }
         field.preroll_seconds = now() - start;
-        if (plain) field.surfaces.push_back(draw(0, [&] { return draw_exactly(); }));
+        if (plain) {
+            field.surfaces.push_back(draw(0, [&](Drawn& d) { d.slice = draw_exactly(); }));
+        }
         for (const std::int64_t budget : options_.budgets) {
-            field.surfaces.push_back(
-                draw(0, [&] { return draw_within(static_cast<std::uint64_t>(budget)); }));
+            field.surfaces.push_back(draw(
+                0, [&](Drawn& d) { d.slice = draw_within(static_cast<std::uint64_t>(budget)); }));
         }
         std::vector<ThresholdText> thresholds;
         for (const std::string& text : options_.thresholds) {
             thresholds.push_back(parse_threshold(text));
         }
-        if (what_.lens) set_default_threshold(thresholds, true);
+        if (unlimited && !plain) set_default_threshold(thresholds, what_.lens.has_value());
         for (const ThresholdText& t : thresholds) {
             const double threshold = indicators_->threshold(t);
             indicators_->with_criteria([&](const auto& criterion_at) {
                 field.surfaces.push_back(
-                    draw(threshold, [&] { return draw_with(criterion_at(threshold)); }));
+                    draw(threshold, [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
             });
         }
     }
 
 private:
     template <class Draw>
-    Drawn draw(double threshold, const Draw& make_slice) {
+    Drawn draw(double threshold, const Draw& draw_into) {
         Drawn drawn;
         drawn.threshold = threshold;
         const double start = now();
-        drawn.slice = make_slice();
+        draw_into(drawn);
         drawn.seconds = now() - start;
         drawn.report = nestgrid::surface_report(drawn.slice.surface);
+        drawn.isosurface_report = nestgrid::surface_report(drawn.isosurface);
         return drawn;
     }
 
@@ -109,13 +118,31 @@ private:
         return slice(hierarchy_, *what_.function, {.cap = what_.cap}, executor_);
     }
     nestgrid::Slice draw_within(std::uint64_t budget) const {
-        return slice(hierarchy_, *what_.function, indicators_->offsets(),
-                     {.max_triangles = budget, .cap = what_.cap}, executor_);
+        const nestgrid::HierarchicalIndicator& offsets = indicators_->offsets();
+        nestgrid::IsosurfaceOptions options{.max_triangles = budget, .cap = what_.cap};
+        if (what_.function != nullptr) {
+            return slice(hierarchy_, *what_.function, offsets, options, executor_);
+        }
+        options.normals = true;
+        return isosurface<3>(hierarchy_, *what_.isovalue, offsets, options, executor_);
     }
-    nestgrid::Slice draw_with(const nestgrid::Criterion& criterion) const {
+    void draw_with(const nestgrid::Criterion& criterion, Drawn& drawn) const {
         const nestgrid::HierarchicalIndicator& bounds = indicators_->offsets();
-        if (what_.function == nullptr) return triangles(criterion, bounds);
-        return slice(hierarchy_, *what_.function, criterion, bounds, {.cap = what_.cap}, executor_);
+        nestgrid::IsosurfaceOptions options{.cap = what_.cap};
+        if (what_.isovalue && what_.function != nullptr) {
+            auto both = slices(hierarchy_, {{what_.function}, {*what_.isovalue}}, criterion, bounds,
+                               options, executor_);
+            drawn.slice = std::move(both[0]);
+            drawn.isosurface = std::move(both[1].surface);
+        } else if (what_.isovalue) {
+            options.normals = true;
+            drawn.slice =
+                isosurface<3>(hierarchy_, *what_.isovalue, criterion, bounds, options, executor_);
+        } else if (what_.function != nullptr) {
+            drawn.slice = slice(hierarchy_, *what_.function, criterion, bounds, options, executor_);
+        } else {
+            drawn.slice = triangles(criterion, bounds);
+        }
     }
 
     /// The grid of dimension 2.
@@ -135,7 +162,7 @@ private:
     std::optional<ChosenIndicator> indicators_;
 };
 
-void print(const Drawn& d, const DrawnField& field) {
+void print(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
     line("threshold", d.threshold);
     line("inspect_calls", std::size_t{d.slice.counts.calls});
     line("visited", std::size_t{d.slice.counts.visited});
@@ -152,6 +179,11 @@ void print(const Drawn& d, const DrawnField& field) {
         std::printf("%-22s %.6g, %s, length %.6g\n", "isoline", d.isolines.value[i],
                     d.isolines.closed(i) ? "ring" : "open", d.isolines.length(i));
     }
+    if (what.isovalue && what.function != nullptr) {
+        line("isosurface_triangles", d.isosurface_report.triangles);
+        line("isosurface_open_edges", d.isosurface_report.open_edges);
+        line("isosurface_area", d.isosurface_report.area);
+    }
     line("preroll_seconds", field.preroll_seconds);
     line("seconds", d.seconds);
 }
@@ -163,6 +195,17 @@ void print_table(const DrawnField& field) {
         std::printf("%10.4g %10zu %10llu %12.4g %10zu %10.4g\n", d.threshold, d.report.triangles,
                     static_cast<unsigned long long>(d.slice.counts.visited), d.slice.error_bound,
                     d.report.open_edges, d.seconds);
+    }
+}
+
+/// Gives isosurfaces that have no other field the values of an expression at their vertices.
+void colour_by(const std::string& expression, DrawnField& field) {
+    field.name = expression;
+    for (Drawn& d : field.surfaces) {
+        nestgrid::Surface<3>& surface = d.slice.surface;
+        if (!surface.attributes.empty()) continue;
+        const Expression f(expression);
+        for (const nestgrid::Point& x : surface.vertices) surface.attributes.push_back(f(x));
     }
 }
 
@@ -202,6 +245,7 @@ bool is_level(const nestgrid::Surface<3>& surface) {
 
 /// Looks across a flat surface, or, where it is closed to a solid, onto the cut.
 void set_view(Panel& panel, const ColouredSurface& what, const nestgrid::Surface<3>& surface) {
+    if (what.isovalue) return;
     const nestgrid::Point normal = what.flat ? what.normal : nestgrid::Point{0, 0, 1};
     if (!what.flat && !is_level(surface)) return;
     if (!what.cap) {
@@ -213,14 +257,28 @@ void set_view(Panel& panel, const ColouredSurface& what, const nestgrid::Surface
     if (side > 0) panel.from = panel.from - 2 * side / dot(normal, normal) * normal;
 }
 
-Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
-    nestgrid::PolyDataSink<3> sink({field.name});
-    sink.take(d.slice.surface);
-    Panel panel{sink.data(), {}};
+std::string caption(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
     char text[200];
-    std::snprintf(text, sizeof(text), "%s, threshold %.4g\n%zu triangles",
-                  short_name(field.name).c_str(), d.threshold, d.report.triangles);
-    panel.caption = text;
+    const std::string name = short_name(field.name);
+    const std::size_t triangles = d.report.triangles + d.isosurface_report.triangles;
+    if (what.isovalue) {
+        const bool alone = what.function == nullptr;
+        std::snprintf(text, sizeof(text), "%s %s %s = %.4g, threshold %.4g\n%zu triangles",
+                      name.c_str(), alone ? "where" : "and the surface",
+                      short_name(field.input_name).c_str(), *what.isovalue, d.threshold, triangles);
+    } else {
+        std::snprintf(text, sizeof(text), "%s, threshold %.4g\n%zu triangles", name.c_str(),
+                      d.threshold, triangles);
+    }
+    return text;
+}
+
+Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
+    const auto data_of = [&](const nestgrid::Surface<3>& surface) {
+        return nestgrid::make_poly_data(surface, {field.name});
+    };
+    Panel panel{data_of(d.slice.surface), caption(d, field, what)};
+    if (!d.isosurface.simplices.empty()) panel.veil = data_of(d.isosurface);
     panel.colour = {field.name, field.least, field.greatest};
     if (!field.values.empty()) {
         panel.lines = make_poly_data(d.isolines, {field.name});
@@ -228,21 +286,21 @@ Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface&
         panel.detail = false;
     }
     if (what.outlines) {
-        nestgrid::PolyDataSink<2> edges({field.name});
-        edges.take(nestgrid::outlines(d.slice.surface));
-        panel.lines = edges.data();
+        panel.lines = nestgrid::make_poly_data(nestgrid::outlines(d.slice.surface), {field.name});
         panel.detail = false;
     }
-    if (what.cap) panel.detail = false;
+    if (what.cap || what.isovalue) panel.detail = false;
     set_view(panel, what, d.slice.surface);
     return panel;
 }
 
-/// One data set of a surface and lines.
-vtkSmartPointer<vtkPolyData> with_lines(vtkPolyData* surface, vtkPolyData* lines) {
+/// What is written of a panel, as one data set: the lines alone, or all.
+vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, bool lines_alone) {
+    if (lines_alone) return panel.lines;
     const vtkNew<vtkAppendPolyData> append;
-    append->AddInputData(surface);
-    append->AddInputData(lines);
+    for (const auto& part : {panel.surface, panel.veil, panel.lines}) {
+        if (part != nullptr) append->AddInputData(part);
+    }
     append->Update();
     return append->GetOutput();
 }
@@ -252,10 +310,8 @@ void write(const SurfaceOptions& options, const DrawnField& field, const Coloure
     for (std::size_t i = 0; i < field.surfaces.size(); ++i) {
         panels.push_back(make_panel(field.surfaces[i], field, what));
         if (options.output.empty()) continue;
-        const auto data = !field.values.empty() ? panels[i].lines
-                          : what.outlines       ? with_lines(panels[i].surface, panels[i].lines)
-                                                : panels[i].surface;
-        write_surface(data, numbered(options.output, i, field.surfaces.size()));
+        write_surface(data_of(panels[i], !field.values.empty()),
+                      numbered(options.output, i, field.surfaces.size()));
     }
     if (!options.image.empty()) write_picture(panels, options.image);
 }
@@ -271,17 +327,18 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
         with_field(input, [&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy,
                                           const std::string& name) {
             progress.show("drawing");
-            field.name = name;
+            field.name = field.input_name = name;
             Drawing<Real>(hierarchy, options, what).draw_all(field);
         });
+        if (what.isovalue && what.function == nullptr) colour_by(input.by, field);
         find_range(field);
-        draw_isolines(field, what);
         if (field.surfaces.front().report.triangles == 0) throw nestgrid::InvalidInput(what.empty);
+        draw_isolines(field, what);
         progress.show("writing");
         write(options, field, what);
     }
     if (field.surfaces.size() == 1) {
-        print(field.surfaces.front(), field);
+        print(field.surfaces.front(), field, what);
     } else {
         print_table(field);
     }

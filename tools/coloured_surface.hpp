@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include <nestgrid/algorithms/slice.hpp>
 
 #include "command_line.hpp"
 #include "lens_options.hpp"
 
-/// A surface that is coloured by the field.
+/// A surface that is coloured by the field; an isosurface without a slice by Input::by.
 struct ColouredSurface {
-    /// A slice of a hierarchy of dimension 3; null for the grid of one of dimension 2.
+    /// A slice of a hierarchy of dimension 3; null for the grid of one of dimension 2, or for an
+    /// isosurface.
     const nestgrid::LevelFunction* function = nullptr;
+    /// The isosurface with this value, without a slice, or beside it and in the same walk.
+    std::optional<double> isovalue{};
     bool cap = false;          ///< with the part of the boundary where the function is positive
     double scale = 0;          ///< heights of a grid of dimension 2, in multiples of the field
     bool outlines = false;     ///< with the edges of elements

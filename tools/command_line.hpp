@@ -35,6 +35,7 @@ Command add_mesh(CLI::App& program);
 struct Input {
     std::filesystem::path path;
     std::string array;
+    std::string by{};  ///< where it names another field of a .nestgrid, that is component 1
     RawFormat raw;
     std::string endian = "little";
     double read_limit = 0;

@@ -6,13 +6,20 @@
 
 using nestgrid::InvalidInput;
 
+const nestgrid::NamedField* find_field(const std::vector<nestgrid::NamedField>& fields,
+                                       const std::string& name) {
+    const auto field = std::find_if(fields.begin(), fields.end(),
+                                    [&](const auto& each) { return each.name == name; });
+    return field == fields.end() ? nullptr : &*field;
+}
+
 const nestgrid::NamedField& field_named(const std::vector<nestgrid::NamedField>& fields,
                                         const std::string& name) {
     if (fields.empty()) throw InvalidInput("the hierarchy has no field; give --field to mesh");
     if (name.empty() && fields.size() == 1) return fields.front();
+    if (const auto* field = find_field(fields, name)) return *field;
     std::string known;
     for (const nestgrid::NamedField& f : fields) {
-        if (f.name == name) return f;
         known += (known.empty() ? "'" : ", '") + f.name + "'";
     }
     throw InvalidInput(name.empty() ? "there are several fields, choose one by --array: " + known

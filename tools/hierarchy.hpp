@@ -46,6 +46,10 @@ void with_hierarchy(const std::filesystem::path& path, Function&& function) {
                   "' holds a family this program does not know: " + header.family);
 }
 
+/// The field with a name, or null.
+const nestgrid::NamedField* find_field(const std::vector<nestgrid::NamedField>& fields,
+                                       const std::string& name);
+
 /// The field with a name; an empty name stands for the only one.
 /// \throw nestgrid::InvalidInput where there is none
 const nestgrid::NamedField& field_named(const std::vector<nestgrid::NamedField>& fields,

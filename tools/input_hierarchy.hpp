@@ -7,6 +7,7 @@
 #include <nestgrid/detail/erase.hpp>
 
 #include "command_line.hpp"
+#include "field_pair.hpp"
 #include "hierarchy.hpp"
 #include "raster.hpp"
 
@@ -23,8 +24,13 @@ void with_field(Input& input, Function&& function) {
     };
     if (is_hierarchy(input.path)) {
         with_hierarchy(input.path, [&](const auto& stored) {
+            const auto field_of = [&](const nestgrid::NamedField& named) {
+                return nestgrid::NodeField(stored.grid, named.values);
+            };
             const nestgrid::NamedField& named = field_named(stored.fields, input.array);
-            call(stored.grid, nestgrid::NodeField(stored.grid, named.values), named.name);
+            const nestgrid::NamedField* const other = find_field(stored.fields, input.by);
+            if (other == nullptr) return call(stored.grid, field_of(named), named.name);
+            call(stored.grid, FieldPair(field_of(named), field_of(*other)), named.name);
         });
         return;
     }

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include <nestgrid/error.hpp>
 
@@ -14,6 +16,7 @@ struct Options {
     SurfaceOptions surface;
     SliceOptions slice;
     LensText lens;
+    std::optional<double> isovalue;
     std::vector<double> values;
     int count = 0;
 };
@@ -28,29 +31,45 @@ void run_isolines(Options& o) {
             throw nestgrid::InvalidInput("--values has a number that is not finite");
         }
     }
+    if (o.isovalue && is_sliced(o.slice)) {
+        throw nestgrid::InvalidInput("isolines run either on a slice or --on-surface");
+    }
+    if (o.isovalue && !std::isfinite(*o.isovalue)) {
+        throw nestgrid::InvalidInput("--on-surface is not a finite number");
+    }
     SliceFunction f;
     if (is_sliced(o.slice)) f = slice_function(o.slice);
-    draw_coloured(o.input, o.surface,
-                  {.function = f.function.get(),
-                   .flat = f.flat || f.function == nullptr,
-                   .normal = f.function == nullptr ? nestgrid::Point{0, 0, 1} : f.normal,
-                   .empty = "the slice does not meet the domain",
-                   .values = o.values,
-                   .value_count = o.count,
-                   .lens = parse(o.lens)});
+    draw_coloured(
+        o.input, o.surface,
+        {.function = f.function.get(),
+         .isovalue = o.isovalue,
+         .flat = f.flat || f.function == nullptr,
+         .normal = f.function == nullptr ? nestgrid::Point{0, 0, 1} : f.normal,
+         .empty = o.isovalue ? "the isosurface is empty" : "the slice does not meet the domain",
+         .values = o.values,
+         .value_count = o.count});
 }
 
 }  // namespace
 
 Command add_isolines(CLI::App& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* isolines =
-        program.add_subcommand("isolines", "draw isolines on a slice, or in a grid of dimension 2");
+    CLI::App* isolines = program.add_subcommand(
+        "isolines", "draw isolines on a slice, on an isosurface, or in a grid of dimension 2");
     add_input_options(*isolines, o->input);
     isolines->add_option("--values", o->values, "their values, in units of the data")
         ->delimiter(',');
     isolines->add_option("--count", o->count, "so many values, evenly within the range");
     add_slice_options(*isolines, o->slice);
+    CLI::Option* on_surface = isolines->add_option(
+        "--on-surface", o->isovalue,
+        "on the isosurface with this value, in units of the data, in the place of a slice");
+    CLI::Option* by = isolines->add_option(
+        "--by", o->input.by,
+        "what the isolines on it are of: another field of a .nestgrid file, or an expression in x, "
+        "y and z");
+    by->needs(on_surface);
+    on_surface->needs(by);
     add_surface_options(*isolines, o->surface);
     add_lens_options(*isolines, o->lens);
     return {isolines, [o] { run_isolines(*o); }};

@@ -124,9 +124,9 @@ void refine_and_write(Grid grid, const MeshRequest& request) {
         tell(i + 1);
     }
     std::vector<NamedField> fields;
-    if (!request.field.empty()) {
-        const Expression f(request.field);
-        for (int step = 1; request.tolerance > 0; ++step) {
+    for (const std::string& name : request.fields) {
+        const Expression f(name);
+        for (int step = 1; request.tolerance > 0 && fields.empty(); ++step) {
             const Adaptation done = refine_if([&](const Leaf& leaf) {
                 return leaf.level < request.levels &&
                        interpolation_error(f, leaf) > request.tolerance;
@@ -134,7 +134,7 @@ void refine_and_write(Grid grid, const MeshRequest& request) {
             tell(step);
             if (done.marked == 0) break;
         }
-        NamedField field{request.field, std::vector<double>(grid.node_count(), 0)};
+        NamedField field{name, std::vector<double>(grid.node_count(), 0)};
         grid.for_each_leaf([&](const Leaf& leaf) {
             for (std::size_t i = 0; i < leaf.nodes.size(); ++i) {
                 field.values[leaf.nodes[i]] = f(leaf.corners[i]);
@@ -168,8 +168,13 @@ void build(CoarseGrid coarse, const MeshRequest& request) {
 }  // namespace
 
 void make_hierarchy(const MeshRequest& request) {
-    if (!request.field.empty()) static_cast<void>(Expression(request.field));
-    if (request.tolerance > 0 && request.field.empty()) {
+    for (const std::string& name : request.fields) {
+        static_cast<void>(Expression(name));
+        if (std::ranges::count(request.fields, name) > 1) {
+            throw InvalidInput("--field names '" + name + "' twice");
+        }
+    }
+    if (request.tolerance > 0 && request.fields.empty()) {
         throw InvalidInput("--tolerance needs a --field");
     }
     if (!(request.tolerance >= 0)) throw InvalidInput("--tolerance is negative or not a number");

@@ -13,11 +13,11 @@ struct MeshRequest {
     std::vector<double> layers;     ///< thicknesses of layers to extrude a surface in, for prisms
     std::vector<double> direction;  ///< to extrude along, x, y, z; empty: along the normals
     bool unbalanced = false;
-    double maximum_volume = 0;  ///< of the tetrahedra that fill a .poly or .smesh; 0 for any
-    int refine = 0;             ///< uniform refinements
-    std::string field;          ///< name or expression; may be empty
-    double tolerance = 0;       ///< refine until the field is interpolated to this; 0: do not
-    int levels = 30;            ///< refinements at most
+    double maximum_volume = 0;        ///< of the tetrahedra that fill a .poly or .smesh; 0 for any
+    int refine = 0;                   ///< uniform refinements
+    std::vector<std::string> fields;  ///< names or expressions; may be empty
+    double tolerance = 0;  ///< refine until the first field is interpolated to this; 0: do not
+    int levels = 30;       ///< refinements at most
     std::size_t maximum_elements = 20000000;  ///< leaves, before the closure
     double read_limit = 0;  ///< seconds to read the input and to fill a complex; 0: by its size
     std::filesystem::path output;

@@ -44,10 +44,13 @@ void add_mesh_options(CLI::App& command, MeshRequest& o) {
     command.add_option("--max-volume", o.maximum_volume,
                        "of the tetrahedra that fill a .poly or .smesh");
     command.add_option("--refine", o.refine, "uniform refinements");
-    command.add_option("--field", o.field,
-                       "a name (see below) or an expression in x, y and z, kept at the nodes");
+    command
+        .add_option("--field", o.fields,
+                    "a name (see below) or an expression in x, y and z, kept at the nodes; give it "
+                    "again for several")
+        ->take_all();
     command.add_option("--tolerance", o.tolerance,
-                       "refine until the field is interpolated up to this");
+                       "refine until the first field is interpolated up to this");
     command.add_option("--levels", o.levels, "refinements of an element at most")
         ->capture_default_str();
     command.add_option("--max-elements", o.maximum_elements, "refuse to make more than these")

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -84,8 +85,8 @@ vtkSmartPointer<vtkPolyDataMapper> make_mapper(vtkPolyData* data) {
     return mapper;
 }
 
-vtkSmartPointer<vtkActor> make_surface(const Panel& panel, bool whole) {
-    const auto mapper = make_mapper(panel.surface);
+vtkSmartPointer<vtkActor> make_surface(const Panel& panel, vtkPolyData* surface, bool whole) {
+    const auto mapper = make_mapper(surface);
     auto actor = vtkSmartPointer<vtkActor>::New();
     actor->SetMapper(mapper);
     vtkProperty* look = actor->GetProperty();
@@ -122,14 +123,16 @@ vtkSmartPointer<vtkActor> make_lines(const Panel& panel) {
     return actor;
 }
 
-/// The extent of the points along a direction.
-std::pair<double, double> extent(vtkPolyData* data, const nestgrid::Point& direction) {
+/// The extent of the points of both surfaces along a direction.
+std::pair<double, double> extent(const Panel& panel, const nestgrid::Point& direction) {
     std::pair<double, double> range{INFINITY, -INFINITY};
-    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
-        nestgrid::Point x;
-        data->GetPoint(i, x.data());
-        const double at = nestgrid::dot(direction, x);
-        range = {std::min(range.first, at), std::max(range.second, at)};
+    for (const auto& data : {panel.surface, panel.veil}) {
+        for (vtkIdType i = 0; data != nullptr && i < data->GetNumberOfPoints(); ++i) {
+            nestgrid::Point x;
+            data->GetPoint(i, x.data());
+            const double at = nestgrid::dot(direction, x);
+            range = {std::min(range.first, at), std::max(range.second, at)};
+        }
     }
     return range;
 }
@@ -156,8 +159,8 @@ void set_camera(const Panel& panel, vtkRenderer* view) {
     camera->GetFocalPoint(centre.data());
     camera->GetPosition(position.data());
     const nestgrid::Point sideways = nestgrid::cross(towards, vertical);
-    const auto [low, high] = extent(panel.surface, vertical);
-    const auto [left, right] = extent(panel.surface, sideways);
+    const auto [low, high] = extent(panel, vertical);
+    const auto [left, right] = extent(panel, sideways);
     const double free_height = 1 - double(caption_height + bar_height) / whole_height;
     const double aspect = double(panel_width) / whole_height;
     const double scale = 0.5 * std::max((high - low) / free_height, (right - left) / aspect) / 0.96;
@@ -204,7 +207,15 @@ void add_scalar_bar(const Panel& panel, vtkRenderer* view) {
 
 vtkSmartPointer<vtkRenderer> make_view(const Panel& panel, bool whole) {
     auto view = vtkSmartPointer<vtkRenderer>::New();
-    view->AddActor(make_surface(panel, whole));
+    view->AddActor(make_surface(panel, panel.surface, whole));
+    if (panel.veil != nullptr) {
+        const auto veil = make_surface(panel, panel.veil, whole);
+        veil->GetProperty()->SetOpacity(0.55);
+        veil->ForceTranslucentOn();
+        view->AddActor(veil);
+        view->SetUseDepthPeeling(1);
+        view->SetUseFXAA(true);
+    }
     if (panel.lines != nullptr) view->AddActor(make_lines(panel));
     view->SetBackground(1, 1, 1);
     const bool coloured = !panel.colour.array.empty();
@@ -222,7 +233,10 @@ void draw(const std::vector<Panel>& panels, const fs::path& path) {
     const double split = detailed ? double(detail_height) / height : 0;
     const vtkNew<vtkRenderWindow> window;
     window->SetOffScreenRendering(1);
-    window->SetMultiSamples(4);
+    const bool veiled =
+        std::ranges::any_of(panels, [](const Panel& p) { return p.veil != nullptr; });
+    window->SetMultiSamples(veiled ? 0 : 4);  // depth is peeled without them
+    window->SetAlphaBitPlanes(veiled ? 1 : 0);
     window->SetSize(panel_width * static_cast<int>(panels.size()), height);
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const double left = double(i) / count;

@@ -22,6 +22,7 @@ struct Panel {
     vtkSmartPointer<vtkPolyData> surface;
     std::string caption;
     ColourBy colour{};
+    vtkSmartPointer<vtkPolyData> veil{};   ///< another surface, translucent, or null
     vtkSmartPointer<vtkPolyData> lines{};  ///< drawn over it, or null
     float line_width = 1;                  ///< in pixels
     nestgrid::Point from{1.1, 1.5, 0.7};   ///< the direction from which it is looked at

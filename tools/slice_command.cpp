@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -17,12 +18,20 @@ struct Options {
     LensText lens;
     bool cap = false;
     bool outlines = false;
+    std::optional<double> isovalue;
 };
 
 void run_slice(Options& o) {
     const SliceFunction f = slice_function(o.slice);
+    if (o.isovalue && !std::isfinite(*o.isovalue)) {
+        throw nestgrid::InvalidInput("--with-isosurface is not a finite number");
+    }
+    if (o.isovalue && !o.surface.budgets.empty()) {
+        throw nestgrid::InvalidInput("--max-triangles is for a slice without an isosurface");
+    }
     draw_coloured(o.input, o.surface,
                   {.function = f.function.get(),
+                   .isovalue = o.isovalue,
                    .cap = o.cap,
                    .outlines = o.outlines,
                    .flat = f.flat,
@@ -40,10 +49,14 @@ Command add_slice(CLI::App& program) {
     add_slice_options(*slice, o->slice);
     add_surface_options(*slice, o->surface);
     add_lens_options(*slice, o->lens);
-    slice->add_flag(
+    CLI::Option* with_isosurface =
+        slice->add_option("--with-isosurface", o->isovalue,
+                          "draw the isosurface with this value beside the slice, in the same walk");
+    CLI::Option* cap = slice->add_flag(
         "--cap", o->cap,
         "close the slice along the boundary, around the side that the normal points to, "
         "or the outside");
+    cap->excludes(with_isosurface);
     slice->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     return {slice, [o] { run_slice(*o); }};
 }

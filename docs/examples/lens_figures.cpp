@@ -15,7 +15,7 @@
 #include <nestgrid/algorithms/slice.hpp>
 
 #include "hausdorff.hpp"
-#include "plot.hpp"
+#include "plot_view.hpp"
 #include "scenes.hpp"
 
 namespace figures {
@@ -136,7 +136,7 @@ void blended_figure(const std::string& file) {
     OctreeGrid<3> finer = hexahedra;
     finer.refine_uniformly();
     Picture picture(420, 420, 2);
-    const Plot moduli(picture, 0, {1, 4}, {0, 12}, false);
+    const PlotView moduli(picture, 0, {1, 4}, {0, 12}, false);
     std::printf("factor  constant  of epsilon  of the place of a lens\n");
     const auto constant = [](double c) { return c * c / (c - 1); };
     for (double c = 1.12; c < 3.97; c += 0.05) {
@@ -149,7 +149,7 @@ void blended_figure(const std::string& file) {
         std::printf("%6.3f %9.2f %11.2f %11.2f\n", c, constant(c), measured.of_epsilon,
                     measured.of_place);
     }
-    const Plot steps(picture, 1, {0.002, 0.2}, {0.001, 0.2}, true);
+    const PlotView steps(picture, 1, {0.002, 0.2}, {0.001, 0.2}, true);
     std::printf("step    tetrahedra: threshold  blended  hexahedra: threshold  blended\n");
     std::vector<std::array<double, 5>> rows;
     for (const double relative : {0.16, 0.08, 0.04, 0.02, 0.01, 0.005}) {

@@ -61,7 +61,7 @@ class OpenSides {
 public:
     explicit OpenSides(std::vector<Side> sides) : sides_{std::move(sides)} {
         for (const Side& s : sides_) {
-            for (std::size_t i = 0; i < 2; ++i) ends_.push_back({s.x[i], s.value[i]});
+            for (std::size_t i = 0; i < 2; ++i) ends_.emplace_back(s.x[i], s.value[i]);
         }
         Point low = ends_.empty() ? Point{} : ends_.front().first;
         Point high = low;

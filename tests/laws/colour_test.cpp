@@ -9,6 +9,7 @@
 #include <map>
 
 #include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/surface_report.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"
@@ -91,6 +92,7 @@ TYPED_TEST(Colours, JumpWhereElementsInterpolateThem) {
         for_each_field_at_sphere<TypeParam>(4, 7, [&](const auto& grid, const auto& samples) {
             const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
             const Shading s = shading(grid, field, {.threshold = 0.1});
+            EXPECT_EQ(surface_report(s.surface).open_edges, 0U);  // a vertex on both sides
             const Jumps jumps = jumps_of_elements(s.surface);
             greatest.of_values = std::max(greatest.of_values, jumps.of_values);
             greatest.of_colours = std::max(greatest.of_colours, jumps.of_colours);

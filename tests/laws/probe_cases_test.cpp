@@ -22,7 +22,7 @@ namespace {
 
 double wave(const Point& x) { return std::sin(3 * x[0] + 1) * std::cos(4 * x[1]) + x[2] * x[0]; }
 
-/// Probes points inside and between the stopped elements.
+/// Probes points inside and between the stopped elements, and inside leaves.
 template <class Grid, class Field>
 void expect_probes(const Grid& grid, const Field& field, double threshold) {
     const HierarchicalIndicator indicator(grid, field);
@@ -32,6 +32,9 @@ void expect_probes(const Grid& grid, const Field& field, double threshold) {
     expect_values(probe(grid, field, in.points, criterion, indicator), in, stopped);
     const Expected on = between(stopped);
     expect_values(probe(grid, field, on.points, criterion, indicator), on, stopped);
+    const auto leaves = stopped_elements(grid, field, Exact{}, indicator.hanging());
+    const Expected finest = inside(leaves, 300, 2);
+    expect_values(probe(grid, field, finest.points), finest, leaves);
 }
 
 /// Closures divide deformed hexahedra into pyramids and tetrahedra, whose faces bend otherwise.
@@ -99,6 +102,29 @@ TEST(ProbeCases, CurvedElements) {
     const CurvedGrid grid(forest);
     const CurvedField field(grid, wave);
     for (const double threshold : {0.0, 0.05, 1.0}) expect_probes(grid, field, threshold);
+}
+
+/// Quadrilaterals of a surface in space that are not plane: the points on them are found, those
+/// above them are not, although their reference coordinates lie inside.
+TEST(ProbeCases, BesideABentSurface) {
+    CoarseGrid coarse = quadrilaterals(2);
+    std::vector<Point> bent;
+    for (std::size_t i = 0; i < coarse.nodes.size(); ++i) {
+        const Point x = coarse.nodes[i];
+        bent.push_back({x[0], x[1], 0.3 * x[0] * x[1] + 0.1 * x[0]});
+    }
+    coarse.nodes = Coordinates(bent);
+    OctreeGrid<2> grid(std::move(coarse));
+    refine_at_sphere(grid, 3);
+    const std::vector<double> values = sample_nodes(grid, wave);
+    const NodeField<OctreeGrid<2>, double> field(grid, values);
+    expect_probes(grid, field, 0.05);
+    const HierarchicalIndicator indicator(grid, field);
+    std::vector<Point> above =
+        inside(stopped_elements(grid, field, Exact{}, indicator.hanging()), 200, 5).points;
+    for (Point& x : above) x[2] += 0.01;
+    const ProbeResult result = probe(grid, field, above);
+    for (std::size_t i = 0; i < above.size(); ++i) EXPECT_FALSE(result.found(i));
 }
 
 /// Points on the boundary of hidden elements are found in those beside them.

@@ -136,6 +136,32 @@ TYPED_TEST(Slices, CarryALinearFunctionExactly) {
     }
 }
 
+/// Changes its sign within elements, so that contours of all kinds arise, with vertices inside
+/// elements.
+class Waves final : public LevelFunction {
+public:
+    double value(const Point& x) const override {
+        return std::sin(97 * x[0] + 61 * x[1] * x[1] + 43 * x[2] + 29 * x[0] * x[2]);
+    }
+};
+
+TYPED_TEST(Slices, CarryALinearFunctionInsideElements) {
+    if constexpr (TypeParam::Grid::dimension == 3) {
+        const auto f = [](const Point& x) { return 2 * x[0] - 3 * x[1] + x[2] + 0.125; };
+        for (auto& grid : TypeParam::grids()) {
+            if (!is_affine(grid)) continue;  // on others the map of an element bends chords
+            refine_at_sphere(grid, 2 * TypeParam::steps);
+            const std::vector<double> values = sample_nodes(grid, f);
+            const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
+            for (const double threshold : {0.0, 1e-9}) {
+                const Slice s = slice(grid, field, Waves{}, {.threshold = threshold});
+                EXPECT_FALSE(s.surface.simplices.empty());
+                expect_colours(s.surface, f);
+            }
+        }
+    }
+}
+
 TYPED_TEST(Slices, AreClosedOnCurvedFunctions) {
     if constexpr (TypeParam::Grid::dimension == 3) {
         const Sphere round({0.5, 0.5, 0.5}, 0.25);

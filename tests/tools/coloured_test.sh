@@ -51,6 +51,63 @@ run isolines v.vti --axis z --at 17 --count 4 -o l.vtp
 [ "$(grep -c '^isoline' out)" -ge 4 ] || fail "no isolines"
 grep -q 'Name="value"' l.vtp || fail "isolines without values"
 
+# In the unit cube, the plane x = 0.3 and lines on it by another field and by expressions.
+cat >cube.smesh <<'END'
+8 3 0 0
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+6 0
+4 1 2 3 4
+4 5 6 7 8
+4 1 2 6 5
+4 2 3 7 6
+4 3 4 8 7
+4 4 1 5 8
+0
+0
+END
+run mesh cube.smesh --family bisection --field x --field 2*z --refine 6 -o cube.nestgrid
+[ "$(grep -c '^field' out)" = 2 ] || fail "not two fields: $(cat out)"
+for by in 2*z 2*y z+y; do
+    for threshold in 0 1%; do
+        run isolines cube.nestgrid --array x --on-surface 0.3 --by $by --values 0.5,1 \
+            --threshold $threshold -o s.vtp
+        grep '^isoline' out >lines
+        [ "$(wc -l <lines)" = 2 ] || fail "isolines by $by: $(cat out)"
+    done
+    expect area 1
+    expect least_value 0
+    expect greatest_value 2
+    expected=1
+    [ $by = z+y ] && expected='(0\.707107|1\.41421)'
+    [ "$(grep -cE "open, length $expected\$" lines)" = 2 ] || fail "isolines by $by: $(cat lines)"
+done
+grep -qF 'Name="z+y"' s.vtp || fail "the expression is no array of its own name"
+
+# A slice and an isosurface in one walk are the two that are drawn alone.
+for threshold in 0 3%; do
+    run isosurface v.vti --value 100.5 --at-nodes --threshold $threshold
+    triangles=$(value triangles)
+    area=$(value area)
+    run slice v.vti --axis z --at 17 --threshold $threshold
+    slice_triangles=$(value triangles)
+    run slice v.vti --axis z --at 17 --with-isosurface 100.5 --threshold $threshold -o both.vtp
+    expect triangles "$slice_triangles"
+    expect isosurface_triangles "$triangles"
+    expect isosurface_area "$area"
+    expect isosurface_open_edges 0
+    grep -q "NumberOfPolys=\"$((triangles + slice_triangles))\"" both.vtp ||
+        fail "both.vtp has not all triangles"
+done
+run slice v.vti --axis z --at 17 --with-isosurface 1e9
+expect isosurface_triangles 0
+
 # A picture of 9 x 7 pixels: 2 x, and one bright pixel.
 {
     printf 'P5\n9 7\n255\n'
@@ -90,6 +147,18 @@ refused 1 'no known format' slice v.vti --axis x --at 1 -o x.doc
 refused 1 'either --values or --count' isolines v.vti --axis z --at 1
 refused 1 'not finite' isolines v.vti --axis z --at 1 --values nan
 refused 1 'give a slice' isolines v.vti --values 3
+refused 2 '--by' isolines v.vti --on-surface 100 --count 3
+refused 2 '--on-surface' isolines v.vti --axis z --at 1 --by x --count 3
+refused 1 'either on a slice or --on-surface' isolines v.vti --axis z --at 1 --on-surface 1 --by x --count 3
+refused 1 'on-surface is not a finite' isolines v.vti --on-surface nan --by x --count 3 -o x.vtp
+refused 1 'isosurface is empty' isolines v.vti --on-surface 1e9 --by x --count 3 -o x.vtp
+refused 1 "expression 'x\+' is no expression" isolines v.vti --on-surface 100 --by x+ --count 3 -o x.vtp
+refused 1 'no finite number at' isolines v.vti --on-surface 100 --by '1/(x-x)' --count 3 -o x.vtp
+refused 1 'dimension 2, not 3' isolines ramp.pgm --on-surface 25 --by x --count 3 -o x.vtp
+refused 1 'with-isosurface is not a finite' slice v.vti --axis z --at 1 --with-isosurface inf -o x.vtp
+refused 1 'slice without an isosurface' slice v.vti --axis z --at 1 --with-isosurface 9 --max-triangles 9
+refused 2 '--with-isosurface' slice v.vti --axis z --at 1 --with-isosurface 9 --cap
+refused 1 "names 'x' twice" mesh cube.smesh --family bisection --field x --field x -o x.nestgrid
 refused 1 'one in space' height v.vti --scale 1
 refused 1 'scale is 0' height ramp.pgm --scale nan
 refused 1 'max-triangles is for grids of dimension 3' surface ramp.pgm --max-triangles 5
