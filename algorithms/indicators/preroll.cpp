@@ -8,9 +8,9 @@
 
 #include <indicators/offset.hpp>
 #include <indicators/preroll_log.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/frontier.hpp>
-#include <walk/interpolate.hpp>
 
 namespace nestgrid::engine {
 

@@ -13,7 +13,7 @@
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/slice.hpp>
-#include <walk/interpolate.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <walk/project.hpp>
 
 #include "closedness.hpp"
