@@ -14,19 +14,25 @@ struct Options {
     Input input;
     SurfaceOptions surface;
     SliceOptions slice;
+    TimeOptions time;
     bool cap = false;
     bool outlines = false;
 };
 
 void run_slice(Options& o) {
     const SliceFunction f = slice_function(o.slice);
-    draw_coloured(o.input, o.surface,
-                  {.function = f.function.get(),
-                   .cap = o.cap,
-                   .outlines = o.outlines,
-                   .flat = f.flat,
-                   .normal = f.normal,
-                   .empty = "the slice does not meet the domain"});
+    const ColouredSurface what{.function = f.function.get(),
+                               .cap = o.cap,
+                               .outlines = o.outlines,
+                               .flat = f.flat,
+                               .normal = f.normal,
+                               .empty = "the slice does not meet the domain"};
+    check(o.time, o.surface);
+    if (o.time.in_use()) {
+        draw_coloured(o.input, o.surface, what, o.time);
+    } else {
+        draw_coloured(o.input, o.surface, what);
+    }
 }
 
 }  // namespace
@@ -37,6 +43,7 @@ Command add_slice(CLI::App& program) {
     add_input_options(*slice, o->input);
     add_slice_options(*slice, o->slice);
     add_surface_options(*slice, o->surface);
+    add_time_options(*slice, o->time);
     slice->add_flag(
         "--cap", o->cap,
         "close the slice along the boundary, around the side that the normal points to, "
