@@ -21,6 +21,7 @@
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "scenes.hpp"
+#include "time_figure.hpp"
 
 using namespace figures;
 
@@ -388,7 +389,8 @@ int main(int argc, char** argv) {
         {"hanging_nodes", hanging_figure},
         {"derived_field", derived_figure},
         {"families", families_figure},
-        {"height_field", height_field_figure}};
+        {"height_field", height_field_figure},
+        {"time", time_figure}};
     const auto figure = argc == 3 ? figures.find(argv[1]) : figures.end();
     if (figure == figures.end()) {
         std::fprintf(stderr, "usage: figures NAME FILE.png, where NAME is one of");
