@@ -103,7 +103,7 @@ void run_isosurface(Options& o) {
     }
     progress.reset();
     if (o.time.in_use()) {
-        print_times(run, o.value, seconds);
+        print_times(run, o.value);
     } else if (run.surfaces.size() == 1 && !contour) {
         print_result(run, o.value, seconds);
     } else {

@@ -113,11 +113,10 @@ void print_table(const ExtractionRun& run, double isovalue, const Seconds& secon
     }
 }
 
-void print_times(const ExtractionRun& run, double isovalue, const Seconds& seconds) {
+void print_times(const ExtractionRun& run, double isovalue) {
     print_emptiness(run, isovalue);
     line("nodes", run.nodes);
     line("leaf_elements", run.leaf_elements);
-    line("read_seconds", seconds.read);
     line("preroll_seconds", run.preroll_seconds);
     line("preroll_kept_bytes", run.preroll_kept_bytes);
     std::printf("\n%10s %12s %10s %10s %10s %11s %10s %9s\n", "time", "threshold", "bound",

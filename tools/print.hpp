@@ -27,7 +27,7 @@ void print_table(const ExtractionRun& run, double isovalue, const Seconds& secon
                  const std::optional<Contour>& contour);
 
 /// One row per surface between frames.
-void print_times(const ExtractionRun& run, double isovalue, const Seconds& seconds);
+void print_times(const ExtractionRun& run, double isovalue);
 
 void print_info(const Volume& volume);
 void print_info(const HierarchyInfo& info);
