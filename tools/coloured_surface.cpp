@@ -18,6 +18,7 @@
 
 #include "expression.hpp"
 #include "extract.hpp"
+#include "film.hpp"
 #include "input_hierarchy.hpp"
 #include "picture.hpp"
 #include "print.hpp"
@@ -31,6 +32,7 @@ using nestgrid::operator-;
 
 /// One surface and what it cost.
 struct Drawn {
+    std::optional<double> time;  ///< where it is between frames
     double threshold = 0;
     nestgrid::Slice slice;  ///< or an isosurface without one
     nestgrid::SurfaceReport report;
@@ -44,8 +46,8 @@ struct Drawn {
 struct DrawnField {
     std::string name;        ///< of the colours
     std::string input_name;  ///< of the field that isosurfaces are of
-    double least = 0;        ///< of the colours
-    double greatest = 0;
+    double least = std::numeric_limits<double>::infinity();  ///< of the colours
+    double greatest = -std::numeric_limits<double>::infinity();
     double preroll_seconds = 0;
     std::vector<Drawn> surfaces;
     std::vector<double> values;  ///< of isolines
@@ -189,9 +191,12 @@ void print(const Drawn& d, const DrawnField& field, const ColouredSurface& what)
 }
 
 void print_table(const DrawnField& field) {
+    const bool timed = field.surfaces.front().time.has_value();
+    if (timed) std::printf("%10s ", "time");
     std::printf("%10s %10s %10s %12s %10s %10s\n", "threshold", "triangles", "visited",
                 "error_bound", "open_edges", "seconds");
     for (const Drawn& d : field.surfaces) {
+        if (timed) std::printf("%10.6g ", *d.time);
         std::printf("%10.4g %10zu %10llu %12.4g %10zu %10.4g\n", d.threshold, d.report.triangles,
                     static_cast<unsigned long long>(d.slice.counts.visited), d.slice.error_bound,
                     d.report.open_edges, d.seconds);
@@ -224,15 +229,11 @@ void draw_isolines(DrawnField& field, const ColouredSurface& what) {
     }
 }
 
-/// Sets the range of the colours, over all surfaces.
-void find_range(DrawnField& field) {
-    field.least = std::numeric_limits<double>::infinity();
-    field.greatest = -field.least;
-    for (const Drawn& d : field.surfaces) {
-        for (const double value : d.slice.surface.attributes) {
-            field.least = std::min(field.least, value);
-            field.greatest = std::max(field.greatest, value);
-        }
+/// Widens the range of the colours by those of a surface.
+void add_range(const Drawn& d, DrawnField& field) {
+    for (const double value : d.slice.surface.attributes) {
+        field.least = std::min(field.least, value);
+        field.greatest = std::max(field.greatest, value);
     }
 }
 
@@ -316,6 +317,33 @@ void write(const SurfaceOptions& options, const DrawnField& field, const Coloure
     if (!options.image.empty()) write_picture(panels, options.image);
 }
 
+void require_triangles(const Drawn& d, const ColouredSurface& what) {
+    if (d.report.triangles == 0) throw nestgrid::InvalidInput(what.empty);
+}
+
+/// Draws the slices at one time between frames, one for each threshold.
+/// \param range of the data, for thresholds in percent
+/// \param taken taken(slice) is called as soon as a slice is drawn
+template <class Real, class Taken>
+void draw_time(double t, const nestgrid::Hierarchy<Real>& hierarchy,
+               const nestgrid::KeyFrames& indicator, double range, const SurfaceOptions& options,
+               const ColouredSurface& what, DrawnField& field, const Taken& taken) {
+    const nestgrid::TbbExecutor executor(options.threads);
+    for (const std::string& text : options.thresholds) {
+        const ThresholdText threshold = parse_threshold(text);
+        Drawn& d = field.surfaces.emplace_back();
+        d.time = t;
+        d.threshold = threshold.percent ? threshold.number / 100 * range : threshold.number;
+        const double begin = now();
+        d.slice = slice(hierarchy, *what.function, nestgrid::Threshold(&indicator, d.threshold),
+                        indicator, {.cap = what.cap}, executor);
+        d.seconds = now() - begin;
+        d.report = nestgrid::surface_report(d.slice.surface);
+        add_range(d, field);
+        taken(d);
+    }
+}
+
 }  // namespace
 
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what) {
@@ -331,8 +359,8 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
             Drawing<Real>(hierarchy, options, what).draw_all(field);
         });
         if (what.isovalue && what.function == nullptr) colour_by(input.by, field);
-        find_range(field);
-        if (field.surfaces.front().report.triangles == 0) throw nestgrid::InvalidInput(what.empty);
+        for (const Drawn& d : field.surfaces) add_range(d, field);
+        require_triangles(field.surfaces.front(), what);
         draw_isolines(field, what);
         progress.show("writing");
         write(options, field, what);
@@ -342,4 +370,43 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
     } else {
         print_table(field);
     }
+}
+
+void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what,
+                   const TimeOptions& time) {
+    check(options);
+    check(time, options);
+    if (options.thresholds.empty()) options.thresholds = {"0"};
+    for (const std::string& text : options.thresholds) parse_threshold(text);
+    DrawnField field;
+    {
+        ProgressLine progress;
+        progress.show("reading");
+        std::optional<Film> film;
+        if (time.frames) film.emplace(options.output);
+        const auto taken = [&](Drawn& d) {
+            require_triangles(d, what);
+            if (!film) return;
+            film->add(data_of(make_panel(d, field, what), !field.values.empty()), *d.time);
+            d.slice.surface = {};
+        };
+        with_frames(input, time, options.threads, [&](const Frames& frames) {
+            progress.show("drawing");
+            field.name = frames.name;
+            field.preroll_seconds = frames.preroll_seconds;
+            const double range = frames.greatest - frames.least;
+            for (const double t : time.drawn_times()) {
+                frames.at(time.weights(t), [&](const auto& hierarchy, const auto& indicator) {
+                    draw_time(t, hierarchy, indicator, range, options, what, field, taken);
+                });
+            }
+        });
+        progress.show("writing");
+        if (film) {
+            film->finish();
+        } else {
+            write(options, field, what);
+        }
+    }
+    print_table(field);
 }

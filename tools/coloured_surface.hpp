@@ -6,7 +6,7 @@
 
 #include <nestgrid/algorithms/slice.hpp>
 
-#include "command_line.hpp"
+#include "frames.hpp"
 #include "lens_options.hpp"
 
 /// A surface that is coloured by the field; an isosurface without a slice by Input::by.
@@ -32,3 +32,6 @@ struct ColouredSurface {
 /// Draws, writes, paints and prints the surface at each threshold or budget.
 /// \throw nestgrid::IoError, nestgrid::InvalidInput, nestgrid::GridError
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what);
+/// The same at times between frames of hierarchies of dimension 3.
+void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what,
+                   const TimeOptions& time);

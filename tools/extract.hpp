@@ -12,6 +12,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
+#include "frames.hpp"
 #include "projection.hpp"
 #include "surface_file.hpp"
 #include "volume.hpp"
@@ -21,6 +22,8 @@ struct FineBox {
     std::array<double, 6> bounds;  ///< least and greatest x, y, z
     double threshold = 0;
 };
+
+struct Extraction;
 
 struct ExtractionRequest {
     double isovalue = 0;
@@ -36,10 +39,13 @@ struct ExtractionRequest {
     bool at_nodes = false;
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
+    /// Takes each surface between frames as soon as it is drawn, and need not leave it.
+    std::function<void(Extraction&)> drawn{};
 };
 
 /// One surface and what it cost.
 struct Extraction {
+    double time = 0;  ///< where it is between frames
     double threshold = 0;
     std::uint64_t budget = 0;         ///< 0: none
     nestgrid::TriangleBudget search;  ///< of the threshold for the budget
@@ -72,6 +78,10 @@ ExtractionRun extract(const Volume& volume, const ExtractionRequest& request);
 /// \throw nestgrid::InvalidInput where there is no such field
 ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string& array,
                       const ExtractionRequest& request);
+
+/// The same at times between frames, which need no preroll of their own.
+/// \throw nestgrid::InvalidInput where the inputs have not one layout
+ExtractionRun extract(Input& input, const TimeOptions& time, const ExtractionRequest& request);
 
 /// VTK's own contour of the same samples (vtkFlyingEdges3D, without normals), for comparison.
 struct Contour {

@@ -6,6 +6,7 @@
 
 #include "command_line.hpp"
 #include "extract.hpp"
+#include "film.hpp"
 #include "hierarchy.hpp"
 #include "picture.hpp"
 #include "print.hpp"
@@ -15,6 +16,7 @@ namespace {
 struct Options {
     Input input;
     SurfaceOptions surface;
+    TimeOptions time;
     double value = 0;
     std::vector<double> box;
     double box_threshold = 0;
@@ -45,6 +47,7 @@ void run_isosurface(Options& o) {
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     SurfaceOptions& s = o.surface;
     check(s);
+    check(o.time, s);
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
     request.projection = s.projection;
@@ -53,11 +56,12 @@ void run_isosurface(Options& o) {
     }
     if (!o.box.empty()) request.box = fine_box(o);
     request.lens = parse(o.lens);
+    if (o.time.in_use()) require_offsets_alone(s.projection, request.lens);
     for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
     if (s.budgets.empty()) set_default_threshold(request.thresholds, request.lens.has_value());
     if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
-    if (is_hierarchy(o.input.path) && o.against_vtk) {
-        throw nestgrid::InvalidInput("--against-vtk is for volumes");
+    if (o.against_vtk && (is_hierarchy(o.input.path) || o.time.in_use())) {
+        throw nestgrid::InvalidInput("--against-vtk is for one volume");
     }
     request.keep_surfaces = !s.output.empty() || !s.image.empty();
     Seconds seconds;
@@ -66,10 +70,20 @@ void run_isosurface(Options& o) {
     progress->show("reading");
     double start = now();
     std::optional<Volume> volume;
-    if (!is_hierarchy(o.input.path)) volume = read_volume(o.input);
+    std::optional<Film> film;
+    if (o.time.frames) {
+        film.emplace(s.output);
+        request.drawn = [&film](Extraction& e) {
+            film->add(e.surface, e.time);
+            e.surface = nullptr;
+        };
+    }
+    if (!is_hierarchy(o.input.path) && !o.time.in_use()) volume = read_volume(o.input);
     seconds.read = now() - start;
-    const ExtractionRun run =
-        volume ? extract(*volume, request) : extract(o.input.path, o.input.array, request);
+    const ExtractionRun run = o.time.in_use() ? extract(o.input, o.time, request)
+                              : volume        ? extract(*volume, request)
+                                              : extract(o.input.path, o.input.array, request);
+    if (film) film->finish();
 
     start = now();
     std::vector<Panel> panels;
@@ -95,7 +109,9 @@ void run_isosurface(Options& o) {
         contour = contour_with_vtk(*volume, o.value);
     }
     progress.reset();
-    if (run.surfaces.size() == 1 && !contour) {
+    if (o.time.in_use()) {
+        print_times(run, o.value);
+    } else if (run.surfaces.size() == 1 && !contour) {
         print_result(run, o.value, seconds);
     } else {
         print_table(run, o.value, seconds, contour);
@@ -110,6 +126,7 @@ Command add_isosurface(CLI::App& program) {
     add_input_options(*isosurface, o->input);
     isosurface->add_option("--value", o->value, "the isovalue, in units of the data")->required();
     add_surface_options(*isosurface, o->surface);
+    add_time_options(*isosurface, o->time);
     isosurface
         ->add_option("--box", o->box,
                      "bounds x,x,y,y,z,z of a region with a threshold of its own, --box-threshold")

@@ -113,6 +113,22 @@ void print_table(const ExtractionRun& run, double isovalue, const Seconds& secon
     }
 }
 
+void print_times(const ExtractionRun& run, double isovalue) {
+    print_emptiness(run, isovalue);
+    line("nodes", run.nodes);
+    line("leaf_elements", run.leaf_elements);
+    line("preroll_seconds", run.preroll_seconds);
+    line("preroll_kept_bytes", run.preroll_kept_bytes);
+    std::printf("\n%10s %12s %10s %10s %10s %11s %10s %9s\n", "time", "threshold", "bound",
+                "triangles", "vertices", "visited", "open edges", "seconds");
+    for (const Extraction& e : run.surfaces) {
+        std::printf("%10.6g %12.6g %10.4g %10zu %10zu %11llu %10zu %9.3f\n", e.time, e.threshold,
+                    e.error_bound, e.report.triangles, e.report.vertices,
+                    static_cast<unsigned long long>(e.counts.visited), e.report.open_edges,
+                    e.seconds);
+    }
+}
+
 void print_info(const HierarchyInfo& info) {
     line("family", info.family);
     line("dimension", static_cast<std::size_t>(info.dimension));

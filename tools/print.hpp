@@ -26,6 +26,9 @@ void print_result(const ExtractionRun& run, double isovalue, const Seconds& seco
 void print_table(const ExtractionRun& run, double isovalue, const Seconds& seconds,
                  const std::optional<Contour>& contour);
 
+/// One row per surface between frames.
+void print_times(const ExtractionRun& run, double isovalue);
+
 void print_info(const Volume& volume);
 void print_info(const HierarchyInfo& info);
 

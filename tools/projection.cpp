@@ -76,6 +76,14 @@ void check(const ProjectionChoice& choice) {
     throw InvalidInput("--blend is not a finite number of at least 1");
 }
 
+void require_offsets_alone(const ProjectionChoice& choice, const std::optional<LensRequest>& lens) {
+    if (choice.is_default() && !lens) return;
+    throw InvalidInput("between frames thresholds are those of offsets: leave out " +
+                       std::string(lens                ? "--lens"
+                                   : choice.blend == 1 ? "--indicator"
+                                                       : "--blend"));
+}
+
 template <class Real>
 ChosenIndicator::ChosenIndicator(const nestgrid::Hierarchy<Real>& hierarchy,
                                  const ProjectionChoice& choice,

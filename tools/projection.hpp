@@ -38,6 +38,9 @@ void add_projection_options(CLI::App& command, ProjectionChoice& choice);
 /// \throw nestgrid::InvalidInput where the factor is out of range
 void check(const ProjectionChoice& choice);
 
+/// \throw nestgrid::InvalidInput where anything else than the offsets decides: between frames
+void require_offsets_alone(const ProjectionChoice& choice, const std::optional<LensRequest>& lens);
+
 /// The indicators of one field: that of offsets, which gives bounds, the chosen one, and the sizes
 /// of elements for a lens.
 class ChosenIndicator {

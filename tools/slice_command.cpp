@@ -16,6 +16,7 @@ struct Options {
     SurfaceOptions surface;
     SliceOptions slice;
     LensText lens;
+    TimeOptions time;
     bool cap = false;
     bool outlines = false;
     std::optional<double> isovalue;
@@ -29,15 +30,22 @@ void run_slice(Options& o) {
     if (o.isovalue && !o.surface.budgets.empty()) {
         throw nestgrid::InvalidInput("--max-triangles is for a slice without an isosurface");
     }
-    draw_coloured(o.input, o.surface,
-                  {.function = f.function.get(),
-                   .isovalue = o.isovalue,
-                   .cap = o.cap,
-                   .outlines = o.outlines,
-                   .flat = f.flat,
-                   .normal = f.normal,
-                   .empty = "the slice does not meet the domain",
-                   .lens = parse(o.lens)});
+    const ColouredSurface what{.function = f.function.get(),
+                               .isovalue = o.isovalue,
+                               .cap = o.cap,
+                               .outlines = o.outlines,
+                               .flat = f.flat,
+                               .normal = f.normal,
+                               .empty = "the slice does not meet the domain",
+                               .lens = parse(o.lens)};
+    check(o.time, o.surface);
+    if (o.time.in_use()) {
+        require_offsets_alone(o.surface.projection, what.lens);
+        if (o.isovalue) throw nestgrid::InvalidInput("--with-isosurface is for one input");
+        draw_coloured(o.input, o.surface, what, o.time);
+    } else {
+        draw_coloured(o.input, o.surface, what);
+    }
 }
 
 }  // namespace
@@ -49,6 +57,7 @@ Command add_slice(CLI::App& program) {
     add_slice_options(*slice, o->slice);
     add_surface_options(*slice, o->surface);
     add_lens_options(*slice, o->lens);
+    add_time_options(*slice, o->time);
     CLI::Option* with_isosurface =
         slice->add_option("--with-isosurface", o->isovalue,
                           "draw the isosurface with this value beside the slice, in the same walk");

@@ -9,9 +9,9 @@
 #include <string>
 
 #include <indicators/spread.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/hanging_nodes.hpp>
-#include <walk/interpolate.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {

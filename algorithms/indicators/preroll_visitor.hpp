@@ -10,9 +10,9 @@
 #include <indicators/offset.hpp>
 #include <indicators/preroll_log.hpp>
 #include <indicators/spread.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/frontier.hpp>
-#include <walk/interpolate.hpp>
 
 namespace nestgrid::engine {
 

@@ -4,7 +4,7 @@
 
 #include <indicators/diameter.hpp>
 #include <indicators/eta_source.hpp>
-#include <walk/interpolate.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 
 namespace nestgrid {
 

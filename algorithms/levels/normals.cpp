@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <levels/normals.hpp>
 
-#include <walk/interpolate.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 
 namespace nestgrid::engine {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
-#include <walk/interpolate.hpp>
 
 namespace nestgrid::engine {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <bit>
 
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/for_each_element.hpp>
-#include <walk/interpolate.hpp>
 
 namespace nestgrid::engine {
 

@@ -7,10 +7,10 @@
 
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/detail/hanging_probe.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/crossing_nodes.hpp>
 #include <walk/for_each_element.hpp>
-#include <walk/interpolate.hpp>
 
 namespace nestgrid {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <string>
 
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/coarse_boundary.hpp>
 #include <walk/crossing_nodes.hpp>
-#include <walk/interpolate.hpp>
 
 namespace nestgrid::engine {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The functions of position that a walk carries, at the new nodes of a split.
-#include <walk/interpolate.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {

@@ -4,7 +4,7 @@
 // What visitors ask a walk about the element at hand.
 #include <algorithm>
 
-#include <walk/interpolate.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {

@@ -29,6 +29,7 @@
 #include "lens_figures.hpp"
 #include "plot.hpp"
 #include "scenes.hpp"
+#include "time_figure.hpp"
 
 using namespace figures;
 
@@ -580,7 +581,8 @@ int main(int argc, char** argv) {
         {"derived_field", derived_figure},
         {"families", families_figure},
         {"slice_growth", slice_growth_figure},
-        {"height_field", height_field_figure}};
+        {"height_field", height_field_figure},
+        {"time", time_figure}};
     const auto figure = argc == 3 ? figures.find(argv[1]) : figures.end();
     if (figure == figures.end()) {
         std::fprintf(stderr, "usage: figures NAME FILE.png, where NAME is one of");

@@ -11,9 +11,9 @@
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/region.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 #include <walk/for_each_element.hpp>
 #include <walk/frontier.hpp>
-#include <walk/interpolate.hpp>
 #include <walk/project.hpp>
 
 #include "forest.hpp"

@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include <nestgrid/detail/interpolate.hpp>
 #include <walk/criterion_question.hpp>
 #include <walk/hanging_nodes.hpp>
-#include <walk/interpolate.hpp>
 #include <walk/walk.hpp>
 
 #include "closedness.hpp"

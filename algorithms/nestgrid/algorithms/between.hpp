@@ -12,7 +12,10 @@
 //     are those of the frame, bit for bit.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -157,5 +160,8 @@ private:
     std::vector<const Field*> fields_;
     std::vector<Term> terms_;  // of frames whose weight is not 0
 };
+
+template <class Field>
+Between(std::initializer_list<const Field*>, std::span<const float>) -> Between<Field>;
 
 }  // namespace nestgrid
