@@ -3,6 +3,8 @@
 #include "coloured_surface.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -258,20 +260,35 @@ void set_view(Panel& panel, const ColouredSurface& what, const nestgrid::Surface
     if (side > 0) panel.from = panel.from - 2 * side / dot(normal, normal) * normal;
 }
 
+/// "threshold 0.1", or nothing where a lens decides alone; and the time, where there is one.
+std::string drawn_at(const Drawn& d) {
+    std::array<char, 80> text{};
+    std::string result;
+    if (std::isfinite(d.threshold)) {
+        std::snprintf(text.data(), text.size(), ", threshold %.4g", d.threshold);
+        result += text.data();
+    }
+    if (d.time) {
+        std::snprintf(text.data(), text.size(), ", time %.4g", *d.time);
+        result += text.data();
+    }
+    return result;
+}
+
 std::string caption(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
-    char text[200];
+    std::array<char, 200> text{};
     const std::string name = short_name(field.name);
     const std::size_t triangles = d.report.triangles + d.isosurface_report.triangles;
     if (what.isovalue) {
         const bool alone = what.function == nullptr;
-        std::snprintf(text, sizeof(text), "%s %s %s = %.4g, threshold %.4g\n%zu triangles",
-                      name.c_str(), alone ? "where" : "and the surface",
-                      short_name(field.input_name).c_str(), *what.isovalue, d.threshold, triangles);
+        std::snprintf(text.data(), text.size(), "%s %s %s = %.4g%s\n%zu triangles", name.c_str(),
+                      alone ? "where" : "and the surface", short_name(field.input_name).c_str(),
+                      *what.isovalue, drawn_at(d).c_str(), triangles);
     } else {
-        std::snprintf(text, sizeof(text), "%s, threshold %.4g\n%zu triangles", name.c_str(),
-                      d.threshold, triangles);
+        std::snprintf(text.data(), text.size(), "%s%s\n%zu triangles", name.c_str(),
+                      drawn_at(d).c_str(), triangles);
     }
-    return text;
+    return text.data();
 }
 
 Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {

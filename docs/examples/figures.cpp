@@ -26,8 +26,8 @@
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
+#include "growth_figures.hpp"
 #include "lens_figures.hpp"
-#include "plot.hpp"
 #include "scenes.hpp"
 #include "time_figure.hpp"
 
@@ -531,32 +531,6 @@ void families_figure(const std::string& file) {
     picture.write(file);
 }
 
-/// Elements that a plane visits, against all there are.
-void slice_growth_figure(const std::string& file) {
-    using Tetrahedra = LatticeBisection<3>;
-    Curve all{"all of them", {0.55, 0.55, 0.58}, {}, false};
-    Curve slope{"their number^2/3", red, {}, false};
-    Curve oblique{"oblique plane", ramp(0.2)};
-    Curve level{"level plane", ramp(0.65)};
-    for (const int n : {17, 33, 65, 129, 257}) {
-        const Tetrahedra grid({.samples = {n, n, n}});
-        const double m = (n - 1) / 2.0;
-        const double count = 6 * std::pow(n - 1, 3);
-        const auto visited = [&](const Point& normal) {
-            const Plane plane({m, m, m + 0.3}, normal);
-            const Slice drawn = slice(grid, ZeroField<Tetrahedra>{}, plane, {.elements = false});
-            return static_cast<double>(drawn.counts.visited);
-        };
-        oblique.points.push_back({count, visited({0.3, 0.5, 0.81})});
-        level.points.push_back({count, visited({0, 0, 1})});
-        all.points.push_back({count, count});
-        slope.points.push_back({count, std::pow(count, 2.0 / 3)});
-        std::printf("%9.0f tetrahedra, visited %7.0f and %7.0f\n", count, oblique.points.back()[1],
-                    level.points.back()[1]);
-    }
-    plot_logarithmic(file, "tetrahedra", "visited elements", {all, slope, level, oblique});
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -580,6 +554,7 @@ int main(int argc, char** argv) {
         {"norm_indicator", norm_figure},
         {"derived_field", derived_figure},
         {"families", families_figure},
+        {"isosurface_growth", isosurface_growth_figure},
         {"slice_growth", slice_growth_figure},
         {"height_field", height_field_figure},
         {"time", time_figure}};
