@@ -41,19 +41,15 @@ public:
     engine::Decision inspect(const View&, const engine::Split&) override { return {}; }
     void extract(const View&) override {}
     void entered(const View& view, const engine::Split& split, const double*) override {
-        const std::size_t corners = view.corner_count();
-        const auto made = split.rule->new_nodes.size();
-        std::array<Point, max_corners + max_new_nodes> x;
-        walk_->corners(view, nullptr, x.data());
-        walk_->new_positions(view, *split.rule, std::span(x).subspan(corners, made));
         (*function_)({*split.rule, walk_->split_keys(view, split, keys_),
-                      std::span(x).first(corners + made), split.constrained});
+                      walk_->split_positions(view, split, positions_), split.constrained});
     }
 
 private:
     const engine::Walk<double>* walk_;
     const std::function<void(const JudgedSplit&)>* function_;
     engine::SplitKeys keys_{};
+    engine::SplitPositions positions_{};
 };
 
 inline void for_each_split(const Hierarchy<double>& hierarchy,
@@ -151,11 +147,9 @@ public:
     void entered(const View& view, const engine::Split& split, const double* value) override {
         const auto keys = walk_.split_keys(view, split, keys_);
         const std::size_t corners = view.corner_count();
-        const std::size_t made = split.rule->new_nodes.size();
-        std::array<Point, max_corners + max_new_nodes> x;
-        walk_.corners(view, nullptr, x.data());
+        engine::SplitPositions x;
         const bool below = stop_level_ != none_;
-        if (!below) walk_.new_positions(view, *split.rule, std::span(x).subspan(corners, made));
+        walk_.split_positions(view, split, x);
         for (std::size_t n = 0; n < keys.size(); ++n) {
             const NodeMask bit = n < corners ? NodeMask{0} : NodeMask{1} << (n - corners);
             if (n >= corners && (below || ((interpolated_ | split.constrained) & bit) != 0)) {
