@@ -20,12 +20,14 @@ void release(void* block) {
 
 }  // namespace
 
-void* operator new(std::size_t size) {
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     ++allocations;
-    if (void* block = std::malloc(size == 0 ? 1 : size)) {
-        bytes += malloc_usable_size(block);
-        return block;
-    }
+    void* const block = std::malloc(size == 0 ? 1 : size);
+    if (block != nullptr) bytes += malloc_usable_size(block);
+    return block;
+}
+void* operator new(std::size_t size) {
+    if (void* block = operator new(size, std::nothrow)) return block;
     throw std::bad_alloc();
 }
 void operator delete(void* block) noexcept { release(block); }

@@ -99,7 +99,9 @@ private:
 
     /// A step in the directions in which corner, or child, k lies from the first one.
     Place step(Place from, std::size_t k) const {
-        for (std::size_t a = 0; a < dim; ++a) from[axis_[a]] += k >> a & 1U;
+        for (std::size_t a = 0; a < dim; ++a) {
+            from[axis_[a]] += static_cast<std::uint32_t>(k >> a & 1U);
+        }
         return from;
     }
     NodeKey corner_key(const Element& e, std::size_t k) const {
