@@ -347,10 +347,9 @@ void draw_time(double t, const nestgrid::Hierarchy<Real>& hierarchy,
                const ColouredSurface& what, DrawnField& field, const Taken& taken) {
     const nestgrid::TbbExecutor executor(options.threads);
     for (const std::string& text : options.thresholds) {
-        const ThresholdText threshold = parse_threshold(text);
         Drawn& d = field.surfaces.emplace_back();
         d.time = t;
-        d.threshold = threshold.percent ? threshold.number / 100 * range : threshold.number;
+        d.threshold = parse_threshold(text).in_units(range);
         const double begin = now();
         d.slice = slice(hierarchy, *what.function, nestgrid::Threshold(&indicator, d.threshold),
                         indicator, {.cap = what.cap}, executor);

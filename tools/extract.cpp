@@ -57,10 +57,6 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Cri
     if (request.keep_surfaces) e.surface = nestgrid::make_poly_data(result.surface);
 }
 
-double in_units(const ThresholdText& t, const ExtractionRun& run) {
-    return t.percent ? t.number / 100 * (run.greatest - run.least) : t.number;
-}
-
 /// The box of a request as a region; none where there is no box.
 /// \param make_region makes the region of a function bool(const Point&)
 template <class MakeRegion>
@@ -153,7 +149,7 @@ void extract_time(double t, const nestgrid::Hierarchy<Real>& hierarchy,
         for (const ThresholdText& threshold : request.thresholds) {
             Extraction& e = run.surfaces.emplace_back();
             e.time = t;
-            e.threshold = in_units(threshold, run);
+            e.threshold = threshold.in_units(run.greatest - run.least);
             extract_one<dimension>(hierarchy, criterion_at(e.threshold), indicator, executor,
                                    request, e);
             if (request.drawn) request.drawn(e);

@@ -107,10 +107,9 @@ template ChosenIndicator::ChosenIndicator(const nestgrid::Hierarchy<double>&,
                                           const nestgrid::Executor&);
 
 double ChosenIndicator::threshold(const ThresholdText& text) const {
-    if (!text.percent) return text.number;
-    if (choice_.indicator == "visual" || choice_.indicator == "geometry") {
+    if (text.percent && (choice_.indicator == "visual" || choice_.indicator == "geometry")) {
         throw InvalidInput("thresholds of the " + choice_.indicator +
                            " indicator are no percentages: they have no units of the data");
     }
-    return text.number / 100 * (offsets_.greatest() - offsets_.least());
+    return text.in_units(offsets_.greatest() - offsets_.least());
 }

@@ -19,6 +19,9 @@
 struct ThresholdText {
     double number = 0;
     bool percent = false;
+
+    /// \param range of the data
+    double in_units(double range) const { return percent ? number / 100 * range : number; }
 };
 
 /// \throw nestgrid::InvalidInput unless the text is a number >= 0, with or without %

@@ -43,7 +43,7 @@ double finite_offset(double offset);
 /// \throw InvalidInput where the offset is not finite
 double trace_of(double offset);
 
-/// What is measured. A source may keep numbers of its own by node, until finish().
+/// Measures eta at the splits of a hierarchy. A source may keep numbers by node until finish().
 class EtaSource {
 public:
     /// Whether the source looks at values.

@@ -12,7 +12,8 @@ namespace nestgrid {
 
 namespace {
 
-/// Where a time lies: between the frames `first` and first + 1, at this part of the way.
+/// The place of a time among the frames: between frames `first` and first + 1, at this part of the
+/// way from one to the other.
 struct Place {
     std::size_t first;
     double part;

@@ -49,7 +49,7 @@ struct Slope {
     double value;
 };
 
-/// Of all shape functions at a node.
+/// The derivatives of all shape functions at a point of the reference element that are not 0.
 std::vector<Slope> slopes_at(Shape shape, const Point& s) {
     const ShapeSlopes all = shape_slopes(shape, s);
     std::vector<Slope> slopes;

@@ -106,8 +106,8 @@ struct AffineCamera {
     ImagePoint offset{0, 0};
 };
 
-/// What a parallel view shows in a domain of the image: the distance in the image, divided by the
-/// greatest factor by which the camera stretches lengths.
+/// The points that a parallel view shows in a domain of its image. Their distance is that in the
+/// image, divided by the greatest factor by which the camera stretches lengths.
 /// \param domain a distance in the image, a function of (u, v, 0)
 /// \throw InvalidInput where the camera maps all points to one
 Distance seen_in(const AffineCamera& camera, Distance domain);
@@ -121,10 +121,11 @@ struct PerspectiveCamera {
     double aspect = 1;        ///< width / height
 };
 
-/// What a perspective view shows between two distances from the eye, measured along `towards`.
+/// The points that a perspective view shows between two distances from the eye along `towards`.
 /// \throw InvalidInput where the camera makes no sense, or not 0 <= nearest < farthest
 ConvexPolyhedron view_frustum(const PerspectiveCamera& camera, double nearest, double farthest);
-/// What a perspective view shows in a convex polygon of the image: planes through the eye bound it.
+/// The points that a perspective view shows in a convex polygon of its image, between planes
+/// through the eye.
 /// \throw InvalidInput where the polygon is not convex, or the camera makes no sense
 ConvexPolyhedron seen_in(const PerspectiveCamera& camera, const Polygon& polygon);
 

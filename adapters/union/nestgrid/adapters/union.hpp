@@ -53,11 +53,12 @@ public:
     static constexpr Shape only_shape = detail::only_shape<Grid>();
     static constexpr int components = detail::components_of<Field>();
 
-    /// What an element is in one of the grids.
+    /// The part of an element that belongs to one of the two grids.
     struct Side {
         typename Grid::Element element{};  ///< undefined where the side ends
         bool ends = false;                 ///< a leaf of the grid lies above the element
-        /// Of the frame at the corners; not a number where its field has no value.
+        /// Values of the frame at the corners of the element; not a number where its field has
+        /// none.
         std::array<Real, static_cast<std::size_t>(max_corners* components)> value{};
     };
     struct Element {
