@@ -20,18 +20,9 @@ void NodeEtas::refuse(double eta) {
     throw InvalidInput("the measure of a node is not a usable number: " + std::to_string(eta));
 }
 
-detail::NodeStops NodeEtas::saturate(const Spread& spread, bool dense) {
+detail::NodeTable<std::uint16_t> NodeEtas::saturate(const Spread& spread) {
     maxima_.saturate([&](std::uint16_t stop, float reach) { return hand_on(spread, stop, reach); });
-    detail::NodeStops stops;
-    std::vector<std::uint16_t> saturated = maxima_.take();
-    if (dense) {
-        stops.dense = std::move(saturated);
-        return stops;
-    }
-    stops.sparse.reserve(saturated.size());
-    maxima_.for_each(
-        [&](NodeKey key, std::size_t node) { stops.sparse.insert(key, saturated[node]); });
-    return stops;
+    return maxima_.take_table();
 }
 
 double finite_offset(double offset) {
@@ -127,7 +118,7 @@ SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
     SourceVisitor<Real> visitor(walk, source, spread.slope > 0, etas);
     walk.run(visitor);
     source.finish(etas);
-    return {etas.saturate(spread, dense != 0), spread};
+    return {etas.saturate(spread), spread};
 }
 
 template SweptIndicator sweep_source(const Hierarchy<float>&, EtaSource&, const Spread&);

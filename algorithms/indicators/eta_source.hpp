@@ -27,7 +27,7 @@ public:
     }
     NodeMaxima<std::uint16_t>& maxima() { return maxima_; }
     /// Sweeps, and moves the numbers out.
-    detail::NodeStops saturate(const Spread& spread, bool dense);
+    detail::NodeTable<std::uint16_t> saturate(const Spread& spread);
 
 private:
     [[noreturn]] static void refuse(double eta);

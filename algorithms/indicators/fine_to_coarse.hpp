@@ -20,6 +20,7 @@
 
 #include <indicators/node_numbers.hpp>
 #include <indicators/splits_by_level.hpp>
+#include <nestgrid/algorithms/detail/node_table.hpp>
 
 namespace nestgrid::engine {
 
@@ -117,6 +118,17 @@ public:
     const SplitsByLevel& splits() const { return splits_; }
     /// Moves the numbers out: by key where keys are dense, else in the order of for_each().
     std::vector<Number> take() { return std::move(values_); }
+    /// Moves the numbers out, by key.
+    detail::NodeTable<Number> take_table() {
+        detail::NodeTable<Number> table;
+        if (numbers_.are_keys()) {
+            table.dense = take();
+            return table;
+        }
+        table.sparse.reserve(values_.size());
+        for_each([&](NodeKey key, std::size_t node) { table.sparse.insert(key, values_[node]); });
+        return table;
+    }
     /// Calls function(key, number of the node), where keys are not dense.
     template <class Function>
     void for_each(Function&& function) const {

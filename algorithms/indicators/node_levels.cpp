@@ -53,14 +53,8 @@ NodeLevels::NodeLevels(const Hierarchy<float>& hierarchy) {
             add_element(walk, view, split, heights);
         });
     heights.saturate();
-    std::vector<std::int16_t> saturated = heights.take();
-    if (hierarchy.facts().node_count != 0) {
-        dense_ = std::move(saturated);
-        std::ranges::replace(dense_, unknown, std::int16_t{0});
-        return;
-    }
-    sparse_.reserve(saturated.size());
-    heights.for_each([&](NodeKey key, std::size_t node) { sparse_.insert(key, saturated[node]); });
+    heights_ = heights.take_table();
+    std::ranges::replace(heights_.dense, unknown, std::int16_t{0});
 }
 
 }  // namespace nestgrid

@@ -27,10 +27,6 @@ NodeMask SweptIndicator::stops_at_most(const Rule&, std::span<const NodeKey> nod
     return mask;
 }
 
-std::size_t SweptIndicator::memory_bytes() const {
-    return stops_.dense.size() * sizeof(std::uint16_t) + stops_.sparse.memory_bytes();
-}
-
 namespace {
 
 /// The numbers of a user's measure.

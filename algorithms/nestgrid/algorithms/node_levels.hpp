@@ -12,11 +12,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/detail/node_table.hpp>
 #include <nestgrid/detail/erase.hpp>
-#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
 
@@ -29,11 +28,7 @@ public:
     explicit NodeLevels(const Hierarchy<float>& hierarchy);
 
     /// The level of a node, 0 on the coarse grid; -1 at nodes where no element may stop.
-    int level(NodeKey node) const {
-        if (!dense_.empty()) return -dense_[static_cast<std::size_t>(node)];
-        const std::int16_t* height = sparse_.find(node);
-        return height == nullptr ? 0 : -*height;
-    }
+    int level(NodeKey node) const { return -heights_.at(node); }
     /// 2^-level.
     double stop(NodeKey node) const override { return std::ldexp(1.0, -level(node)); }
 
@@ -41,8 +36,7 @@ public:
     Threshold deeper_than(int deepest) const { return {this, std::ldexp(1.0, -deepest - 1)}; }
 
 private:
-    std::vector<std::int16_t> dense_;  // minus the level, by key
-    KeyTable<NodeKey, std::int16_t> sparse_;
+    detail::NodeTable<std::int16_t> heights_;  // minus the level
 };
 
 }  // namespace nestgrid

@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/algorithms/detail/node_table.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
@@ -46,36 +47,20 @@ struct MeasuredSplit {
 /// several elements make a node, the greatest of their numbers counts.
 using Measure = std::function<void(const MeasuredSplit& split, std::span<double> eta)>;
 
-namespace detail {
-
-/// One bfloat16 for every node.
-struct NodeStops {
-    std::vector<std::uint16_t> dense;  ///< by node, where keys are dense; else empty
-    KeyTable<NodeKey, std::uint16_t> sparse;
-
-    std::uint16_t at(NodeKey node) const {
-        if (!dense.empty()) return dense[static_cast<std::size_t>(node)];
-        const std::uint16_t* stop = sparse.find(node);
-        return stop == nullptr ? std::uint16_t{0} : *stop;
-    }
-};
-
-}  // namespace detail
-
 /// An indicator that keeps eta for every node. Movable; functions that measure return it.
 class SweptIndicator final : public Indicator {
 public:
-    SweptIndicator(detail::NodeStops stops, const Spread& spread)
+    SweptIndicator(detail::NodeTable<std::uint16_t> stops, const Spread& spread)
         : stops_{std::move(stops)}, spread_{spread} {}
 
     double stop(NodeKey node) const override { return bfloat16_value(stops_.at(node)); }
     NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> nodes,
                            double epsilon) const override;
     Spread spread() const override { return spread_; }
-    std::size_t memory_bytes() const;
+    std::size_t memory_bytes() const { return stops_.memory_bytes(); }
 
 private:
-    detail::NodeStops stops_;
+    detail::NodeTable<std::uint16_t> stops_;  // bfloat16
     Spread spread_;
 };
 
