@@ -28,32 +28,7 @@ fail() {
 # What the commands call head.nii.gz and part.poly.
 "$4" "$work" || exit 1
 cp v.nii.gz head.nii.gz
-cat >part.poly <<'END'
-8 3 0 0
-1 0 0 0
-2 1 0 0
-3 1 1 0
-4 0 1 0
-5 0 0 1
-6 1 0 1
-7 1 1 1
-8 0 1 1
-6 0
-1
-4 1 2 3 4
-1
-4 5 6 7 8
-1
-4 1 2 6 5
-1
-4 2 3 7 6
-1
-4 3 4 8 7
-1
-4 4 1 5 8
-0
-0
-END
+cp "$source/docs/examples/grids/cube.poly" part.poly
 
 # The commands of a page, one a line.
 commands() {

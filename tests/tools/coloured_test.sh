@@ -6,10 +6,6 @@
 # Arguments: the program, the maker of volumes.
 . "$(dirname "$0")/functions.sh"
 
-run() {
-    "$program" "$@" >out 2>err || fail "$*: $(cat err)"
-    [ ! -s err ] || fail "$*: wrote to standard error: $(cat err)"
-}
 expect() {
     awk -v got="$(value "$1")" -v wanted="$2" -v name="$1" 'BEGIN {
         if (got == "" || (got - wanted)^2 > 1e-10 * (1 + wanted^2)) {
@@ -52,27 +48,7 @@ run isolines v.vti --axis z --at 17 --count 4 -o l.vtp
 grep -q 'Name="value"' l.vtp || fail "isolines without values"
 
 # In the unit cube, the plane x = 0.3 and lines on it by another field and by expressions.
-cat >cube.smesh <<'END'
-8 3 0 0
-1 0 0 0
-2 1 0 0
-3 1 1 0
-4 0 1 0
-5 0 0 1
-6 1 0 1
-7 1 1 1
-8 0 1 1
-6 0
-4 1 2 3 4
-4 5 6 7 8
-4 1 2 6 5
-4 2 3 7 6
-4 3 4 8 7
-4 4 1 5 8
-0
-0
-END
-run mesh cube.smesh --family bisection --field x --field 2*z --refine 6 -o cube.nestgrid
+run mesh "$cube" --family bisection --field x --field 2*z --refine 6 -o cube.nestgrid
 [ "$(grep -c '^field' out)" = 2 ] || fail "not two fields: $(cat out)"
 for by in 2*z 2*y z+y; do
     for threshold in 0 1%; do
@@ -158,7 +134,7 @@ refused 1 'dimension 2, not 3' isolines ramp.pgm --on-surface 25 --by x --count 
 refused 1 'with-isosurface is not a finite' slice v.vti --axis z --at 1 --with-isosurface inf -o x.vtp
 refused 1 'slice without an isosurface' slice v.vti --axis z --at 1 --with-isosurface 9 --max-triangles 9
 refused 2 '--with-isosurface' slice v.vti --axis z --at 1 --with-isosurface 9 --cap
-refused 1 "names 'x' twice" mesh cube.smesh --family bisection --field x --field x -o x.nestgrid
+refused 1 "names 'x' twice" mesh "$cube" --family bisection --field x --field x -o x.nestgrid
 refused 1 'one in space' height v.vti --scale 1
 refused 1 'scale is 0' height ramp.pgm --scale nan
 refused 1 'max-triangles is for grids of dimension 3' surface ramp.pgm --max-triangles 5

@@ -7,6 +7,8 @@
 set -uo pipefail
 program=$1
 work=$(mktemp -d)
+# Six faces of the unit cube.
+cube=$(cd "$(dirname "$0")/../../docs/examples/grids" && pwd)/cube.poly
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 "$2" "$work" || exit 1
 cd "$work" || exit 1
@@ -18,6 +20,12 @@ fail() {
     failures=$((failures + 1))
 }
 value() { awk -v name="$1" '$1 == name { print $2 }' out; }
+
+# run ARGUMENTS...: ends well, and says nothing on stderr; what it prints is in the file `out`.
+run() {
+    "$program" "$@" >out 2>err || fail "$*: $(cat err)"
+    [ ! -s err ] || fail "$*: wrote to standard error: $(cat err)"
+}
 
 # refused STATUS PATTERN ARGUMENTS...: one line on stderr, no output, no file.
 refused() {
