@@ -3,6 +3,7 @@
 #include <limits>
 #include <string>
 
+#include <levels/bfloat16_search.hpp>
 #include <levels/draw.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/error.hpp>
@@ -46,10 +47,7 @@ public:
             within = beyond;
             beyond = halved(within);
         }
-        while (within - beyond > 1) {
-            const auto middle = static_cast<std::uint16_t>((within + beyond) / 2);
-            (fits(middle) ? within : beyond) = middle;
-        }
+        least_that_fits(beyond, within, [this](std::uint16_t code) { return fits(code); });
         return best_;
     }
 
