@@ -11,6 +11,7 @@ struct Options {
     SurfaceOptions surface;
     LensText lens;
     bool outlines = false;
+    double colour_tolerance = 0;
 };
 
 }  // namespace
@@ -22,6 +23,7 @@ Command add_boundary(CLI::App& program) {
     add_surface_options(*boundary, o->surface);
     add_lens_options(*boundary, o->lens);
     boundary->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
+    add_colour_option(*boundary, o->colour_tolerance);
     return {boundary, [o] {
                 const nestgrid::detail::Everywhere everywhere;
                 draw_coloured(o->input, o->surface,
@@ -29,6 +31,7 @@ Command add_boundary(CLI::App& program) {
                                .cap = true,
                                .outlines = o->outlines,
                                .empty = "the hierarchy has no boundary",
-                               .lens = parse(o->lens)});
+                               .lens = parse(o->lens),
+                               .colour_tolerance = o->colour_tolerance});
             }};
 }

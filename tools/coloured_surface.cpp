@@ -14,6 +14,7 @@
 #include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/outlines.hpp>
+#include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/detail/geometry.hpp>
@@ -70,6 +71,9 @@ public:
         if (!in_space && !options.budgets.empty()) {
             throw nestgrid::InvalidInput("--max-triangles is for grids of dimension 3");
         }
+        if (what.colour_tolerance > 0 && !options.budgets.empty()) {
+            throw nestgrid::InvalidInput("--max-triangles excludes --colour-tolerance");
+        }
         if (what.lens && !options.budgets.empty()) {
             throw nestgrid::InvalidInput("--max-triangles with --lens is for isosurfaces");
         }
@@ -118,8 +122,19 @@ private:
     }
 
     nestgrid::Slice draw_exactly() const {
-        if (what_.function == nullptr) return triangles();
-        return slice(hierarchy_, *what_.function, {.cap = what_.cap}, executor_);
+        nestgrid::Slice drawn = what_.function == nullptr ? triangles()
+                                                          : slice(hierarchy_, *what_.function,
+                                                                  {.cap = what_.cap}, executor_);
+        refine(drawn.surface);
+        return drawn;
+    }
+    /// Makes colours follow the data.
+    /// \param with the criterion and the bounds that the surface was drawn with, or nothing
+    template <class... With>
+    void refine(nestgrid::Surface<3>& surface, const With&... with) const {
+        if (what_.colour_tolerance > 0) {
+            refine_colours(surface, hierarchy_, what_.colour_tolerance, with...);
+        }
     }
     nestgrid::Slice draw_within(std::uint64_t budget) const {
         const nestgrid::HierarchicalIndicator& offsets = indicators_->offsets();
@@ -147,6 +162,8 @@ private:
         } else {
             drawn.slice = triangles(criterion, bounds);
         }
+        refine(drawn.slice.surface, criterion, bounds);
+        if (!drawn.isosurface.attributes.empty()) refine(drawn.isosurface, criterion, bounds);
     }
 
     /// The grid of dimension 2.
@@ -361,6 +378,14 @@ void draw_time(double t, const nestgrid::Hierarchy<Real>& hierarchy,
 }
 
 }  // namespace
+
+void add_colour_option(CLI::App& command, double& tolerance) {
+    command
+        .add_option("--colour-tolerance", tolerance,
+                    "split triangles until colours follow the data within this, in units of the "
+                    "data")
+        ->check(positive_number);
+}
 
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what) {
     check(options);

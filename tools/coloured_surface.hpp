@@ -27,7 +27,12 @@ struct ColouredSurface {
     std::vector<double> values{};
     int value_count = 0;
     std::optional<LensRequest> lens{};
+    /// Triangles are split until colours follow the data within this; 0 splits none.
+    double colour_tolerance = 0;
 };
+
+/// Adds the option for ColouredSurface::colour_tolerance.
+void add_colour_option(CLI::App& command, double& tolerance);
 
 /// Draws, writes, paints and prints the surface at each threshold or budget.
 /// \throw nestgrid::IoError, nestgrid::InvalidInput, nestgrid::GridError

@@ -4,7 +4,9 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include <nestgrid/error.hpp>
 
@@ -12,12 +14,19 @@
 
 namespace fs = std::filesystem;
 
+std::string positive_number(const std::string& text) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (*end == '\0' && number > 0 && std::isfinite(number)) return "";
+    return "'" + text + "' is no positive finite number";
+}
+
 void add_read_limit(CLI::App& command, double& seconds) {
     command
         .add_option("--read-limit", seconds,
                     "seconds after which a file is refused that is still being read; default: 60 "
                     "and one for each MB, ten times that for .poly and .smesh")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number);
 }
 
 void add_input_options(CLI::App& command, Input& input) {

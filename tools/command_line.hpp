@@ -31,6 +31,9 @@ Command add_probe(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_mesh(CLI::App& program);
 
+/// A check for options: what is wrong with the text of a positive finite number, or nothing.
+std::string positive_number(const std::string& text);
+
 /// A file with a field.
 struct Input {
     std::filesystem::path path;

@@ -16,6 +16,7 @@ struct Options {
     LensText lens;
     double scale = 0;
     bool outlines = false;
+    double colour_tolerance = 0;
 };
 
 Command add(CLI::App& program, const char* name, const char* what, bool lifted) {
@@ -27,6 +28,8 @@ Command add(CLI::App& program, const char* name, const char* what, bool lifted) 
     command->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     if (lifted) {
         command->add_option("--scale", o->scale, "heights in multiples of the field")->required();
+    } else {
+        add_colour_option(*command, o->colour_tolerance);
     }
     return {command, [o, lifted] {
                 if (!std::isfinite(o->scale) || (lifted && o->scale == 0)) {
@@ -37,7 +40,8 @@ Command add(CLI::App& program, const char* name, const char* what, bool lifted) 
                                .outlines = o->outlines,
                                .flat = false,
                                .empty = "the hierarchy has no elements",
-                               .lens = parse(o->lens)});
+                               .lens = parse(o->lens),
+                               .colour_tolerance = o->colour_tolerance});
             }};
 }
 

@@ -19,6 +19,7 @@ struct Options {
     TimeOptions time;
     bool cap = false;
     bool outlines = false;
+    double colour_tolerance = 0;
     std::optional<double> isovalue;
 };
 
@@ -37,11 +38,15 @@ void run_slice(Options& o) {
                                .flat = f.flat,
                                .normal = f.normal,
                                .empty = "the slice does not meet the domain",
-                               .lens = parse(o.lens)};
+                               .lens = parse(o.lens),
+                               .colour_tolerance = o.colour_tolerance};
     check(o.time, o.surface);
     if (o.time.in_use()) {
         require_offsets_alone(o.surface.projection, what.lens);
         if (o.isovalue) throw nestgrid::InvalidInput("--with-isosurface is for one input");
+        if (o.colour_tolerance > 0) {
+            throw nestgrid::InvalidInput("--colour-tolerance is for one input");
+        }
         draw_coloured(o.input, o.surface, what, o.time);
     } else {
         draw_coloured(o.input, o.surface, what);
@@ -67,5 +72,6 @@ Command add_slice(CLI::App& program) {
         "or the outside");
     cap->excludes(with_isosurface);
     slice->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
+    add_colour_option(*slice, o->colour_tolerance);
     return {slice, [o] { run_slice(*o); }};
 }

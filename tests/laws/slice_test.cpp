@@ -11,6 +11,7 @@
 #include "closedness.hpp"
 #include "cut_cube.hpp"
 #include "families.hpp"
+#include "is_affine.hpp"
 #include "refusal.hpp"
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
@@ -57,24 +58,6 @@ bool on_one_side(const Point& a, const Point& b) {
         }
     }
     return false;
-}
-
-/// Whether each element is an affine image of its reference element, so that its faces are plane.
-template <class Grid>
-bool is_affine(const Grid& grid) {
-    for (std::size_t i = 0; i < grid.coarse_count(); ++i) {
-        const auto coarse = grid.coarse(i);
-        if (coarse.shape != Shape::hexahedron) continue;
-        const auto& x = coarse.corners;
-        for (std::size_t k = 0; k < 8; ++k) {
-            Point sum = x[0];
-            for (std::size_t d = 0; d < 3; ++d) {
-                if ((k >> d & 1U) != 0) sum = sum + (x[std::size_t{1} << d] - x[0]);
-            }
-            if (norm(sum - x[k]) > 1e-12) return false;
-        }
-    }
-    return true;
 }
 
 /// Expects the plane's part in the unit cube, once where faces of elements are plane: on others the

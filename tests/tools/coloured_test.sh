@@ -110,6 +110,27 @@ run probe v.vti --points points.csv -o values.csv
 [ ! -s out ] || fail "probe -o wrote to standard output"
 [ "$(sed -n 3p values.csv)" = '100,0,0,,' ] || fail "a point outside: $(cat values.csv)"
 
+# Colours in prisms follow the data: more triangles, in the same place.
+printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n' >plane.off
+run mesh plane.off --family prism --layers 1 --direction 0,0,1 --field 'x*z+y*z' --refine 1 -o prisms.nestgrid
+oblique=(prisms.nestgrid --plane 0.5,0.5,0.3,0.3,0.5,0.81)
+run slice "${oblique[@]}"
+area=$(value area)
+triangles=$(value triangles)
+for tolerance in 0.05 0.005; do
+    run slice "${oblique[@]}" --colour-tolerance $tolerance
+    [ "$(value triangles)" -gt "$triangles" ] || fail "--colour-tolerance $tolerance splits nothing"
+    triangles=$(value triangles)
+    expect area "$area"
+    expect open_edges 0
+done
+run boundary prisms.nestgrid --colour-tolerance 0.05 --threshold 0.1
+expect area 6
+for number in 0 -1 nan inf x; do
+    refused 2 'colour-tolerance: .* no positive finite number' slice "${oblique[@]}" --colour-tolerance $number
+done
+refused 1 'excludes --colour-tolerance' slice "${oblique[@]}" --colour-tolerance 1 --max-triangles 9
+
 refused 1 'needs one of --plane' slice v.vti -o x.vtp
 refused 1 'needs one of --plane' slice v.vti --axis x --at 1 --sphere 1,1,1,1
 refused 1 'normal of the plane is 0' slice v.vti --plane 1,2,3,0,0,0 -o x.vtp
