@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "extract.hpp"
+
+#include <cmath>
+
+#include <nestgrid/algorithms/blended.hpp>
+#include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid::python {
+
+namespace {
+
+/// The criteria of a projection for one source, and what they are made of.
+class Criteria {
+public:
+    /// \throw InvalidInput where a number is out of range
+    Criteria(const Source& source, const Projection& projection, const Executor& executor)
+        : projection_{projection} {
+        if (!(projection.blend >= 1) || !std::isfinite(projection.blend)) {
+            throw InvalidInput("blend is not a finite number of at least 1");
+        }
+        if (!(threshold() >= 0)) throw InvalidInput("the threshold is not a number >= 0");
+        chosen_ = source.choose(projection.indicator, projection.blend, executor);
+        if (!projection.lens) return;
+        if (!(projection.lens->slope >= 0) || !std::isfinite(projection.lens->slope)) {
+            throw InvalidInput("the slope of the lens is not a finite number >= 0");
+        }
+        sizes_ = source.sizes(projection.lens->slope);
+    }
+
+    double threshold() const {
+        const double any = std::numeric_limits<double>::infinity();
+        return projection_.threshold.value_or(projection_.lens ? any : 0);
+    }
+    const Bounds& bounds() const { return *chosen_.bounds; }
+
+    /// Calls function(criterion_at) with the function that makes a criterion of a threshold.
+    template <class Function>
+    auto with_criteria(const Function& function) const {
+        const Indicator* const indicator = chosen_.indicator.get();
+        if (projection_.blend == 1) {
+            return in_lens(function, [=](double t) { return Threshold(indicator, t); });
+        }
+        return in_lens(function, [=, blend = projection_.blend](double t) {
+            return Blended(indicator, t, blend);
+        });
+    }
+
+    /// The offsets of the field, which bound it.
+    /// \throw InvalidInput between frames
+    const HierarchicalIndicator& offsets() const {
+        if (chosen_.offsets != nullptr) return *chosen_.offsets;
+        throw InvalidInput(
+            "max_triangles is not for a time between frames: give a threshold, or keep frames at a "
+            "number of triangles by a FrameBudget");
+    }
+
+private:
+    template <class Function, class CriterionAt>
+    auto in_lens(const Function& function, const CriterionAt& criterion_at) const {
+        if (!projection_.lens) return function(criterion_at);
+        const LensRequest& request = *projection_.lens;
+        const Lens lens(sizes_.get(), request.distance,
+                        {.finest = request.finest, .coarsest = request.coarsest});
+        return function([&](double t) { return criterion_at(t) && lens; });
+    }
+
+    const Projection& projection_;
+    ChosenIndicator chosen_;
+    std::shared_ptr<const SweptIndicator> sizes_;  // where there is a lens
+};
+
+IsosurfaceOptions options_of(const SurfaceRequest& request, const Progress& progress) {
+    return {.normals = request.normals,
+            .cap = request.cap,
+            .elements = request.elements,
+            .at_nodes = request.at_nodes,
+            .progress = progress};
+}
+
+Drawn drawn_of(Isosurface<3> result, double threshold) {
+    return {std::move(result.surface), result.counts, result.error_bound, threshold,
+            result.cancelled};
+}
+
+bool is_default(const Projection& projection) {
+    return projection.indicator == "offset" && projection.blend == 1 && !projection.lens;
+}
+
+}  // namespace
+
+Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
+                      const Projection& projection, const Executor& executor,
+                      const Progress& progress) {
+    return with(source.hierarchy(), [&](const auto& hierarchy) {
+        hierarchy.facts().require_dimension(3);
+        const Criteria criteria(source, projection, executor);
+        const IsosurfaceOptions options = options_of(request, progress);
+        return criteria.with_criteria([&](const auto& criterion_at) {
+            double threshold = criteria.threshold();
+            if (projection.max_triangles > 0) {
+                threshold = find_threshold<3>(hierarchy, isovalue, criterion_at, criteria.offsets(),
+                                              projection.max_triangles, options, executor)
+                                .threshold;
+            }
+            return drawn_of(isosurface<3>(hierarchy, isovalue, criterion_at(threshold),
+                                          criteria.bounds(), options, executor),
+                            threshold);
+        });
+    });
+}
+
+Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
+                 const Projection& projection, const Executor& executor, const Progress& progress) {
+    return with(source.hierarchy(), [&](const auto& hierarchy) {
+        IsosurfaceOptions options = options_of(request, progress);
+        const bool everything =
+            projection.threshold.value_or(0) == 0 && projection.max_triangles == 0;
+        if (is_default(projection) && everything) {
+            return drawn_of(slice(hierarchy, function, options, executor), 0);
+        }
+        const Criteria criteria(source, projection, executor);
+        if (projection.max_triangles > 0) {
+            if (!is_default(projection)) {
+                throw InvalidInput(
+                    "max_triangles of a slice is for offsets alone: leave out lens, indicator and "
+                    "blend, or use a FrameBudget");
+            }
+            options.max_triangles = projection.max_triangles;
+            const double nan = std::numeric_limits<double>::quiet_NaN();
+            return drawn_of(slice(hierarchy, function, criteria.offsets(), options, executor), nan);
+        }
+        return criteria.with_criteria([&](const auto& criterion_at) {
+            return drawn_of(slice(hierarchy, function, criterion_at(criteria.threshold()),
+                                  criteria.bounds(), options, executor),
+                            criteria.threshold());
+        });
+    });
+}
+
+DrawnLines draw_isolines(const Source& source, std::span<const double> values,
+                         const Projection& projection, const Executor& executor,
+                         const Progress& progress) {
+    return with(source.hierarchy(), [&](const auto& hierarchy) {
+        hierarchy.facts().require_dimension(2);
+        const Criteria criteria(source, projection, executor);
+        return criteria.with_criteria([&](const auto& criterion_at) {
+            Isolines result =
+                isolines(hierarchy, values, criterion_at(criteria.threshold()), criteria.bounds(),
+                         IsosurfaceOptions{.progress = progress}, executor);
+            return DrawnLines{std::move(result.lines), result.counts, result.error_bound,
+                              criteria.threshold(), result.cancelled};
+        });
+    });
+}
+
+Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
+                        bool elements, const Projection& projection, const Executor& executor,
+                        const Progress& progress) {
+    return with(source.hierarchy(), [&](const auto& hierarchy) {
+        hierarchy.facts().require_dimension(2);
+        const Criteria criteria(source, projection, executor);
+        const ShadingOptions options{
+            .flatness = flatness, .elements = elements, .progress = progress};
+        return criteria.with_criteria([&](const auto& criterion_at) {
+            const auto s = criterion_at(criteria.threshold());
+            Shading result =
+                scale ? height_field(hierarchy, *scale, s, criteria.bounds(), options, executor)
+                      : shading(hierarchy, s, criteria.bounds(), options, executor);
+            return Drawn{std::move(result.surface), result.counts, result.error_bound,
+                         criteria.threshold(), result.cancelled};
+        });
+    });
+}
+
+ProbeResult probe_points(const Source& source, std::span<const Point> points,
+                         const Projection& projection, const Executor& executor) {
+    return with(source.hierarchy(), [&](const auto& hierarchy) {
+        if (is_default(projection) && projection.threshold.value_or(0) == 0) {
+            return probe(hierarchy, points);
+        }
+        const Criteria criteria(source, projection, executor);
+        return criteria.with_criteria([&](const auto& criterion_at) {
+            return probe(hierarchy, points, criterion_at(criteria.threshold()), criteria.bounds());
+        });
+    });
+}
+
+}  // namespace nestgrid::python

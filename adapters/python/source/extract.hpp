@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What Python asks of a source, behind one call each. Nothing here knows Python.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include <nestgrid/algorithms/domains.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/isolines.hpp>
+#include <nestgrid/algorithms/level_function.hpp>
+#include <nestgrid/algorithms/probe.hpp>
+
+#include "source.hpp"
+
+namespace nestgrid::python {
+
+/// A lens by the size of elements.
+struct LensRequest {
+    Distance distance;
+    double finest = 0;
+    double coarsest = std::numeric_limits<double>::infinity();
+    double slope = 0.5;
+};
+
+/// Which criterion decides.
+struct Projection {
+    /// Nothing: 0, or with a lens infinity, so that the lens decides alone.
+    std::optional<double> threshold;
+    std::uint64_t max_triangles = 0;  ///< 0: no limit
+    std::string indicator = "offset";
+    double blend = 1;
+    std::optional<LensRequest> lens;
+};
+
+/// Called now and then; returning false ends the extraction.
+using Progress = std::function<bool(const TraversalCounts&)>;
+
+struct Drawn {
+    Surface<3> surface;
+    TraversalCounts counts;
+    double error_bound = 0;
+    double threshold = 0;
+    bool cancelled = false;
+};
+struct DrawnLines {
+    Polylines lines;
+    TraversalCounts counts;
+    double error_bound = 0;
+    double threshold = 0;
+    bool cancelled = false;
+};
+
+struct SurfaceRequest {
+    bool normals = true;
+    bool cap = false;
+    bool elements = false;
+    bool at_nodes = false;
+};
+
+/// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), for a blend below 1, and
+///        for a triangle budget between frames
+Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
+                      const Projection& projection, const Executor& executor,
+                      const Progress& progress);
+/// \throw InvalidInput, GridError as slices(), and for a triangle budget under another criterion
+///        than offsets alone
+Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
+                 const Projection& projection, const Executor& executor, const Progress& progress);
+/// \throw InvalidInput, GridError as isolines()
+DrawnLines draw_isolines(const Source& source, std::span<const double> values,
+                         const Projection& projection, const Executor& executor,
+                         const Progress& progress);
+/// \param scale nothing: the shading in the plane
+/// \throw InvalidInput, GridError as height_field()
+Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
+                        bool elements, const Projection& projection, const Executor& executor,
+                        const Progress& progress);
+/// \throw InvalidInput, GridError as probe()
+ProbeResult probe_points(const Source& source, std::span<const Point> points,
+                         const Projection& projection, const Executor& executor);
+
+}  // namespace nestgrid::python

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "volume.hpp"
+
+namespace nestgrid::python {
+
+std::shared_ptr<FrameSource> make_frames_2(const std::vector<Samples>& frames) {
+    return with_sample_type(frames.front().type, [&]<class Sample>(Sample) {
+        return std::shared_ptr<FrameSource>(std::make_shared<VolumeFrames<2, Sample>>(frames));
+    });
+}
+
+}  // namespace nestgrid::python

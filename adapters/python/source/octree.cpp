@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Arrays of leaves as a forest of linear octrees (LinearOctree), sorted here.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <nestgrid/adapters/linear_octree.hpp>
+
+#include "source.hpp"
+
+namespace nestgrid::python {
+
+namespace {
+
+/// A leaf in its tree, in cells of the finest level.
+struct Leaf {
+    std::int64_t x;
+    std::int64_t y;
+    std::int64_t z;
+    std::int64_t level;
+};
+
+/// A place of the lattice of the finest level, over all trees.
+using Place = std::array<std::int64_t, 3>;
+
+/// A forest of which leaves may be hidden.
+template <int dim>
+class MaskedOctree : public LinearOctree<dim, Leaf> {
+public:
+    using Base = LinearOctree<dim, Leaf>;
+    using Element = typename Base::Element;
+
+    /// \param masked for each leaf of the whole array, or nothing
+    MaskedOctree(CoarseGrid coarse, std::vector<std::span<const Leaf>> trees, int max_level,
+                 std::span<const std::uint8_t> masked)
+        : Base(std::move(coarse), std::move(trees), max_level) {
+        if (masked.empty()) return;
+        hidden_.push_back(0);
+        for (const std::uint8_t each : masked) hidden_.push_back(hidden_.back() + (each != 0));
+    }
+
+    Hidden hidden(const Element& e) const {
+        if (hidden_.empty()) return Hidden::not_at_all;
+        const std::size_t count = hidden_[e.last] - hidden_[e.first];
+        if (count == 0) return Hidden::not_at_all;
+        return count == e.last - e.first ? Hidden::wholly : Hidden::partly;
+    }
+
+private:
+    std::vector<std::size_t> hidden_;  // among the first leaves, so many
+};
+
+/// What a forest is made of, sorted.
+template <int dim>
+class Forest {
+public:
+    static constexpr auto size = static_cast<std::size_t>(dim);
+    static constexpr std::size_t corners = std::size_t{1} << size;
+
+    /// \throw InvalidInput for leaves outside of all trees, and for arrays that do not fit together
+    explicit Forest(const OctreeArrays& arrays) : max_level_{arrays.max_level} {
+        check(arrays);
+        read_leaves(arrays);
+        sort_leaves();
+        make_coarse(arrays);
+        number_corners();
+        masked_.resize(arrays.masked.size());
+        for (std::size_t i = 0; i < masked_.size(); ++i) masked_[i] = arrays.masked[order_[i]];
+        arrays.values.size() == leaves_.size() ? average(arrays.values) : gather(arrays.values);
+    }
+
+    MaskedOctree<dim> grid() const {
+        std::vector<std::span<const Leaf>> trees;
+        for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
+            trees.push_back(std::span(leaves_).subspan(first_[t], first_[t + 1] - first_[t]));
+        }
+        return {coarse_, std::move(trees), max_level_, masked_};
+    }
+    std::span<const std::uint32_t> element_nodes() const { return nodes_; }
+    std::span<const double> values() const { return values_; }
+
+private:
+    static void check(const OctreeArrays& arrays);
+    void read_leaves(const OctreeArrays& arrays);
+    void sort_leaves();
+    void make_coarse(const OctreeArrays& arrays);
+    void number_corners();
+    void average(std::span<const double> of_leaves);
+    void gather(std::span<const double> of_corners);
+
+    Place corner(std::size_t leaf, std::size_t c) const {
+        const std::int64_t width = std::int64_t{1} << (max_level_ - leaves_[leaf].level);
+        Place p = low_[leaf];
+        for (std::size_t d = 0; d < size; ++d) p[d] += (c >> d & 1U) != 0 ? width : 0;
+        return p;
+    }
+    std::string name_of(std::size_t leaf) const { return "leaf " + std::to_string(order_[leaf]); }
+
+    int max_level_;
+    std::vector<Leaf> leaves_;        // sorted by tree and along the Morton curve
+    std::vector<Place> low_;          // of each
+    std::vector<std::size_t> order_;  // its place in the arrays
+    std::vector<std::size_t> tree_;   // its tree
+    std::vector<std::size_t> first_;  // leaf of each tree that has leaves, and the end
+    std::array<std::size_t, 3> trees_{1, 1, 1};
+    CoarseGrid coarse_;
+    std::vector<std::uint32_t> nodes_;  // corners of the leaves
+    std::vector<double> values_;        // at the nodes
+    std::vector<std::uint8_t> masked_;
+};
+
+template <int dim>
+void Forest<dim>::check(const OctreeArrays& arrays) {
+    const std::size_t count = arrays.leaves.size() / (size + 1);
+    if (count == 0) throw InvalidInput("the octree has no leaves");
+    if (count > std::size_t{1} << 28) throw InvalidInput("the octree has more than 2^28 leaves");
+    if (arrays.values.size() != count && arrays.values.size() != corners * count) {
+        throw InvalidInput("there are " + std::to_string(arrays.values.size()) + " values for " +
+                           std::to_string(count) + " leaves: one for each, or " +
+                           std::to_string(corners) + " for the corners of each, are needed");
+    }
+    if (!arrays.masked.empty() && arrays.masked.size() != count) {
+        throw InvalidInput("the mask has " + std::to_string(arrays.masked.size()) +
+                           " entries for " + std::to_string(count) + " leaves");
+    }
+    if (arrays.max_level < 0 || arrays.max_level > 20) {
+        throw InvalidInput("max_level is " + std::to_string(arrays.max_level) + ", not 0 to 20");
+    }
+    for (const double value : arrays.values) {
+        if (!std::isfinite(value)) throw InvalidInput("a value of the octree is not finite");
+    }
+}
+
+template <int dim>
+void Forest<dim>::read_leaves(const OctreeArrays& arrays) {
+    const std::size_t count = arrays.leaves.size() / (size + 1);
+    for (std::size_t d = 0; d < size; ++d) {
+        if (arrays.coordinates[d].size() < 2) {
+            throw InvalidInput("the trees need at least 2 coordinates along each direction");
+        }
+        trees_[d] = arrays.coordinates[d].size() - 1;
+    }
+    const std::int64_t in_tree = (std::int64_t{1} << max_level_) - 1;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::span<const std::int64_t> row = arrays.leaves.subspan(i * (size + 1), size + 1);
+        Place low{0, 0, 0};
+        std::size_t tree = 0;
+        for (std::size_t d = size; d-- > 0;) {
+            low[d] = row[d];
+            const std::int64_t at = row[d] >> max_level_;
+            if (row[d] < 0 || static_cast<std::size_t>(at) >= trees_[d]) {
+                throw InvalidInput("leaf " + std::to_string(i) + " lies outside all trees");
+            }
+            tree = tree * trees_[d] + static_cast<std::size_t>(at);
+        }
+        if (row[size] < 0 || row[size] > max_level_) {
+            throw InvalidInput("leaf " + std::to_string(i) + " has the level " +
+                               std::to_string(row[size]) + ", not 0 to " +
+                               std::to_string(max_level_));
+        }
+        low_.push_back(low);
+        tree_.push_back(tree);
+        leaves_.push_back({low[0] & in_tree, low[1] & in_tree, low[2] & in_tree, row[size]});
+    }
+}
+
+/// The order of two places on the Morton curve.
+bool before(const Place& a, const Place& b, std::size_t size) {
+    std::size_t decides = size - 1;
+    for (std::size_t d = size - 1; d-- > 0;) {
+        const auto most = static_cast<std::uint64_t>(a[decides] ^ b[decides]);
+        const auto here = static_cast<std::uint64_t>(a[d] ^ b[d]);
+        if (most < here && most < (most ^ here)) decides = d;  // its highest bit is higher
+    }
+    return a[decides] < b[decides];
+}
+
+template <class T>
+void reorder(std::vector<T>& all, const std::vector<std::size_t>& order) {
+    std::vector<T> sorted(all.size());
+    for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = all[order[i]];
+    all = std::move(sorted);
+}
+
+template <int dim>
+void Forest<dim>::sort_leaves() {
+    order_.resize(leaves_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+        return tree_[a] != tree_[b] ? tree_[a] < tree_[b] : before(low_[a], low_[b], size);
+    });
+    reorder(leaves_, order_);
+    reorder(low_, order_);
+    reorder(tree_, order_);
+    for (std::size_t i = 0; i < tree_.size(); ++i) {
+        if (i == 0 || tree_[i] != tree_[i - 1]) first_.push_back(i);
+    }
+    first_.push_back(tree_.size());
+}
+
+template <int dim>
+void Forest<dim>::make_coarse(const OctreeArrays& arrays) {
+    const auto coordinate = [&](std::size_t d, std::size_t i) {
+        return d < size ? arrays.coordinates[d][i]
+                        : (arrays.coordinates[d].empty() ? 0.0 : arrays.coordinates[d].front());
+    };
+    std::vector<Point> corners_of_trees;
+    coarse_.dimension = dim;
+    std::vector<std::uint32_t> number((trees_[0] + 1) * (trees_[1] + 1) * (trees_[2] + 1),
+                                      ~std::uint32_t{0});
+    for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
+        const std::size_t tree = tree_[first_[t]];
+        const std::array<std::size_t, 3> at{tree % trees_[0], tree / trees_[0] % trees_[1],
+                                            tree / trees_[0] / trees_[1]};
+        std::array<std::uint32_t, corners> nodes;
+        for (std::size_t c = 0; c < corners; ++c) {
+            const std::array<std::size_t, 3> x{at[0] + (c & 1U), at[1] + (c >> 1U & 1U),
+                                               at[2] + (c >> 2U & 1U)};
+            std::uint32_t& node = number[x[0] + (trees_[0] + 1) * (x[1] + (trees_[1] + 1) * x[2])];
+            if (node == ~std::uint32_t{0}) {
+                node = static_cast<std::uint32_t>(corners_of_trees.size());
+                corners_of_trees.push_back(
+                    {coordinate(0, x[0]), coordinate(1, x[1]), coordinate(2, x[2])});
+            }
+            nodes[c] = node;
+        }
+        coarse_.add(dim == 2 ? Shape::quadrilateral : Shape::hexahedron, nodes);
+    }
+    coarse_.nodes = Coordinates(std::move(corners_of_trees));
+}
+
+template <int dim>
+void Forest<dim>::number_corners() {
+    std::vector<std::size_t> all(corners * leaves_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const auto key = [&](std::size_t i) {
+        const Place p = corner(i / corners, i % corners);
+        return std::array{p[2], p[1], p[0]};
+    };
+    std::sort(all.begin(), all.end(),
+              [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+    nodes_.resize(all.size());
+    std::uint32_t node = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i > 0 && key(all[i]) != key(all[i - 1])) ++node;
+        nodes_[all[i]] = node;
+    }
+    values_.resize(node + std::size_t{1});
+}
+
+/// The mean of the leaves around a node, hidden ones aside, as CellAverages has it.
+template <int dim>
+void Forest<dim>::average(std::span<const double> of_leaves) {
+    std::vector<std::uint32_t> count(values_.size());
+    const auto add = [&](double& mean, std::uint32_t& number, double value) {
+        mean = ++number == 1 ? value : mean + (value - mean) / number;
+    };
+    double elsewhere = 0;
+    std::uint32_t shown = 0;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+        if (!masked_.empty() && masked_[i] != 0) continue;
+        const double value = of_leaves[order_[i]];
+        add(elsewhere, shown, value);
+        for (std::size_t c = 0; c < corners; ++c) {
+            const std::uint32_t node = nodes_[corners * i + c];
+            add(values_[node], count[node], value);
+        }
+    }
+    for (std::size_t node = 0; node < values_.size(); ++node) {
+        if (count[node] == 0) values_[node] = elsewhere;
+    }
+}
+
+template <int dim>
+void Forest<dim>::gather(std::span<const double> of_corners) {
+    std::vector<bool> set(values_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const std::uint32_t node = nodes_[i];
+        const double value = of_corners[corners * order_[i / corners] + i % corners];
+        if (set[node] && values_[node] != value) {
+            throw InvalidInput("corner " + std::to_string(i % corners) + " of " +
+                               name_of(i / corners) + " has the value " + std::to_string(value) +
+                               ", but another leaf has " + std::to_string(values_[node]) +
+                               " at the same place");
+        }
+        set[node] = true;
+        values_[node] = value;
+    }
+}
+
+template <int dim>
+class OctreeSource final : public PrerolledSource {
+public:
+    using Grid = MaskedOctree<dim>;
+    using Field = LinearOctreeField<Grid, double, std::uint32_t>;
+
+    explicit OctreeSource(const OctreeArrays& arrays)
+        : forest_(arrays),
+          grid_(forest_.grid()),
+          field_(grid_, forest_.element_nodes(), forest_.values()),
+          hierarchy_(grid_, field_) {}
+
+    AnyHierarchy hierarchy() const override { return &hierarchy_; }
+
+private:
+    Forest<dim> forest_;
+    Grid grid_;
+    Field field_;
+    detail::ErasedHierarchy<Grid, Field> hierarchy_;
+};
+
+}  // namespace
+
+std::unique_ptr<Source> make_octree(const OctreeArrays& arrays) {
+    if (arrays.dimension == 2) return std::make_unique<OctreeSource<2>>(arrays);
+    return std::make_unique<OctreeSource<3>>(arrays);
+}
+
+}  // namespace nestgrid::python

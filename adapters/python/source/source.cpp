@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "source.hpp"
+
+namespace nestgrid::python {
+
+Prerolls& PrerolledSource::prerolls() const {
+    std::call_once(once_, [&] { prerolls_ = std::make_unique<Prerolls>(hierarchy()); });
+    return *prerolls_;
+}
+
+ChosenIndicator PrerolledSource::choose(const std::string& name, double blend,
+                                        const Executor& executor) const {
+    if (name == "offset") {
+        const auto offsets = prerolls().offsets(blend, executor);
+        return {offsets, offsets, offsets.get()};
+    }
+    const auto swept = prerolls().swept(name, blend, executor);
+    const auto bounds = prerolls().offsets(1, executor);
+    return {swept, bounds, bounds.get()};
+}
+
+std::array<double, 2> PrerolledSource::range(const Executor& executor) const {
+    const auto offsets = prerolls().offsets(1, executor);
+    return {offsets->least(), offsets->greatest()};
+}
+
+}  // namespace nestgrid::python

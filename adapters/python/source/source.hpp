@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Fields as Python hands them over: of arrays, of octrees, of files, and between frames.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "prerolls.hpp"
+
+namespace nestgrid::python {
+
+/// What thresholds are compared with, and what bounds the data.
+struct ChosenIndicator {
+    std::shared_ptr<const Indicator> indicator;
+    std::shared_ptr<const Bounds> bounds;
+    /// Where offsets decide that belong to this field alone, the bounds themselves; else null.
+    const HierarchicalIndicator* offsets = nullptr;
+};
+
+/// A field on a hierarchy. Safe for several threads.
+class Source {
+public:
+    Source(const Source&) = delete;
+    Source& operator=(const Source&) = delete;
+    virtual ~Source() = default;
+
+    virtual AnyHierarchy hierarchy() const = 0;
+    int dimension() const {
+        return with(hierarchy(), [](const auto& each) { return each.facts().dimension; });
+    }
+    /// \param name offset, or as Prerolls::swept()
+    /// \param blend at least 1
+    /// \throw InvalidInput as Prerolls
+    virtual ChosenIndicator choose(const std::string& name, double blend,
+                                   const Executor& executor) const = 0;
+    virtual std::shared_ptr<const SweptIndicator> sizes(double slope) const = 0;
+    /// The least and the greatest value.
+    virtual std::array<double, 2> range(const Executor& executor) const = 0;
+    /// Drops all prerolls: values have changed.
+    virtual void clear() = 0;
+
+protected:
+    Source() = default;
+};
+
+/// A source with prerolls of its own, which is all but one between frames.
+class PrerolledSource : public Source {
+public:
+    ChosenIndicator choose(const std::string& name, double blend,
+                           const Executor& executor) const final;
+    std::shared_ptr<const SweptIndicator> sizes(double slope) const final {
+        return prerolls().sizes(slope);
+    }
+    std::array<double, 2> range(const Executor& executor) const final;
+    void clear() final { prerolls().clear(); }
+
+protected:
+    Prerolls& prerolls() const;
+
+private:
+    mutable std::once_flag once_;
+    mutable std::unique_ptr<Prerolls> prerolls_;
+};
+
+/// Frames of one volume, at times.
+class FrameSource {
+public:
+    virtual ~FrameSource() = default;
+    /// The field at a time; keeps the frames alive.
+    /// \throw InvalidInput where there is not one finite weight for each frame
+    virtual std::unique_ptr<Source> at(std::span<const float> weights,
+                                       const Executor& executor) = 0;
+    virtual void clear() = 0;
+};
+
+/// Samples in memory, borrowed, without gaps.
+struct Samples {
+    std::string type;        ///< uint8 ... float64, as NumPy calls it
+    std::vector<int> shape;  ///< 2 or 3 numbers, in the order of the indices
+    std::vector<int> order;  ///< the indices, that which moves fastest in memory first
+    Point spacing{1, 1, 1};  ///< along the indices
+    Point origin{0, 0, 0};
+    const void* data = nullptr;
+};
+
+/// The samples as the corners of bisected triangles or tetrahedra. Coordinate d of space runs along
+/// index d of the array, whatever the order in memory is.
+/// \throw InvalidInput as LatticeBisection, and for a type that no field takes
+std::unique_ptr<Source> make_volume(const Samples& samples);
+/// \param frames of one shape, order, type and place, one at least
+/// \throw InvalidInput likewise
+std::shared_ptr<FrameSource> make_frames(const std::vector<Samples>& frames);
+
+/// Leaves and values of an octree or quadtree, copied.
+struct OctreeArrays {
+    int dimension = 3;
+    int max_level = 0;
+    std::span<const std::int64_t> leaves;  ///< x, y, (z,) level of each, in finest cells
+    std::span<const double> values;        ///< one for each leaf, or for each corner of each
+    std::span<const std::uint8_t> masked;  ///< for each leaf, or nothing
+    /// Coordinates of the corners of the trees along each direction.
+    std::array<std::vector<double>, 3> coordinates;
+};
+/// \throw InvalidInput where the leaves are no forest, or values at one node differ
+std::unique_ptr<Source> make_octree(const OctreeArrays& arrays);
+
+/// \param array name of the field; may be empty where there is only one
+/// \throw InvalidInput where there is no such field
+/// \throw IoError where the file cannot be read, is damaged, or holds no hierarchy
+std::unique_ptr<Source> load_hierarchy(const std::filesystem::path& path, const std::string& array);
+
+}  // namespace nestgrid::python

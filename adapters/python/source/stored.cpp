@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Hierarchies in .nestgrid files.
+#include <algorithm>
+
+#include <nestgrid/adapters/bisection_grid.hpp>
+#include <nestgrid/adapters/octree_grid.hpp>
+#include <nestgrid/adapters/prism_grid.hpp>
+#include <nestgrid/adapters/red_green.hpp>
+#include <nestgrid/adapters/stored_file.hpp>
+
+#include "source.hpp"
+
+namespace nestgrid::python {
+
+namespace {
+
+/// The place of the field with a name; an empty name stands for the only one.
+/// \throw InvalidInput where there is none
+std::size_t index_of(const std::vector<NamedField>& fields, const std::string& name) {
+    if (fields.empty()) throw InvalidInput("the hierarchy has no field");
+    if (name.empty() && fields.size() == 1) return 0;
+    std::string known;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        if (fields[i].name == name) return i;
+        known += (i == 0 ? "'" : ", '") + fields[i].name + "'";
+    }
+    throw InvalidInput(name.empty() ? "there are several fields, choose one by array: " + known
+                                    : "there is no field '" + name + "', only " + known);
+}
+
+template <class Family>
+class Stored final : public PrerolledSource {
+public:
+    using Grid = StoredGrid<Family>;
+    using Field = NodeField<Grid, double>;
+
+    Stored(StoredHierarchy<Family> stored, const std::string& array)
+        : stored_(std::move(stored)),
+          field_(stored_.grid, stored_.fields[index_of(stored_.fields, array)].values),
+          hierarchy_(stored_.grid, field_) {}
+
+    AnyHierarchy hierarchy() const override { return &hierarchy_; }
+
+private:
+    StoredHierarchy<Family> stored_;
+    Field field_;
+    detail::ErasedHierarchy<Grid, Field> hierarchy_;
+};
+
+/// Nothing where the file holds another family.
+template <class Family>
+std::unique_ptr<Source> load_family(const HierarchyHeader& header,
+                                    const std::filesystem::path& path, const std::string& array) {
+    if (header.family != Family::name || header.dimension != Family::dimension ||
+        header.corners != Family::max_corners) {
+        return nullptr;
+    }
+    return std::make_unique<Stored<Family>>(read_hierarchy<Family>(path), array);
+}
+
+template <class... Families>
+std::unique_ptr<Source> load_one_of(const std::filesystem::path& path, const std::string& array) {
+    const HierarchyHeader header = read_hierarchy_header(path);
+    std::unique_ptr<Source> source;
+    static_cast<void>(((source = load_family<Families>(header, path, array)) || ...));
+    if (source) return source;
+    throw IoError("'" + path.string() + "' holds a family that is not known: " + header.family);
+}
+
+}  // namespace
+
+std::unique_ptr<Source> load_hierarchy(const std::filesystem::path& path,
+                                       const std::string& array) {
+    return load_one_of<Bisection<2>, Bisection<3>, RedGreen<2, 3>, RedGreen<2, 4>, RedGreen<3, 4>,
+                       RedGreen<3, 8>, Octree<2>, Octree<3>, Prism>(path, array);
+}
+
+}  // namespace nestgrid::python

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Samples in memory as a bisected lattice. The array's order in memory becomes a permutation of
+// the lattice's directions: nothing is copied, and results lie where the indices say.
+#pragma once
+
+#include <memory>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/between.hpp>
+#include <nestgrid/algorithms/key_frames.hpp>
+
+#include "source.hpp"
+
+namespace nestgrid::python {
+
+/// Where samples lie in space.
+/// \throw InvalidInput where the array has another dimension than dim
+template <int dim>
+LatticeGeometry<dim> lattice_geometry(const Samples& samples) {
+    LatticeGeometry<dim> geometry;
+    geometry.origin = samples.origin;
+    geometry.direction = {};
+    for (std::size_t d = 0; d < 3; ++d) {
+        const bool has_index = d < static_cast<std::size_t>(dim);
+        const std::size_t index = has_index ? static_cast<std::size_t>(samples.order[d]) : d;
+        geometry.direction[index][d] = 1;
+        geometry.spacing[d] = samples.spacing[index];
+        if (has_index) geometry.samples[d] = samples.shape[index];
+    }
+    return geometry;
+}
+
+template <class Sample, class Grid>
+LatticeField<Grid, Sample> lattice_field(const Grid& grid, const Samples& samples) {
+    return {grid,
+            std::span(static_cast<const Sample*>(samples.data), std::size_t{grid.sample_count()})};
+}
+
+template <int dim, class Sample>
+class Volume final : public PrerolledSource {
+public:
+    using Grid = LatticeBisection<dim>;
+
+    explicit Volume(const Samples& samples)
+        : grid_(lattice_geometry<dim>(samples)),
+          field_{lattice_field<Sample>(grid_, samples)},
+          hierarchy_{erase(grid_, field_)} {}
+
+    AnyHierarchy hierarchy() const override { return &hierarchy_; }
+
+private:
+    Grid grid_;
+    LatticeField<Grid, Sample> field_;
+    decltype(erase(std::declval<const Grid&>(),
+                   std::declval<const LatticeField<Grid, Sample>&>())) hierarchy_;
+};
+
+/// Frames of a lattice, each with a preroll of its own.
+template <int dim, class Sample>
+class VolumeFrames final : public FrameSource,
+                           public std::enable_shared_from_this<VolumeFrames<dim, Sample>> {
+public:
+    using Grid = LatticeBisection<dim>;
+    using Field = LatticeField<Grid, Sample>;
+
+    explicit VolumeFrames(const std::vector<Samples>& frames)
+        : grid_(lattice_geometry<dim>(frames.front())) {
+        for (const Samples& frame : frames) {
+            fields_.push_back(std::make_unique<Field>(lattice_field<Sample>(grid_, frame)));
+            erased_.push_back(std::make_unique<Erased>(grid_, *fields_.back()));
+            prerolls_.push_back(std::make_unique<Prerolls>(erased_.back().get()));
+        }
+    }
+
+    std::unique_ptr<Source> at(std::span<const float> weights, const Executor& executor) override {
+        return std::make_unique<At>(this->shared_from_this(), weights, executor);
+    }
+    void clear() override {
+        for (const auto& each : prerolls_) each->clear();
+    }
+
+private:
+    using Erased = detail::ErasedHierarchy<Grid, Field>;
+
+    /// The field between frames.
+    class At final : public Source {
+    public:
+        At(std::shared_ptr<const VolumeFrames> frames, std::span<const float> weights,
+           const Executor& executor)
+            : frames_{std::move(frames)},
+              between_(frames_->fields(), weights),
+              hierarchy_(frames_->grid_, between_),
+              prerolls_{frames_->offsets(executor)},
+              indicator_{std::make_shared<KeyFrames>(pointers(), weights)} {}
+
+        AnyHierarchy hierarchy() const override { return &hierarchy_; }
+        /// \throw InvalidInput for anything but offsets without blending
+        ChosenIndicator choose(const std::string& name, double blend,
+                               const Executor& /*executor*/) const override {
+            if (name != "offset" || blend != 1) {
+                throw InvalidInput(
+                    "between frames thresholds are those of offsets: leave out indicator and "
+                    "blend");
+            }
+            return {indicator_, indicator_, nullptr};
+        }
+        std::shared_ptr<const SweptIndicator> sizes(double slope) const override {
+            return frames_->prerolls_.front()->sizes(slope);
+        }
+        std::array<double, 2> range(const Executor& /*executor*/) const override {
+            return {indicator_->least(), indicator_->greatest()};
+        }
+        /// Prerolls are those of the frames.
+        void clear() override {}
+
+    private:
+        std::vector<const HierarchicalIndicator*> pointers() const {
+            std::vector<const HierarchicalIndicator*> result;
+            for (const auto& each : prerolls_) result.push_back(each.get());
+            return result;
+        }
+
+        std::shared_ptr<const VolumeFrames> frames_;
+        Between<Field> between_;
+        detail::ErasedHierarchy<Grid, Between<Field>> hierarchy_;
+        std::vector<std::shared_ptr<const HierarchicalIndicator>> prerolls_;
+        std::shared_ptr<const KeyFrames> indicator_;
+    };
+
+    std::vector<const Field*> fields() const {
+        std::vector<const Field*> result;
+        for (const auto& each : fields_) result.push_back(each.get());
+        return result;
+    }
+    std::vector<std::shared_ptr<const HierarchicalIndicator>> offsets(
+        const Executor& executor) const {
+        std::vector<std::shared_ptr<const HierarchicalIndicator>> result;
+        for (const auto& each : prerolls_) result.push_back(each->offsets(1, executor));
+        return result;
+    }
+
+    Grid grid_;
+    std::vector<std::unique_ptr<Field>> fields_;
+    std::vector<std::unique_ptr<Erased>> erased_;
+    std::vector<std::unique_ptr<Prerolls>> prerolls_;
+};
+
+/// Calls function(Sample{}) with the type of a name.
+/// \throw InvalidInput for a type that no field takes
+template <class Function>
+auto with_sample_type(const std::string& type, const Function& function) {
+    if (type == "uint8") return function(std::uint8_t{});
+    if (type == "int8") return function(std::int8_t{});
+    if (type == "uint16") return function(std::uint16_t{});
+    if (type == "int16") return function(std::int16_t{});
+    if (type == "uint32") return function(std::uint32_t{});
+    if (type == "int32") return function(std::int32_t{});
+    if (type == "uint64") return function(std::uint64_t{});
+    if (type == "int64") return function(std::int64_t{});
+    if (type == "float32") return function(float{});
+    if (type == "float64") return function(double{});
+    throw InvalidInput("samples of the type " + type +
+                       " are not taken: convert them to integers of 8 to 64 bits, float32 or "
+                       "float64");
+}
+
+// Each is compiled by itself.
+std::unique_ptr<Source> make_volume_2(const Samples& samples);
+std::unique_ptr<Source> make_volume_3(const Samples& samples);
+std::shared_ptr<FrameSource> make_frames_2(const std::vector<Samples>& frames);
+std::shared_ptr<FrameSource> make_frames_3(const std::vector<Samples>& frames);
+
+}  // namespace nestgrid::python

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "volume.hpp"
+
+namespace nestgrid::python {
+
+std::unique_ptr<Source> make_volume_3(const Samples& samples) {
+    return with_sample_type(samples.type, [&]<class Sample>(Sample) {
+        return std::unique_ptr<Source>(std::make_unique<Volume<3, Sample>>(samples));
+    });
+}
+
+}  // namespace nestgrid::python

@@ -1,0 +1,264 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Wrong arguments get a sentence; what the functions have in common."""
+import inspect
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import nestgrid
+
+CUBE = np.arange(27, dtype=float).reshape(3, 3, 3)
+
+
+def refused(sentence, kind=nestgrid.InvalidInput):
+    return pytest.raises(kind, match=sentence)
+
+
+@pytest.mark.parametrize(
+    "array",
+    [CUBE[::2], CUBE[:, ::2], CUBE[:, :, ::-1], np.zeros((3, 4, 8))[..., :4], CUBE[::-1]],
+)
+def test_gaps(array):
+    with refused("has gaps.*numpy.ascontiguousarray"):
+        nestgrid.Volume(array)
+    nestgrid.Volume(np.ascontiguousarray(array))
+
+
+def test_wrong_volumes():
+    for array in (np.zeros(3), np.zeros((2, 2, 2, 2)), np.float64(1)):
+        with refused("is no volume: it needs 2 or 3"):
+            nestgrid.Volume(array)
+    with refused("2 to 2\\^20 samples along each index, not 1"):
+        nestgrid.Volume(np.zeros((3, 1, 3)))
+    for dtype in (bool, np.float16, complex, ">f4", object, "U3"):
+        with refused("are not taken: convert them"):
+            nestgrid.Volume(np.zeros((3, 3, 3), dtype))
+    with refused("spacing has 2 numbers, but the array 3 indices"):
+        nestgrid.Volume(CUBE, spacing=(1, 1))
+    with refused("flat or not finite"):
+        nestgrid.Volume(CUBE, spacing=(1, 0, 1))
+    with refused("flat or not finite"):
+        nestgrid.Volume(CUBE, origin=(1, np.nan, 1))
+
+
+def test_values_that_are_no_numbers():
+    broken = CUBE.copy()
+    broken[1, 1, 1] = np.nan
+    with refused("nan"):
+        nestgrid.Volume(broken).isosurface(3)
+    with refused("nan"):
+        nestgrid.Volume(broken).range
+
+
+def test_wrong_arguments():
+    volume = nestgrid.Volume(CUBE)
+    with refused("isovalue is not a finite number"):
+        volume.isosurface(np.nan)
+    with refused("threshold is not a number >= 0"):
+        volume.isosurface(3, threshold=-1)
+    with refused("is none of offset, visual"):
+        volume.isosurface(3, indicator="ofset")
+    with refused("for curved grids"):
+        volume.isosurface(3, indicator="geometry")
+    with refused("blend is not a finite number of at least 1"):
+        volume.isosurface(3, blend=0.5)
+    with refused("max_triangles is 0"):
+        volume.isosurface(3, max_triangles=0)
+    with refused("even the coarsest|coarsest surface"):
+        volume.isosurface(3, max_triangles=1)
+    with refused("threads is -1"):
+        volume.isosurface(3, threads=-1)
+    with refused("one of plane, sphere and cylinder"):
+        volume.slice()
+    with refused("one of plane, sphere and cylinder"):
+        volume.slice(plane=((0, 0, 0), (1, 0, 0)), sphere=((0, 0, 0), 1))
+    with refused("the normal has 2 numbers, not 3"):
+        volume.slice(plane=((0, 0, 0), (1, 0)))
+    with refused("normal"):
+        volume.slice(plane=((0, 0, 0), (0, 0, 0)))
+    with refused("dimension"):
+        volume.isolines(3)
+    with refused("dimension"):
+        volume.height_field()
+    with refused("points have 2 coordinates, not 3"):
+        volume.probe([[1, 2]])
+    with refused("keep|elements"):
+        volume.isosurface(3).outlines()
+    with refused("attribute"):
+        volume.isosurface(3).isolines(1)
+    with refused("radius of a ball"):
+        volume.isosurface(3, lens=((0, 0, 0), -1))
+    with refused("slope of the lens"):
+        volume.isosurface(3, lens=nestgrid.Lens(nestgrid.ball((0, 0, 0), 1), slope=-1))
+    with refused("lens, indicator and blend"):
+        volume.slice(plane=((1, 1, 1), (1, 0, 0)), max_triangles=9, blend=2)
+    with pytest.raises(TypeError):
+        volume.isosurface("3")
+
+
+def test_wrong_octrees():
+    leaves = np.array([[x, y, z, 1] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+    nestgrid.Octree(leaves, np.zeros(8))
+    with refused("no array of integers"):
+        nestgrid.Octree(leaves.astype(float), np.zeros(8))
+    with refused("has no leaves"):
+        nestgrid.Octree(leaves[:0], np.zeros(0))
+    with refused("there are 7 values for 8 leaves"):
+        nestgrid.Octree(leaves, np.zeros(7))
+    with refused("do not fill it|leaves a gap"):
+        nestgrid.Octree(leaves[:7], np.zeros(7))
+    with refused("overlaps"):
+        nestgrid.Octree(np.vstack([leaves, leaves[:1]]), np.zeros(9))
+    with refused("not aligned to its level"):
+        nestgrid.Octree([[1, 0, 0, 0]], np.zeros(1), max_level=1)
+    with refused("outside all trees"):
+        nestgrid.Octree([[-1, 0, 0, 0]], np.zeros(1))
+    with refused("has the level -1|max_level is -1"):
+        nestgrid.Octree([[0, 0, 0, -1]], np.zeros(1))
+    with refused("not finite"):
+        nestgrid.Octree(leaves, np.full(8, np.inf))
+    with refused("at the same place"):
+        nestgrid.Octree(leaves, np.arange(64.0).reshape(8, 8))
+    with refused("mask has 3 entries for 8 leaves"):
+        nestgrid.Octree(leaves, np.zeros(8), masked=[0, 0, 1])
+
+
+def test_wrong_frames():
+    with refused("there are no frames"):
+        nestgrid.Frames([])
+    with refused("1 times, but 2 frames"):
+        nestgrid.Frames([CUBE, CUBE], times=[0])
+    with refused("frame 1 has another shape"):
+        nestgrid.Frames([CUBE, np.zeros((3, 3, 4))])
+    with refused("frame 1 has another order"):
+        nestgrid.Frames([CUBE, np.asfortranarray(CUBE)])
+    with refused("ascend"):
+        nestgrid.Frames([CUBE, CUBE], times=[1, 1])
+    frames = nestgrid.Frames([CUBE, CUBE + 1])
+    with refused("between|first and the last"):
+        frames.at(1.5)
+    with refused("use a FrameBudget|by a FrameBudget"):
+        frames.at(0.5).isosurface(13, max_triangles=1000)
+    with refused("leave out indicator and blend"):
+        frames.at(0.5).isosurface(13, indicator="visual")
+
+
+def test_errors_are_those_of_python(tmp_path):
+    assert issubclass(nestgrid.InvalidInput, ValueError)
+    assert issubclass(nestgrid.GridError, RuntimeError)
+    assert issubclass(nestgrid.IoError, OSError)
+    with refused("x.nestgrid", nestgrid.IoError):
+        nestgrid.load(tmp_path / "x.nestgrid")
+    (tmp_path / "damaged.nestgrid").write_bytes(b"nothing of the kind")
+    with refused("damaged.nestgrid", nestgrid.IoError):
+        nestgrid.load(tmp_path / "damaged.nestgrid")
+
+
+def test_saving_what_cannot_be_saved(tmp_path):
+    surface = nestgrid.Volume(CUBE).isosurface(3.5)
+    with refused("ends in none of .ply, .stl, .vtp"):
+        surface.save(tmp_path / "surface.png")
+    with refused("cannot be written", nestgrid.IoError):
+        surface.save(tmp_path / "nowhere" / "surface.ply")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_changed_values():
+    array = CUBE.copy()
+    volume = nestgrid.Volume(array)
+    assert volume.range == (0, 26)
+    array += 100
+    volume.changed()
+    assert volume.range == (100, 126)
+
+
+def test_frame_budget_keeps_a_number_of_triangles(gyroid):
+    noise = np.random.default_rng(4).normal(0, 0.2, gyroid.shape)
+    volume = nestgrid.Volume(gyroid + noise)
+    least, greatest = volume.range
+    budget = nestgrid.FrameBudget(8000, greatest - least)
+    for level in np.linspace(0, 0.5, 20):
+        surface = volume.isosurface(level, budget.threshold, normals=False)
+        budget.drawn(len(surface.triangles))
+    assert 0.9 * 8000 < len(surface.triangles) < 1.1 * 8000
+
+    def fits(threshold):
+        return len(volume.isosurface(0.5, threshold, normals=False).triangles) <= 8000
+
+    exact = volume.isosurface(0.5, max_triangles=8000).threshold
+    assert budget.settle(fits) == pytest.approx(exact, rel=0.01)
+    with refused("positive"):
+        nestgrid.FrameBudget(0, 1)
+
+
+def test_two_threads_at_once(gyroid):
+    expected = [nestgrid.Volume(gyroid).isosurface(0.1 * i, 0.1, threads=1) for i in range(8)]
+    volume = nestgrid.Volume(gyroid)
+    results = [None] * 8
+
+    def draw(first):
+        for i in range(first, 8, 2):
+            results[i] = volume.isosurface(0.1 * i, 0.1, threads=1 + first)
+
+    threads = [threading.Thread(target=draw, args=(first,)) for first in (0, 1)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for ours, theirs in zip(results, expected):
+        np.testing.assert_array_equal(ours.vertices, theirs.vertices)
+        np.testing.assert_array_equal(ours.triangles, theirs.triangles)
+
+
+def test_surfaces_are_closed_and_bounded(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    for threshold in (0, 0.05, 0.2, 0.8):
+        surface = volume.isosurface(0.1, threshold, cap=True)
+        report = surface.report()
+        assert report["closed"] and report["manifold"] and report["volume"] > 0
+        on_level = volume.isosurface(0.1, threshold)
+        # Vertices lie on edges, whose ends are off by the bound at most.
+        values = volume.probe(on_level.vertices)
+        assert np.abs(values - 0.1).max() <= on_level.error_bound * (1 + 1e-6) + 1e-6
+        length = np.linalg.norm(on_level.normals, axis=1)
+        np.testing.assert_allclose(length, 1, atol=1e-12)
+
+
+def test_lens_is_fine_inside_and_coarse_outside(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    centre, radius = (32, 32, 32), 10
+    surface = volume.isosurface(0, lens=(centre, radius))
+    full = volume.isosurface(0)
+    assert len(surface.triangles) < len(full.triangles) / 2
+
+    def inside(which):
+        middles = which.vertices[which.triangles].mean(axis=1)
+        return (np.linalg.norm(middles - centre, axis=1) < radius - 2).sum()
+
+    assert inside(surface) == inside(full)
+    two = nestgrid.ball(centre, 5) | nestgrid.box((0, 0, 0), (5, 5, 5))
+    assert len(volume.isosurface(0, lens=two).triangles) > 0
+
+
+def test_hints_and_help():
+    for name in nestgrid.__all__:
+        assert inspect.getdoc(getattr(nestgrid, name)), name
+    for kind in (nestgrid.Field, nestgrid.Frames, nestgrid.Surface, nestgrid.Lines):
+        for name, member in inspect.getmembers(kind):
+            if name.startswith("_"):
+                continue
+            assert inspect.getdoc(member), f"{kind.__name__}.{name}"
+            function = member.fget if isinstance(member, property) else member
+            assert "return" in function.__annotations__, f"{kind.__name__}.{name}"
+
+
+def test_time_of_import():
+    """Prints how long the import takes beside that of NumPy."""
+    program = "import numpy, time; t = time.perf_counter(); import nestgrid; "
+    program += "print(1e3 * (time.perf_counter() - t))"
+    out = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    print(f"import beside NumPy: {float(out.stdout):.0f} ms")

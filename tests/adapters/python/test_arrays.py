@@ -1,0 +1,187 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Results are those of C++, to the last bit."""
+import math
+import os
+
+import numpy as np
+import pytest
+
+import nestgrid
+
+SHAPE = (20, 17, 23)
+PLACE = {"spacing": (1, 0.5, 2), "origin": (-3, 1, 0.25)}
+FLAT = {"spacing": (1, 0.5), "origin": (-3, 1)}
+CENTRE = (4, 4, 20)
+TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64"]
+TYPES += ["float32", "float64"]
+
+
+def samples(reference, name, dtype, shape, order):
+    return reference.array(name + ".samples", dtype).reshape(shape, order=order.upper())
+
+
+@pytest.fixture(params=["c", "f"])
+def order(request):
+    return request.param
+
+
+@pytest.fixture
+def volume(reference, order):
+    return nestgrid.Volume(samples(reference, order, np.float32, SHAPE, order), **PLACE)
+
+
+ISOSURFACES = {
+    "full": {},
+    "coarse": {"threshold": 12},
+    "cap": {"threshold": 12, "cap": True, "at_nodes": True, "normals": False},
+    "budget": {"max_triangles": 1500},
+    "blend": {"threshold": 9, "blend": 2},
+    "visual": {"threshold": 0.4, "indicator": "visual"},
+    "numerical": {"threshold": 30, "indicator": "numerical"},
+    "wavelet": {"threshold": 8, "indicator": "wavelet"},
+    "lens": {"lens": nestgrid.Lens(nestgrid.ball(CENTRE, 3), finest=1)},
+}
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("name", ISOSURFACES)
+def test_isosurface(reference, volume, order, name, threads):
+    surface = volume.isosurface(40, threads=threads, **ISOSURFACES[name])
+    reference.same_surface(f"{order}_{name}", surface)
+
+
+SLICES = {
+    "plane": {"plane": (CENTRE, (1, 2, 0.5))},
+    "sphere": {"sphere": (CENTRE, 5), "threshold": 12},
+    "cylinder": {"cylinder": (CENTRE, (0, 0, 1), 2), "threshold": 12, "normals": True},
+    "budget_slice": {"plane": (CENTRE, (1, 2, 0.5)), "max_triangles": 300},
+}
+
+
+@pytest.mark.parametrize("name", SLICES)
+def test_slice(reference, volume, order, name):
+    reference.same_surface(f"{order}_{name}", volume.slice(**SLICES[name]))
+
+
+def test_isolines_on_a_slice(reference, volume, order):
+    surface = volume.slice(**SLICES["budget_slice"])
+    reference.same_lines(f"{order}_slice_lines", surface.isolines([-50, 0, 50]))
+
+
+def test_outlines(reference, volume, order):
+    edges = volume.isosurface(40, 12, normals=False, elements=True).outlines()
+    name = f"{order}_outlines"
+    vertices = reference.array(name + ".vertices", float, -1, 3)
+    assert len(vertices) > 0
+    np.testing.assert_array_equal(edges.vertices, vertices)
+    segments = reference.array(name + ".segments", np.uint32, -1, 2)
+    np.testing.assert_array_equal(edges.segments, segments)
+
+
+def test_probe(reference, volume, order):
+    points = reference.array(f"{order}_probe.points", float, -1, 3)
+    exact = reference.array(f"{order}_probe.values", float)
+    assert np.isnan(exact).any() and not np.isnan(exact).all()
+    np.testing.assert_array_equal(volume.probe(points), exact)
+    coarse = reference.array(f"{order}_probe_coarse.values", float)
+    np.testing.assert_array_equal(volume.probe(points, 12), coarse)
+    np.testing.assert_array_equal(
+        volume.probe(points.reshape(4, 25, 3), 12), coarse.reshape(4, 25)
+    )
+
+
+@pytest.mark.parametrize("cubic", [False, True])
+def test_frames(reference, order, cubic):
+    first, later = [
+        samples(reference, name, np.float32, SHAPE, order) for name in (order, order + "_later")
+    ]
+    frames = nestgrid.Frames([first, later, first], **PLACE)
+    surface = frames.at(0.7, cubic=cubic).isosurface(40, 12)
+    reference.same_surface(order + ("_cubic" if cubic else "_between"), surface)
+
+
+@pytest.mark.parametrize("dtype", TYPES)
+def test_types(reference, order, dtype):
+    middle = 100 if dtype.startswith("u") else 0
+    name = f"{dtype}_{order}"
+    volume = nestgrid.Volume(samples(reference, name, dtype, SHAPE, order), **PLACE)
+    reference.same_surface(name, volume.isosurface(middle + 9.5, 3))
+    flat = nestgrid.Volume(samples(reference, name + "_flat", dtype, SHAPE[:2], order), **FLAT)
+    assert flat.dimension == 2
+    reference.same_lines(name + "_lines", flat.isolines([middle, middle + 9.5], 2))
+    reference.same_surface(name + "_height", flat.height_field(0.1, 2))
+    reference.same_surface(name + "_shading", flat.height_field(None, 2))
+
+
+def octree_arrays(reference):
+    leaves = reference.array("octree.leaves", np.int64, -1, 4)
+    return leaves, reference.array("octree.samples", float, -1, 8)
+
+
+@pytest.mark.parametrize("shuffled", [False, True])
+def test_octree(reference, shuffled):
+    leaves, values = octree_arrays(reference)
+    if shuffled:
+        order = np.random.default_rng(1).permutation(len(leaves))
+        leaves, values = leaves[order], values[order]
+    octree = nestgrid.Octree(leaves, values, spacing=(0.5, 1, 0.25), origin=(1, 2, 3))
+    reference.same_surface("octree", octree.isosurface(0.3, 0.05))
+
+
+def test_octree_of_means(reference):
+    leaves, _ = octree_arrays(reference)
+    values = np.sin(np.arange(len(leaves)))
+    width = 2 ** (5 - leaves[:, 3])
+    corners = np.array([[c & 1, c >> 1 & 1, c >> 2] for c in range(8)])
+    places = (leaves[:, None, :3] + corners * width[:, None, None]).reshape(-1, 3)
+    _, node = np.unique(places, axis=0, return_inverse=True)
+    mean = np.bincount(node, np.repeat(values, 8)) / np.bincount(node)
+    by_cells = nestgrid.Octree(leaves, values)
+    by_corners = nestgrid.Octree(leaves, mean[node].reshape(-1, 8))
+    points = 32 * np.random.default_rng(2).random((500, 3))
+    np.testing.assert_allclose(by_cells.probe(points), by_corners.probe(points), atol=1e-13)
+
+
+def test_forest_and_mask():
+    """Two roots beside each other are one domain; a masked leaf leaves a hole."""
+    leaves = [[x, y, z, 1] for x in range(4) for y in range(2) for z in range(2)]
+    leaves = np.array(leaves)
+    volume = nestgrid.Volume(np.arange(5.0)[:, None, None] + np.zeros((5, 3, 3)))
+    corners = np.array([[c & 1, c >> 1 & 1, c >> 2] for c in range(8)])
+    values = (leaves[:, None, 0] + corners[:, 0]).astype(float)
+    octree = nestgrid.Octree(leaves, values)
+    area = octree.isosurface(1.5).report()["area"]
+    assert math.isclose(area, volume.isosurface(1.5).report()["area"]) and math.isclose(area, 4)
+    masked = leaves[:, 0] + 4 * leaves[:, 1] == 1
+    hole = nestgrid.Octree(leaves, values, masked=masked).isosurface(1.5).report()
+    assert math.isclose(hole["area"], 2)
+    moved = nestgrid.Octree(leaves, values, coordinates=[(0, 1, 5), (0, 2), (0, 4)])
+    assert math.isclose(moved.isosurface(1.5).report()["area"], 8)
+
+
+def test_stored(reference):
+    path = os.path.join(reference.folder, "stored.nestgrid")
+    reference.same_surface("stored", nestgrid.load(path, "wave").isosurface(0.3, 0.05))
+    with pytest.raises(nestgrid.InvalidInput, match="several fields.*'wave', 'again'"):
+        nestgrid.load(path)
+    with pytest.raises(nestgrid.InvalidInput, match="no field 'other'"):
+        nestgrid.load(path, "other")
+
+
+def test_any_order_of_indices(reference):
+    """The arrays of transposed indices lie in the same memory and have the same values."""
+    array = samples(reference, "c", np.float32, SHAPE, "c")
+    points = np.random.default_rng(3).random((200, 3)) * (19, 16, 22)
+    values = nestgrid.Volume(array).probe(points)
+    for axes in ((0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)):
+        turned = nestgrid.Volume(array.transpose(axes))
+        assert turned.isosurface(40, cap=True).report()["closed"]
+        volume = turned.isosurface(40, cap=True).report()["volume"]
+        assert math.isclose(volume, nestgrid.Volume(array).isosurface(40, cap=True).report()["volume"],
+                            rel_tol=0.02)
+        at_samples = np.floor(points)
+        np.testing.assert_array_equal(
+            turned.probe(at_samples[:, axes]), array[tuple(at_samples.astype(int).T)]
+        )
+    assert not np.isnan(values).any()
