@@ -7,11 +7,12 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/packages.sh
-need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}"
+need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}" \
+    "${python_packages[@]}" "${python_test_packages[@]}"
 
 # What was installed must be found.
 demanded=()
-for component in CGAL DEALII DUNE OPENMESH P4EST TBB TETGEN VTK; do
+for component in CGAL DEALII DUNE OPENMESH P4EST PYTHON TBB TETGEN VTK; do
     demanded+=(-D "NESTGRID_$component=ON")
 done
 log=$(mktemp)

@@ -9,6 +9,9 @@ test_packages=(libgtest-dev libcgal-dev libdeal.ii-dev libp4est-dev libdune-grid
     libdune-functions-dev libdune-istl-dev libalberta-dev openmpi-bin tetgen libopenvdb-dev libzstd-dev valgrind)
 picture_packages=(xvfb xauth libgl1-mesa-dri fonts-dejavu-core)
 data_packages=(mricron-data)
+python_packages=(python3-dev python3-numpy python3-pip python3-venv pybind11-dev python3-vtk9)
+python_test_packages=(python3-pytest python3-skimage)
+paraview_packages=(paraview)
 
 # Installs those of the named packages that are missing, as root or through sudo; without a
 # network nothing is asked for when all of them are there.

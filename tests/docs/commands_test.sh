@@ -7,13 +7,16 @@
 #                                       its pictures in docs/figures are shown by the same page
 #   build/release/docs/examples/figures is run, and makes a figure that the same page shows
 #   other programs of build/release     are programs of this build, with a test or benchmark of their own
+#   build/python/bin/python SCRIPT      is run with the package of this build, if there is one and a
+#                                       display, and makes a figure that the same page shows
 #   cmake -B ...                        configures
 #   cmake, ctest --preset NAME          name a preset
 #   bash SCRIPT                         name a script
 # Any other command fails the test, and so does a figure that no command makes.
-# Arguments: the source folder, the build folder, the program, the maker of volumes.
+# Arguments: the source folder, the build folder, the program, the maker of volumes, Python if it has
+# the package.
 set -uo pipefail
-source=$1 build=$2 program=$3
+source=$1 build=$2 program=$3 python=${5:-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -79,10 +82,20 @@ nestgrid() {
     run "$program" "${arguments[@]}"
 }
 
+# A figure that a script in Python makes, which the page shows.
+python() {
+    picture "$2"
+    [ -s "$source/$1" ] || fail "$page: there is no $1"
+    [ -n "$python" ] && command -v Xvfb >/dev/null || return 0
+    PYTHONPATH=$build/adapters/python/package run xvfb-run -a "$python" "$source/$1" "${2##*/}"
+    [ -s "${2##*/}" ] || fail "$page: $1 wrote no ${2##*/}"
+}
+
 check() {
     local file
     case "$1" in
     nestgrid) nestgrid "${@:2}" ;;
+    build/python/bin/python) python "${@:2}" ;;
     build/release/docs/examples/figures) figure "$2" "$3" ;;
     build/release/docs/examples/*)
         file=${1##*/}
