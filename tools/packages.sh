@@ -9,9 +9,26 @@ test_packages=(libgtest-dev libcgal-dev libdeal.ii-dev libp4est-dev libdune-grid
     libdune-functions-dev libdune-istl-dev libalberta-dev openmpi-bin tetgen libopenvdb-dev libzstd-dev valgrind)
 picture_packages=(xvfb xauth libgl1-mesa-dri fonts-dejavu-core)
 data_packages=(mricron-data)
-python_packages=(python3-dev python3-numpy python3-pip python3-venv pybind11-dev python3-vtk9)
-python_test_packages=(python3-pytest python3-skimage)
+python_packages=(python3-dev python3-numpy python3-pip python3-venv pybind11-dev)
+python_test_packages=(python3-pytest python3-skimage python3-vtk9)
 paraview_packages=(paraview)
+
+# Unpacks a package into a folder, unless it is there: one that conflicts with others installed.
+unpack_package() {
+    [ -d "$2" ] && return 0
+    local part
+    part=$(mktemp -d)
+    echo "unpacking $1"
+    if (cd "$part" && apt-get -qq download "$1" >log 2>&1 && dpkg -x ./*.deb unpacked); then
+        mkdir -p "$(dirname "$2")" && mv "$part/unpacked" "$2"
+    else
+        tail -n 5 "$part/log" >&2
+        rm -rf "$part"
+        echo "$1 could not be unpacked" >&2
+        return 1
+    fi
+    rm -rf "$part"
+}
 
 # Installs those of the named packages that are missing, as root or through sudo; without a
 # network nothing is asked for when all of them are there.

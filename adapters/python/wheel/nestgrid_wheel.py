@@ -31,14 +31,28 @@ def build_sdist(sdist_directory, config_settings=None):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    with open(os.path.join(ROOT, "pyproject.toml"), "rb") as file:
-        project = tomllib.load(file)["project"]
+    project = _project()
     tag = _tag()
     name = f"{project['name']}-{project['version']}-{tag}.whl"
     with tempfile.TemporaryDirectory() as prefix:
         _install((config_settings or {}).get("build-dir"), prefix)
         _pack(os.path.join(prefix, "site"), os.path.join(wheel_directory, name), project, tag)
     return name
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    project = _project()
+    info = f"{project['name']}-{project['version']}.dist-info"
+    os.mkdir(os.path.join(metadata_directory, info))
+    for name, data in _texts(project, _tag()).items():
+        with open(os.path.join(metadata_directory, info, name), "wb") as file:
+            file.write(data)
+    return info
+
+
+def _project():
+    with open(os.path.join(ROOT, "pyproject.toml"), "rb") as file:
+        return tomllib.load(file)["project"]
 
 
 def _tag():
@@ -82,8 +96,8 @@ def _gather(prefix):
             return
 
 
-def _pack(site, path, project, tag):
-    info = f"{project['name']}-{project['version']}.dist-info"
+def _texts(project, tag):
+    """What a wheel says about itself, by file."""
     with open(os.path.join(ROOT, project["readme"]), encoding="utf-8") as file:
         readme = file.read()
     metadata = [
@@ -99,9 +113,16 @@ def _pack(site, path, project, tag):
     ]
     wheel = ["Wheel-Version: 1.0", "Generator: nestgrid", "Root-Is-Purelib: false", f"Tag: {tag}"]
     with open(os.path.join(ROOT, project["license"]["file"]), "rb") as file:
-        texts = {"LICENSE": file.read()}
-    texts["METADATA"] = "\n".join(metadata).encode()
-    texts["WHEEL"] = ("\n".join(wheel) + "\n").encode()
+        licence = file.read()
+    return {
+        "LICENSE": licence,
+        "METADATA": "\n".join(metadata).encode(),
+        "WHEEL": ("\n".join(wheel) + "\n").encode(),
+    }
+
+
+def _pack(site, path, project, tag):
+    info = f"{project['name']}-{project['version']}.dist-info"
     record = []
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
 
@@ -115,7 +136,7 @@ def _pack(site, path, project, tag):
                 full = os.path.join(folder, each)
                 with open(full, "rb") as file:
                     add(os.path.relpath(full, site), file.read())
-        for name, data in texts.items():
+        for name, data in _texts(project, tag).items():
             add(f"{info}/{name}", data)
         record.append(f"{info}/RECORD,,")
         archive.writestr(f"{info}/RECORD", "\n".join(record) + "\n")

@@ -302,6 +302,9 @@ void write_stored() {
         values.push_back(wave(9 * x[0], 9 * x[1], 9 * x[2], 0));
     }
     write_hierarchy(grid, folder / "stored.nestgrid", {{"wave", values}, {"again", values}});
+    std::vector<double> later = values;
+    for (double& value : later) value = 0.5 * value + 0.2;
+    write_hierarchy(grid, folder / "later.nestgrid", {{"wave", later}});
     const NodeField field(grid, values);
     write_surface("stored", isosurface(grid, field, 0.3, {.threshold = 0.05, .normals = true}),
                   0.05);

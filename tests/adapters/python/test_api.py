@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Wrong arguments get a sentence; what the functions have in common."""
 import inspect
+import os
 import subprocess
 import sys
 import threading
@@ -262,3 +263,12 @@ def test_time_of_import():
     program += "print(1e3 * (time.perf_counter() - t))"
     out = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
     print(f"import beside NumPy: {float(out.stdout):.0f} ms")
+
+
+def test_paraview_is_started_where_it_finds_the_plugin():
+    program = "import inspect, os, nestgrid; inspect.getargspec; print(os.environ['PV_PLUGIN_PATH'])"
+    start = [sys.executable, "-m", "nestgrid.paraview"]
+    out = subprocess.run([*start, sys.executable, "-c", program], capture_output=True, check=True)
+    assert os.listdir(out.stdout.decode().strip()) == ["nestgrid_filters.py"]
+    failed = subprocess.run([*start, "no such program"], capture_output=True)
+    assert failed.returncode != 0 and b"cannot be run" in failed.stderr

@@ -1,0 +1,346 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plugin for ParaView: adaptive isosurfaces and slices, and a reader of .nestgrid files.
+
+python -m nestgrid.paraview starts ParaView so that it finds this file.
+"""
+from paraview import print_error
+from paraview.util.vtkAlgorithm import smproperty, smproxy
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
+
+import nestgrid
+from nestgrid.paraview._inputs import field_of
+
+INDICATORS = ("offset", "visual", "numerical", "wavelet")
+
+ARRAY = """
+<StringVectorProperty name="Scalars" command="SetInputArrayToProcess"
+    number_of_elements="5" element_types="0 0 0 0 2" animateable="0">
+  <ArrayListDomain name="array_list" attribute_type="Scalars">
+    <RequiredProperties><Property name="Input" function="Input"/></RequiredProperties>
+  </ArrayListDomain>
+  <Documentation>Numbers at the points of image data, or in the cells of a hyper tree
+  grid.</Documentation>
+</StringVectorProperty>
+"""
+ISOVALUE = """
+<DoubleVectorProperty name="Isovalue" command="SetIsovalue" number_of_elements="1"
+    default_values="0" panel_widget="double_range">
+  <ArrayRangeDomain name="range" default_mode="mid">
+    <RequiredProperties>
+      <Property name="Input" function="Input"/>
+      <Property name="Scalars" function="ArraySelection"/>
+    </RequiredProperties>
+  </ArrayRangeDomain>
+  <Documentation>The value on the surface, in the units of the data.</Documentation>
+</DoubleVectorProperty>
+"""
+PLANE = """
+<DoubleVectorProperty name="Origin" command="SetOrigin" number_of_elements="3"
+    default_values="0 0 0">
+  <BoundsDomain name="range" mode="normal" default_mode="mid">
+    <RequiredProperties><Property name="Input" function="Input"/></RequiredProperties>
+  </BoundsDomain>
+  <Documentation>A point on the plane.</Documentation>
+</DoubleVectorProperty>
+"""
+FREE_PLANE = """
+<DoubleVectorProperty name="Origin" command="SetOrigin" number_of_elements="3"
+    default_values="0 0 0">
+  <Documentation>A point on the plane.</Documentation>
+</DoubleVectorProperty>
+"""
+NORMAL = """
+<DoubleVectorProperty name="Normal" command="SetNormal" number_of_elements="3"
+    default_values="0 0 1">
+  <Documentation>Across the plane, of any length.</Documentation>
+</DoubleVectorProperty>
+"""
+PLANE_GROUP = """
+<PropertyGroup label="Plane" panel_widget="InteractivePlane">
+  <Property function="Origin" name="Origin"/>
+  <Property function="Normal" name="Normal"/>
+</PropertyGroup>
+"""
+THRESHOLD = """
+<DoubleVectorProperty name="Threshold" command="SetThreshold" number_of_elements="1"
+    default_values="0">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>Detail up to it is left out, in the units of the indicator; 0 draws
+  everything.</Documentation>
+</DoubleVectorProperty>
+"""
+MAX_TRIANGLES = """
+<IntVectorProperty name="MaxTriangles" command="SetMaxTriangles" number_of_elements="1"
+    default_values="0">
+  <IntRangeDomain name="range" min="0"/>
+  <Documentation>Finds the least threshold with no more triangles; 0 is no limit.</Documentation>
+</IntVectorProperty>
+"""
+INDICATOR = f"""
+<IntVectorProperty name="Indicator" command="SetIndicator" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <EnumerationDomain name="enum">
+    {"".join(f'<Entry value="{i}" text="{name}"/>' for i, name in enumerate(INDICATORS))}
+  </EnumerationDomain>
+  <Documentation>What the threshold limits: offsets from means, folds, jumps of the gradient or
+  wavelet coefficients.</Documentation>
+</IntVectorProperty>
+"""
+NORMALS = """
+<IntVectorProperty name="Normals" command="SetNormals" number_of_elements="1" default_values="1">
+  <BooleanDomain name="bool"/>
+  <Documentation>Normals from gradients of the data, for smooth shading.</Documentation>
+</IntVectorProperty>
+"""
+CAP = """
+<IntVectorProperty name="Cap" command="SetCap" number_of_elements="1" default_values="0">
+  <BooleanDomain name="bool"/>
+  <Documentation>Close the surface along the boundary of the domain.</Documentation>
+</IntVectorProperty>
+"""
+INPUT = """
+<InputProperty name="Input" command="SetInputConnection">
+  <ProxyGroupDomain name="groups"><Group name="sources"/><Group name="filters"/></ProxyGroupDomain>
+  <DataTypeDomain name="input_type" composite_data_supported="0">
+    <DataType value="vtkImageData"/><DataType value="vtkHyperTreeGrid"/>
+  </DataTypeDomain>
+  <InputArrayDomain name="one_component" attribute_type="any" number_of_components="1"/>
+</InputProperty>
+"""
+
+
+def properties(*texts):
+    """Adds properties in the order in which they are shown."""
+
+    def decorate(kind):
+        for text in texts:
+            kind = smproperty.xml(text)(kind)
+        return kind
+
+    return decorate
+
+
+class Drawing(VTKPythonAlgorithmBase):
+    """What filters and the reader have in common: options, and poly data as output."""
+
+    def __init__(self, inputs):
+        super().__init__(nInputPorts=inputs, nOutputPorts=1, outputType="vtkPolyData")
+        self._options = {"threshold": 0.0, "max_triangles": None, "indicator": "offset"}
+        self._isovalue = 0.0
+        self._plane = {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)}
+        self._surface_options = {"normals": True, "cap": False}
+
+    def _set(self, where, name, value):
+        if where[name] != value:
+            where[name] = value
+            self.Modified()
+
+    def SetThreshold(self, value):
+        self._set(self._options, "threshold", value)
+
+    def SetMaxTriangles(self, value):
+        self._set(self._options, "max_triangles", value or None)
+
+    def SetIndicator(self, number):
+        self._set(self._options, "indicator", INDICATORS[number])
+
+    def SetIsovalue(self, value):
+        if value != self._isovalue:
+            self._isovalue = value
+            self.Modified()
+
+    def SetNormals(self, value):
+        self._set(self._surface_options, "normals", bool(value))
+
+    def SetCap(self, value):
+        self._set(self._surface_options, "cap", bool(value))
+
+    def SetOrigin(self, x, y, z):
+        self._set(self._plane, "origin", (x, y, z))
+
+    def SetNormal(self, x, y, z):
+        self._set(self._plane, "normal", (x, y, z))
+
+    def isosurface(self, field):
+        return field.isosurface(self._isovalue, **self._options, **self._surface_options)
+
+    def slice(self, field):
+        plane = (self._plane["origin"], self._plane["normal"])
+        return field.slice(plane=plane, **self._options)
+
+    def draw(self, outInfo, field_of_data, drawing, name):
+        """Draws into the output. What the library refuses is empty, with a message in the log."""
+        output = vtkPolyData.GetData(outInfo)
+        try:
+            surface = drawing(field_of_data())
+        except (nestgrid.InvalidInput, nestgrid.GridError, nestgrid.IoError) as error:
+            print_error(f"nestgrid: {error}")
+            return
+        data = surface.to_vtk()
+        values = data.GetPointData().GetArray("value")
+        if values is not None:
+            values.SetName(name)
+            data.GetPointData().SetActiveScalars(name)
+        output.ShallowCopy(data)
+
+
+class Filter(Drawing):
+    """Keeps the field, and with it what was computed once, while the input stays as it is."""
+
+    def __init__(self):
+        super().__init__(1)
+        self._field = None
+        self._made_of = None
+
+    def FillInputPortInformation(self, port, info):
+        info.Set(self.INPUT_REQUIRED_DATA_TYPE(), "vtkImageData")
+        info.Append(self.INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid")
+        return 1
+
+    def array(self, data):
+        """The chosen array; None where there is none."""
+        chosen = self.GetInputArrayInformation(0)
+        if not chosen.Has(vtkDataObject.FIELD_NAME()):
+            return None
+        in_cells = chosen.Get(vtkDataObject.FIELD_ASSOCIATION()) == vtkDataObject.CELL
+        attributes = data.GetAttributes(vtkDataObject.CELL if in_cells else vtkDataObject.POINT)
+        return attributes and attributes.GetArray(chosen.Get(vtkDataObject.FIELD_NAME()))
+
+    def field(self, data):
+        array = self.array(data)
+        made_of = (data.GetMTime(), array and array.GetMTime(), array and array.GetName())
+        if self._field is None or made_of != self._made_of:
+            self._field = field_of(data, array)
+            self._made_of = made_of
+        return self._field
+
+    def request(self, inInfo, outInfo, drawing):
+        data = vtkDataObject.GetData(inInfo[0])
+        array = self.array(data)
+        name = array.GetName() if array else "value"
+        self.draw(outInfo, lambda: self.field(data), drawing, name)
+        return 1
+
+
+@smproxy.filter(name="NestgridIsosurface", label="Nestgrid Isosurface")
+@properties(INPUT, ARRAY, ISOVALUE, THRESHOLD, MAX_TRIANGLES, INDICATOR, NORMALS, CAP)
+class NestgridIsosurface(Filter):
+    def RequestData(self, request, inInfo, outInfo):
+        return self.request(inInfo, outInfo, self.isosurface)
+
+
+@smproxy.filter(name="NestgridSlice", label="Nestgrid Slice")
+@properties(INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, THRESHOLD, MAX_TRIANGLES)
+class NestgridSlice(Filter):
+    def RequestData(self, request, inInfo, outInfo):
+        return self.request(inInfo, outInfo, self.slice)
+
+
+FILE_NAMES = """
+<StringVectorProperty name="FileNames" command="AddFileName" clean_command="ClearFileNames"
+    animateable="0" number_of_elements="0" number_of_elements_per_command="1" repeat_command="1"
+    panel_visibility="never">
+  <FileListDomain name="files"/>
+  <Documentation>A file, or one for each time step.</Documentation>
+</StringVectorProperty>
+"""
+FIELD_NAME = """
+<StringVectorProperty name="FieldName" command="SetFieldName" number_of_elements="1"
+    default_values="">
+  <Documentation>The field, where files have several.</Documentation>
+</StringVectorProperty>
+"""
+DRAW = """
+<IntVectorProperty name="Draw" command="SetDraw" number_of_elements="1" default_values="0">
+  <EnumerationDomain name="enum">
+    <Entry value="0" text="Isosurface"/><Entry value="1" text="Slice"/>
+  </EnumerationDomain>
+  <Documentation>What is drawn of the hierarchy.</Documentation>
+</IntVectorProperty>
+"""
+FREE_ISOVALUE = """
+<DoubleVectorProperty name="Isovalue" command="SetIsovalue" number_of_elements="1"
+    default_values="0">
+  <Documentation>The value on the surface, in the units of the data.</Documentation>
+</DoubleVectorProperty>
+"""
+
+
+@smproxy.reader(
+    name="NestgridReader",
+    label="Nestgrid Reader",
+    extensions="nestgrid",
+    file_description="nestgrid hierarchies",
+)
+@properties(
+    FILE_NAMES, FIELD_NAME, DRAW, FREE_ISOVALUE, FREE_PLANE, NORMAL, THRESHOLD, MAX_TRIANGLES,
+    INDICATOR, NORMALS, CAP,
+)
+class NestgridReader(Drawing):
+    """Draws hierarchies from files; their elements are no data of VTK."""
+
+    def __init__(self):
+        super().__init__(0)
+        self._files = []
+        self._name = ""
+        self._slices = False
+        self._loaded = (None, None)
+
+    def AddFileName(self, name):
+        self._files.append(name)
+        self.Modified()
+
+    def ClearFileNames(self):
+        self._files = []
+        self.Modified()
+
+    def SetFieldName(self, name):
+        if name != self._name:
+            self._name = name
+            self.Modified()
+
+    def SetDraw(self, what):
+        if bool(what) != self._slices:
+            self._slices = bool(what)
+            self.Modified()
+
+    @smproperty.doublevector(
+        name="TimestepValues", information_only="1", si_class="vtkSITimeStepsProperty"
+    )
+    def GetTimestepValues(self):
+        return [float(i) for i in range(len(self._files))] if len(self._files) > 1 else None
+
+    def RequestInformation(self, request, inInfo, outInfo):
+        info = outInfo.GetInformationObject(0)
+        executive = self.GetExecutive()
+        times = self.GetTimestepValues()
+        info.Remove(executive.TIME_STEPS())
+        info.Remove(executive.TIME_RANGE())
+        if times:
+            for time in times:
+                info.Append(executive.TIME_STEPS(), time)
+            info.Append(executive.TIME_RANGE(), times[0])
+            info.Append(executive.TIME_RANGE(), times[-1])
+        return 1
+
+    def field(self, step):
+        key = (self._files[step], self._name)
+        if self._loaded[0] != key:
+            self._loaded = (key, nestgrid.load(*key))
+        return self._loaded[1]
+
+    def RequestData(self, request, inInfo, outInfo):
+        info = outInfo.GetInformationObject(0)
+        step = 0
+        if info.Has(self.GetExecutive().UPDATE_TIME_STEP()):
+            time = info.Get(self.GetExecutive().UPDATE_TIME_STEP())
+            step = min(max(round(time), 0), len(self._files) - 1)
+        drawing = self.slice if self._slices else self.isosurface
+        self.draw(outInfo, lambda: self.field(step), drawing, self._name or "value")
+        if len(self._files) > 1:
+            vtkPolyData.GetData(outInfo).GetInformation().Set(
+                vtkDataObject.DATA_TIME_STEP(), float(step)
+            )
+        return 1

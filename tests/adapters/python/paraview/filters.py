@@ -1,0 +1,177 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run by pvpython: the filters and the reader, states, times and a picture.
+
+Arguments: a folder with stored.nestgrid, where files may be written.
+"""
+import os
+import sys
+
+import numpy as np
+import paraview.simple as pv
+from paraview import servermanager
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges
+
+import nestgrid
+from nestgrid.paraview import PLUGIN
+
+folder = sys.argv[1]
+pv.LoadPlugin(PLUGIN, remote=False)
+
+
+def fetch(proxy):
+    proxy.UpdatePipeline()
+    return servermanager.Fetch(proxy)
+
+
+def open_edges(data):
+    edges = vtkFeatureEdges()
+    edges.SetInputData(data)
+    edges.FeatureEdgesOff()
+    edges.ManifoldEdgesOff()
+    edges.NonManifoldEdgesOn()
+    edges.Update()
+    return edges.GetOutput().GetNumberOfCells()
+
+
+def same(data, surface):
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    np.testing.assert_array_equal(points, surface.vertices)
+    corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
+    np.testing.assert_array_equal(corners, surface.triangles.ravel())
+
+
+def check_image_data():
+    wavelet = pv.Wavelet(WholeExtent=[-10, 10, -8, 8, -6, 6])
+    image = fetch(wavelet)
+    filter = pv.NestgridIsosurface(Input=wavelet)
+    array = image.GetPointData().GetArray("RTData")
+    least, greatest = array.GetRange()
+    assert least < filter.Isovalue < greatest, "isovalues start within the range"
+    samples = vtk_to_numpy(array).reshape(image.GetDimensions(), order="F")
+    volume = nestgrid.Volume(samples, origin=(-10, -8, -6))
+    filter.Isovalue = 157
+    same(fetch(filter), volume.isosurface(157))
+    filter.Threshold = 5
+    same(fetch(filter), volume.isosurface(157, 5))
+    filter.MaxTriangles = 1500
+    data = fetch(filter)
+    assert 0 < data.GetNumberOfPolys() <= 1500
+    filter.MaxTriangles = 0
+    filter.Indicator = "visual"
+    filter.Threshold = 0.2
+    same(fetch(filter), volume.isosurface(157, 0.2, indicator="visual"))
+    filter.Cap = 1
+    assert open_edges(fetch(filter)) == 0
+    slice = pv.NestgridSlice(Input=wavelet)
+    slice.Origin, slice.Normal, slice.Threshold = [1, 0, 0], [1, 1, 0], 2
+    data = fetch(slice)
+    expected = volume.slice(plane=((1, 0, 0), (1, 1, 0)), threshold=2)
+    same(data, expected)
+    values = vtk_to_numpy(data.GetPointData().GetArray("RTData"))
+    np.testing.assert_array_equal(values, expected.attributes[:, 0])
+
+
+def check_hyper_tree_grid():
+    source = pv.HyperTreeGridRandom(Dimensions=[4, 4, 4], MaxDepth=4, SplitFraction=0.4, Seed=3)
+    source.UpdatePipeline()
+    filter = pv.NestgridIsosurface(Input=source)
+    filter.Scalars = ["CELLS", "Depth"]
+    filter.Isovalue = 1.2
+    data = fetch(filter)
+    assert data.GetNumberOfPolys() > 100
+    filter.Cap = 1
+    assert open_edges(fetch(filter)) == 0, "no gap opens where the level changes"
+    slice = pv.NestgridSlice(Input=source)
+    slice.Scalars = ["CELLS", "Depth"]
+    slice.Origin, slice.Normal = [0.5, 0.4, 0.45], [1, 2, 3]
+    assert fetch(slice).GetPointData().GetArray("Depth").GetRange()[1] > 0
+
+
+def check_reader():
+    path = os.path.join(folder, "stored.nestgrid")
+    reader = pv.OpenDataFile(path)
+    reader.FieldName, reader.Isovalue, reader.Threshold = "wave", 0.3, 0.05
+    same(fetch(reader), nestgrid.load(path, "wave").isosurface(0.3, 0.05))
+    reader.Draw = "Slice"
+    reader.Origin, reader.Normal = [0.4, 0.5, 0.5], [1, 0, 0]
+    assert fetch(reader).GetPointData().GetArray("wave") is not None
+
+
+def check_times():
+    first, second = [os.path.join(folder, name) for name in ("stored.nestgrid", "later.nestgrid")]
+    reader = pv.NestgridReader(FileNames=[first, second])
+    reader.FieldName, reader.Isovalue = "wave", 0.3
+    reader.UpdatePipelineInformation()
+    assert list(reader.TimestepValues) == [0, 1]
+    counts = []
+    for time in (0, 1, 0):
+        reader.UpdatePipeline(time)
+        counts.append(servermanager.Fetch(reader).GetNumberOfPolys())
+    assert counts[0] == counts[2] != counts[1], counts
+
+
+def check_what_is_refused():
+    """A message, no crash, and the filter can be used afterwards."""
+    wavelet = pv.Wavelet(WholeExtent=[-5, 5, -5, 5, -5, 5])
+    wavelet.UpdatePipeline()
+    filter = pv.NestgridIsosurface(Input=wavelet)
+    filter.MaxTriangles = 1
+    filter.Isovalue = 157
+    assert fetch(filter).GetNumberOfPolys() == 0
+    filter.MaxTriangles = 0
+    assert fetch(filter).GetNumberOfPolys() > 0
+    gradient = pv.Gradient(Input=wavelet, ScalarArray=['POINTS', 'RTData'])
+    gradient.UpdatePipeline()
+    filter = pv.NestgridIsosurface(Input=gradient)
+    filter.Scalars = ["POINTS", "Gradient"]
+    assert fetch(filter).GetNumberOfPolys() == 0
+
+
+def brightness(path):
+    from vtkmodules.vtkIOImage import vtkPNGReader
+
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
+
+
+def check_state_and_picture():
+    pv.ResetSession()
+    pv.LoadPlugin(PLUGIN, remote=False)
+    wavelet = pv.Wavelet()
+    wavelet.UpdatePipeline()
+    filter = pv.NestgridIsosurface(Input=wavelet, Isovalue=157, Threshold=5, Indicator="wavelet")
+    view = pv.CreateView("RenderView")
+    view.ViewSize = [400, 300]
+    pv.Show(filter, view)
+    pv.ResetCamera(view)
+    pictures = [os.path.join(folder, name) for name in ("before.png", "after.png")]
+    pv.SaveScreenshot(pictures[0], view)
+    triangles = fetch(filter).GetNumberOfPolys()
+    state = os.path.join(folder, "state.pvsm")
+    pv.SaveState(state)
+    pv.ResetSession()
+    pv.LoadPlugin(PLUGIN, remote=False)
+    pv.LoadState(state)
+    again = [each for each in pv.GetSources().values() if "Nestgrid" in each.GetXMLName()]
+    assert len(again) == 1 and again[0].Isovalue == 157 and again[0].Indicator == "wavelet"
+    assert fetch(again[0]).GetNumberOfPolys() == triangles > 0
+    view = pv.GetActiveViewOrCreate("RenderView")
+    pv.SaveScreenshot(pictures[1], view)
+    before, after = map(brightness, pictures)
+    assert before.shape == after.shape and np.abs(before - after).max() == 0
+    background = before[0]
+    drawn = (np.abs(before - background).sum(axis=1) > 30).mean()
+    assert 0.05 < drawn < 0.95, f"{drawn:.2f} of the picture is drawn"
+
+
+check_image_data()
+check_hyper_tree_grid()
+check_reader()
+check_times()
+check_what_is_refused()
+check_state_and_picture()
+print("all checks passed")
