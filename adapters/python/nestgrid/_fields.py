@@ -26,9 +26,9 @@ class Field:
     threshold      detail up to it is left out, in the units of the indicator; default: 0, or with a
                    lens infinity, so that the lens decides alone
     indicator      what the threshold limits: "offset", |data - mean| in units of the data;
-                   "visual", folds, 2 sin(angle / 2), from 0 to 2; "numerical", jumps of the gradient
-                   times the diameter, in units of the data; "wavelet", coefficients in units of the
-                   data; "geometry", |position - mean| on curved grids, in units of length
+                   "visual", folds, 2 sin(angle / 2), from 0 to 2; "numerical", jumps of the
+                   gradient times the diameter, in units of the data; "wavelet", coefficients in
+                   units of the data; "geometry", |position - mean| on curved grids, in units of length
     blend          at least 1: nodes move from their mean to their value as the indicator grows from
                    the threshold to this many times it; 1: they jump
     lens           draws finely in a domain: a Lens, a domain (ball, box, ...) or (centre, radius)
@@ -209,8 +209,8 @@ class Volume(Field):
 class Octree(Field):
     """Leaves of an octree (quadtree), or of a forest of them; they are copied and sorted.
 
-    leaves       (n, 4) integers x, y, z, level ((n, 3): x, y, level): the lowest corner of each leaf
-                 in cells of max_level, and its level, that of a root being 0
+    leaves       (n, 4) integers x, y, z, level ((n, 3): x, y, level): the lowest corner of each
+                 leaf in cells of max_level, and its level, that of a root being 0
     values       (n,): of the leaves, from which nodes get means; or (n, 8) ((n, 4)): at the corners
                  of the leaves, x fastest, equal where leaves meet. From numbered nodes:
                  values_at_nodes[nodes_of_leaves]

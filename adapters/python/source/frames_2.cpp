@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "volume.hpp"
+#include "frames.hpp"
 
 namespace nestgrid::python {
 

@@ -266,7 +266,8 @@ def test_time_of_import():
 
 
 def test_paraview_is_started_where_it_finds_the_plugin():
-    program = "import inspect, os, nestgrid; inspect.getargspec; print(os.environ['PV_PLUGIN_PATH'])"
+    program = "import inspect, os, nestgrid; inspect.getargspec; "
+    program += "print(os.environ['PV_PLUGIN_PATH'])"
     start = [sys.executable, "-m", "nestgrid.paraview"]
     out = subprocess.run([*start, sys.executable, "-c", program], capture_output=True, check=True)
     assert os.listdir(out.stdout.decode().strip()) == ["nestgrid_filters.py"]

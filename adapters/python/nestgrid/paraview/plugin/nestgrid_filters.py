@@ -26,7 +26,7 @@ ARRAY = """
 """
 ISOVALUE = """
 <DoubleVectorProperty name="Isovalue" command="SetIsovalue" number_of_elements="1"
-    default_values="0" panel_widget="double_range">
+    default_values="0">
   <ArrayRangeDomain name="range" default_mode="mid">
     <RequiredProperties>
       <Property name="Input" function="Input"/>
