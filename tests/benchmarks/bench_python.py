@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python package beside the library in C++ and scikit-image: from an array to arrays.
+"""The Python package beside the library in C++ and scikit-image: from array to arrays. Its import.
 
 Prints processor times in ms on one thread, the least of several rounds in turns, and their ratios.
 Arguments: the program bench_python; --quick for a small array.
@@ -34,6 +34,14 @@ def draw(array, threshold):
     return surface.vertices, surface.triangles, surface.normals
 
 
+def import_ms():
+    """How long the import takes where NumPy is there already, the least of five."""
+    program = "import numpy, time; t = time.process_time(); import nestgrid; "
+    program += "print(1e3 * (time.process_time() - t))"
+    command = [sys.executable, "-c", program]
+    return min(float(subprocess.run(command, capture_output=True).stdout) for _ in range(5))
+
+
 def main():
     program = sys.argv[1]
     quick = "--quick" in sys.argv
@@ -56,6 +64,7 @@ def main():
         assert order != "Fortran" or found == triangles[t]
         print(f"{order:7} order, threshold {t}: {found} triangles, {ms:.1f} ms, "
               f"{ms / cpp[t]:.2f} of the {cpp[t]:.1f} ms of C++")
+    print(f"import beside NumPy: {import_ms():.0f} ms")
     try:
         from skimage.measure import marching_cubes
     except ImportError:

@@ -84,7 +84,7 @@ nestgrid() {
 
 # A figure that a script in Python makes, which the page shows.
 python() {
-    local start=(xvfb-run -a "$python") package=$build/adapters/python/package
+    local start=(bash "$source/tests/adapters/python/with_display.sh" "$python") package=$build/adapters/python/package
     if [ "$1 $2" = "-m nestgrid.paraview" ]; then
         [ "$*" = "-m nestgrid.paraview paraview" ] && return
         [ "$3" = pvpython ] || fail "$page: '$*' is tested by nothing"

@@ -219,7 +219,7 @@ def _columns(attributes: np.ndarray) -> list[tuple[str, np.ndarray]]:
 def _poly_data(
     vertices: np.ndarray, setter: str, cells: np.ndarray, count: int, data: _files.Pieces
 ) -> vtkPolyData:
-    """vtkPolyData of copies: VTK 9.1 does not keep arrays of NumPy alive."""
+    """vtkPolyData of copies, which outlive everything of Python."""
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData

@@ -69,7 +69,7 @@ void bind_requests(py::module_& m) {
             return Projection{threshold, triangles.value_or(0), std::move(indicator), blend,
                               std::move(lens)};
         }));
-    py::class_<LevelFunction, std::shared_ptr<LevelFunction>>(m, "LevelFunction");
+    const py::class_<LevelFunction, std::shared_ptr<LevelFunction>> opaque(m, "LevelFunction");
     m.def("plane", [](const Numbers& through, const Numbers& normal) {
         return std::shared_ptr<LevelFunction>(std::make_shared<Plane>(
             point_of(through, "the point"), point_of(normal, "the normal")));

@@ -257,14 +257,6 @@ def test_hints_and_help():
             assert "return" in function.__annotations__, f"{kind.__name__}.{name}"
 
 
-def test_time_of_import():
-    """Prints how long the import takes beside that of NumPy."""
-    program = "import numpy, time; t = time.perf_counter(); import nestgrid; "
-    program += "print(1e3 * (time.perf_counter() - t))"
-    out = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
-    print(f"import beside NumPy: {float(out.stdout):.0f} ms")
-
-
 def test_paraview_is_started_where_it_finds_the_plugin():
     program = "import inspect, os, nestgrid; inspect.getargspec; "
     program += "print(os.environ['PV_PLUGIN_PATH'])"

@@ -156,6 +156,10 @@ def test_forest_and_mask():
     masked = leaves[:, 0] + 4 * leaves[:, 1] == 1
     hole = nestgrid.Octree(leaves, values, masked=masked).isosurface(1.5).report()
     assert math.isclose(hole["area"], 2)
+    cells = [np.where(masked, hidden, leaves[:, 0] + 0.5) for hidden in (0, 1000)]
+    drawn = [nestgrid.Octree(leaves, v, masked=masked).isosurface(2.2).vertices for v in cells]
+    np.testing.assert_array_equal(*drawn)
+    assert len(drawn[0]) > 0
     moved = nestgrid.Octree(leaves, values, coordinates=[(0, 1, 5), (0, 2), (0, 4)])
     assert math.isclose(moved.isosurface(1.5).report()["area"], 8)
 

@@ -9,16 +9,17 @@
 set -uo pipefail
 source=$1 package=$2 python=$3
 unpacked=$source/build/paraview
-command -v xvfb-run >/dev/null || { echo "skipped: there is no xvfb-run"; exit 77; }
+here=$(cd "$(dirname "$0")" && pwd)
+display=$here/../with_display.sh
+command -v Xvfb >/dev/null || { echo "skipped: there is no Xvfb"; exit 77; }
 export PYTHONDONTWRITEBYTECODE=1
 if command -v pvpython >/dev/null; then
-    PYTHONPATH=$package exec xvfb-run -a "$python" -m nestgrid.paraview pvpython "${@:4}"
+    PYTHONPATH=$package exec bash "$display" "$python" -m nestgrid.paraview pvpython "${@:4}"
 fi
 if ! [ -x "$unpacked/usr/bin/pvpython" ] || ! command -v paraview >/dev/null; then
     echo "skipped: there is no pvpython"
     exit 77
 fi
-here=$(cd "$(dirname "$0")" && pwd)
 export PYTHONPATH=$here/unpacked:$package:$unpacked/usr/lib/python3/dist-packages
 export PV_PLUGIN_PATH=$package/nestgrid/paraview/plugin
-exec xvfb-run -a "$unpacked/usr/bin/pvpython" "${@:4}"
+exec bash "$display" "$unpacked/usr/bin/pvpython" "${@:4}"
