@@ -3,10 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Runs a command on a display of its own. The server chooses the number and tells when it is ready, so
-# that several start at once on a busy machine, which xvfb-run does not survive.
+# that several start at once on a busy machine, which xvfb-run does not survive; and it does not begin
+# anew when its last client has gone, which another client may meet.
 set -uo pipefail
 ready=$(mktemp)
-Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp 3>"$ready" 2>/dev/null &
+Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp -noreset 3>"$ready" 2>/dev/null &
 server=$!
 trap 'kill $server 2>/dev/null; wait $server 2>/dev/null; rm -f "$ready"' EXIT
 for _ in $(seq 600); do
