@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The samples of a volume as a field to explore.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include <nestgrid/adapters/bisection.hpp>
+
+#include "explored_field.hpp"
+
+namespace nestgrid::view {
+
+/// The box around a lattice.
+inline std::array<Point, 2> box_of(const LatticeGeometry<3>& g) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::array<Point, 2> box{Point{infinity, infinity, infinity},
+                             Point{-infinity, -infinity, -infinity}};
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        for (std::size_t r = 0; r < 3; ++r) {
+            double x = g.origin[r];
+            for (std::size_t d = 0; d < 3; ++d) {
+                const int cells = (corner >> d & 1U) != 0 ? g.samples[d] - 1 : 0;
+                x += g.direction[r][d] * g.spacing[d] * cells;
+            }
+            box[0][r] = std::min(box[0][r], x);
+            box[1][r] = std::max(box[1][r], x);
+        }
+    }
+    return box;
+}
+
+/// The samples of a volume, x fastest.
+/// \param memory that holds the samples, or null where they outlive the field
+/// \throw InvalidInput as LatticeBisection and LatticeField
+template <class Sample>
+ExploredField explored_samples(const LatticeGeometry<3>& geometry, std::span<const Sample> samples,
+                               std::shared_ptr<const void> memory = nullptr) {
+    using Grid = LatticeBisection<3>;
+    const auto grid = std::make_shared<const Grid>(geometry);
+    ExploredField f =
+        still_field(grid, LatticeField<Grid, Sample>(*grid, samples), std::move(memory));
+    f.box = box_of(geometry);
+    f.histogram = histogram_of(samples.size(), [&](std::size_t i) { return samples[i]; });
+    return f;
+}
+
+/// Frames of a volume, one after the other in time.
+/// \param times one for each frame, ascending
+template <class Sample>
+ExploredField explored_samples(const LatticeGeometry<3>& geometry,
+                               const std::vector<std::span<const Sample>>& frames,
+                               std::vector<double> times,
+                               std::shared_ptr<const void> memory = nullptr) {
+    using Grid = LatticeBisection<3>;
+    const auto grid = std::make_shared<const Grid>(geometry);
+    std::vector<LatticeField<Grid, Sample>> fields;
+    for (const auto& samples : frames) fields.emplace_back(*grid, samples);
+    ExploredField f = moving_field(grid, std::move(fields), std::move(times), std::move(memory));
+    f.box = box_of(geometry);
+    const auto first = frames.front();
+    f.histogram = histogram_of(first.size(), [&](std::size_t i) { return first[i]; });
+    return f;
+}
+
+}  // namespace nestgrid::view

@@ -1,0 +1,384 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "explorer.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+
+#include <nestgrid/algorithms/key_frames.hpp>
+#include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/algorithms/mesh_size.hpp>
+#include <nestgrid/algorithms/numerical_indicator.hpp>
+#include <nestgrid/algorithms/outlines.hpp>
+#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/visual_indicator.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
+#include <nestgrid/error.hpp>
+
+#include "frame_reply.hpp"
+
+namespace nestgrid::view {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A moving frame is drawn again where its triangles miss the goal by more than this part.
+constexpr double tolerance = 0.05;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Ends an extraction that has more triangles than asked for.
+struct TooMany {};
+
+/// Counts triangles and throws TooMany beyond a limit.
+class Counter final : public SimplexSink<3> {
+public:
+    explicit Counter(std::uint64_t most) : most_{most} {}
+    void take(const Surface<3>& part) override {
+        count_ += part.simplices.size();
+        if (count_ > most_) throw TooMany{};
+    }
+
+private:
+    std::uint64_t most_;
+    std::uint64_t count_ = 0;
+};
+
+struct Part {
+    const char* kind;
+    Isosurface<3> drawn;
+};
+
+void write_points(FrameReply& reply, std::string_view name, std::span<const Point> points) {
+    const auto to = reply.array<float>(name, "float32", 3 * points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        for (std::size_t d = 0; d < 3; ++d) to[3 * i + d] = static_cast<float>(points[i][d]);
+    }
+}
+
+void write_normals(FrameReply& reply, std::span<const Point> normals, NormalType type) {
+    if (type == NormalType::float32) return write_points(reply, "normals", normals);
+    const auto to = reply.array<std::int8_t>("normals", "int8", 4 * normals.size());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        for (std::size_t d = 0; d < 3; ++d) {
+            to[4 * i + d] = static_cast<std::int8_t>(std::lround(127 * normals[i][d]));
+        }
+    }
+}
+
+template <std::size_t corners>
+void write_indices(FrameReply& reply,
+                   const std::vector<std::array<std::uint32_t, corners>>& simplices) {
+    const auto to = reply.array<std::uint32_t>("indices", "uint32", corners * simplices.size());
+    for (std::size_t i = 0; i < simplices.size(); ++i) {
+        std::copy_n(simplices[i].begin(), corners, to.begin() + corners * i);
+    }
+}
+
+void write_values(FrameReply& reply, const Surface<3>& surface) {
+    const std::size_t vertices = surface.vertices.size();
+    if (vertices == 0 || surface.attributes.size() < vertices) return;
+    const std::size_t components = surface.attributes.size() / vertices;
+    const auto to = reply.array<float>("values", "float32", vertices);
+    for (std::size_t i = 0; i < vertices; ++i) {
+        to[i] = static_cast<float>(surface.attributes[i * components]);
+    }
+}
+
+void write_part(FrameReply& reply, const Part& part, const FrameRequest& request) {
+    const Surface<3>& surface = part.drawn.surface;
+    JsonText& text = reply.header;
+    text.open('{').key("kind").string(part.kind);
+    text.key("triangles").number(static_cast<double>(surface.simplices.size()));
+    text.key("visited").number(static_cast<double>(part.drawn.counts.visited));
+    text.key("error_bound").number(part.drawn.error_bound);
+    write_points(reply, "positions", surface.vertices);
+    write_indices(reply, surface.simplices);
+    if (!surface.normals.empty()) write_normals(reply, surface.normals, request.normals);
+    if (part.kind == std::string_view("slice")) write_values(reply, surface);
+    text.close('}');
+    if (!request.outlines) return;
+    const Surface<2> lines = outlines(surface);
+    text.open('{').key("kind").string("outlines");
+    text.key("segments").number(static_cast<double>(lines.simplices.size()));
+    write_points(reply, "positions", lines.vertices);
+    write_indices(reply, lines.simplices);
+    text.close('}');
+}
+
+}  // namespace
+
+/// The field at the time of a request.
+struct Explorer::Moment {
+    SharedHierarchy hierarchy;
+    std::size_t frame = 0;             ///< where it is that of a frame
+    std::optional<KeyFrames> between;  ///< where it is not
+    const HierarchicalIndicator* offsets = nullptr;
+
+    const Bounds& bounds() const {
+        if (between) return *between;
+        return *offsets;
+    }
+};
+
+struct Explorer::Drawn {
+    double threshold = 0;
+    int draws = 0;
+    std::vector<Part> parts;
+
+    std::uint64_t triangles() const {
+        std::uint64_t sum = 0;
+        for (const Part& part : parts) sum += part.drawn.surface.simplices.size();
+        return sum;
+    }
+};
+
+/// What a request draws, at any threshold.
+class Explorer::Drawing {
+public:
+    Drawing(const FrameRequest& request, const Moment& moment, const Indicator& indicator,
+            const SweptIndicator* size, const Executor& executor)
+        : request_{request}, moment_{moment}, indicator_{&indicator}, executor_{executor} {
+        if (request.lens) {
+            const LensRequest& l = *request.lens;
+            lens_.emplace(size, Ball{l.centre, l.radius},
+                          LensOptions{.finest = l.finest, .coarsest = l.coarsest});
+        }
+        if (request.plane) plane_.emplace(request.plane->through, request.plane->normal);
+    }
+
+    std::vector<Part> draw(double threshold) const {
+        std::vector<Part> parts;
+        with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
+            IsosurfaceOptions options{.elements = request_.outlines};
+            if (plane_) parts.push_back({"slice", draw_slice(hierarchy, criterion)});
+            if (!request_.isovalue) return;
+            options.normals = request_.normals != NormalType::none;
+            parts.push_back({"isosurface", isosurface<3>(hierarchy, *request_.isovalue, criterion,
+                                                         moment_.bounds(), options, executor_)});
+        });
+        return parts;
+    }
+
+    /// Whether a threshold gives no more triangles than asked for.
+    bool fits(double threshold) const {
+        bool result = true;
+        with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
+            std::uint64_t most = request_.triangles;
+            if (plane_) {
+                const std::size_t used = draw_slice(hierarchy, criterion).surface.simplices.size();
+                result = used <= most;
+                most -= std::min<std::uint64_t>(used, most);
+            }
+            if (result && request_.isovalue) result = counts_at_most(most, hierarchy, criterion);
+        });
+        return result;
+    }
+
+private:
+    template <class Function>
+    void with_criterion(double threshold, const Function& function) const {
+        const Threshold everywhere(indicator_, threshold);
+        std::visit(
+            [&](const auto& hierarchy) {
+                if (lens_) {
+                    function(*hierarchy, everywhere && *lens_);
+                } else {
+                    function(*hierarchy, everywhere);
+                }
+            },
+            moment_.hierarchy);
+    }
+    template <class Real>
+    Slice draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const {
+        return slice(hierarchy, *plane_, criterion, moment_.bounds(),
+                     {.elements = request_.outlines}, executor_);
+    }
+    template <class Real>
+    bool counts_at_most(std::uint64_t most, const Hierarchy<Real>& hierarchy,
+                        const Criterion& criterion) const {
+        const double isovalue = *request_.isovalue;
+        try {
+            extract_isosurfaces<3>(hierarchy, std::span(&isovalue, 1), std::vector{Counter(most)},
+                                   criterion, moment_.bounds(), {.elements = false}, executor_);
+        } catch (const TooMany&) {
+            return false;
+        }
+        return true;
+    }
+
+    const FrameRequest& request_;
+    const Moment& moment_;
+    const Indicator* indicator_;
+    std::optional<Lens> lens_;
+    std::optional<Plane> plane_;
+    const Executor& executor_;
+};
+
+Explorer::Explorer(ExploredField field, const Executor& executor)
+    : field_{std::move(field)}, executor_{&executor} {
+    const auto start = Clock::now();
+    if (field_.frames.empty() || field_.frames.size() != field_.times.size()) {
+        throw InvalidInput("a field to explore needs at least one frame, and a time for each");
+    }
+    for (const SharedHierarchy& frame : field_.frames) {
+        std::visit(
+            [&](const auto& hierarchy) {
+                if (hierarchy->facts().dimension != 3) {
+                    throw InvalidInput("only fields in space can be explored; this one has " +
+                                       std::to_string(hierarchy->facts().dimension) +
+                                       " dimensions");
+                }
+                offsets_.emplace_back(*hierarchy, LeafErrors{}, executor);
+            },
+            frame);
+    }
+    least_ = offsets_.front().least();
+    greatest_ = offsets_.front().greatest();
+    for (const HierarchicalIndicator& frame : offsets_) {
+        least_ = std::min(least_, frame.least());
+        greatest_ = std::max(greatest_, frame.greatest());
+    }
+    preroll_seconds_ = seconds_since(start);
+}
+
+std::string Explorer::info() const {
+    const Histogram& h = field_.histogram;
+    const bool counted = h.greatest > h.least;
+    JsonText text;
+    text.open('{').key("name").string(field_.name);
+    text.key("least").number(least_).key("greatest").number(greatest_);
+    text.key("box").open('[');
+    for (const Point& corner : field_.box) text.numbers(corner);
+    text.close(']').key("times").numbers(field_.times);
+    text.key("isovalue").number(counted ? h.dividing_value() : (least_ + greatest_) / 2);
+    text.key("histogram").open('{').key("least").number(h.least);
+    text.key("greatest").number(h.greatest).key("counts");
+    text.numbers(counted ? std::span<const double>(h.counts) : std::span<const double>{});
+    text.close('}').key("nodes").number(static_cast<double>(offsets_.front().node_count()));
+    text.key("preroll_seconds").number(preroll_seconds_);
+    return text.close('}').text();
+}
+
+Explorer::Moment Explorer::moment_at(const FrameRequest& request) const {
+    std::vector<float> weights{1};
+    if (request.time && field_.frames.size() == 1 && *request.time != field_.times.front()) {
+        throw InvalidInput("there is one frame, and the time asked for is not its time");
+    }
+    if (field_.frames.size() > 1) {
+        weights = linear_weights(field_.times, request.time.value_or(field_.times.front()));
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        if (weights[i] == 1) return {field_.frames[i], i, {}, &offsets_[i]};
+    }
+    std::vector<const HierarchicalIndicator*> frames;
+    for (const HierarchicalIndicator& frame : offsets_) frames.push_back(&frame);
+    return {field_.between(weights), 0, KeyFrames(std::move(frames), weights), nullptr};
+}
+
+const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name) {
+    if (name == IndicatorName::offset) {
+        if (moment.between) return *moment.between;
+        return *moment.offsets;
+    }
+    if (moment.between) {
+        throw InvalidInput(
+            "between frames thresholds are those of offsets: take the indicator offset, or the "
+            "time of a frame");
+    }
+    if (swept_ && swept_->name == name && swept_->frame == moment.frame) return swept_->indicator;
+    const double tau = 0x1p-20 * range();
+    swept_.emplace(Swept{name, moment.frame,
+                         std::visit(
+                             [&](const auto& hierarchy) {
+                                 if (name == IndicatorName::visual) {
+                                     return visual_indicator(*hierarchy, {.tau = tau});
+                                 }
+                                 if (name == IndicatorName::numerical) {
+                                     return numerical_indicator(*hierarchy);
+                                 }
+                                 return wavelet_indicator(*hierarchy);
+                             },
+                             moment.hierarchy)});
+    return swept_->indicator;
+}
+
+const SweptIndicator& Explorer::size_for(const Moment& moment, double slope) {
+    if (!size_ || size_->spread().slope != slope) {
+        size_.emplace(std::visit(
+            [&](const auto& hierarchy) { return mesh_size(*hierarchy, Spread{.slope = slope}); },
+            moment.hierarchy));
+    }
+    return *size_;
+}
+
+Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawing& drawing,
+                                       double greatest) {
+    const auto goal = static_cast<double>(request.triangles);
+    const bool known = budget_ && budget_->indicator == request.indicator;
+    if (!request.moving || !known) {
+        budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest)});
+        Drawn drawn;
+        drawn.threshold = budget_->thresholds.settle([&](double threshold) {
+            ++drawn.draws;
+            return drawing.fits(threshold);
+        });
+        ++drawn.draws;
+        drawn.parts = drawing.draw(drawn.threshold);
+        return drawn;
+    }
+    FrameBudget& thresholds = budget_->thresholds;
+    thresholds.aim(goal);
+    Drawn drawn;
+    const auto draw = [&] {
+        drawn.threshold = thresholds.threshold();
+        drawn.parts = drawing.draw(drawn.threshold);
+        ++drawn.draws;
+        thresholds.drawn(static_cast<double>(drawn.triangles()));
+    };
+    draw();
+    const double miss = std::abs(static_cast<double>(drawn.triangles()) / goal - 1);
+    if (miss > tolerance && thresholds.threshold() != drawn.threshold) draw();
+    return drawn;
+}
+
+std::vector<std::byte> Explorer::frame(std::string_view text) {
+    const FrameRequest request = parse_request(text);
+    const auto start = Clock::now();
+    const Moment moment = moment_at(request);
+    const Indicator& indicator = indicator_at(moment, request.indicator);
+    const SweptIndicator* const size =
+        request.lens ? &size_for(moment, request.lens->slope) : nullptr;
+    const Drawing drawing(request, moment, indicator, size, *executor_);
+    // Angles have no units of the data, and constant data no range.
+    const double most = request.indicator == IndicatorName::visual ? 2 : range();
+    const double greatest = most > 0 ? most : 1;
+    Drawn drawn{request.threshold, 1, {}};
+    if (request.triangles > 0) {
+        drawn = draw_to_goal(request, drawing, greatest);
+    } else {
+        drawn.parts = drawing.draw(request.threshold);
+    }
+    double error_bound = 0;
+    double visited = 0;
+    for (const Part& part : drawn.parts) {
+        error_bound = std::max(error_bound, part.drawn.error_bound);
+        visited += static_cast<double>(part.drawn.counts.visited);
+    }
+    const double seconds = seconds_since(start);
+    FrameReply reply;
+    reply.header.open('{').key("threshold").number(drawn.threshold);
+    reply.header.key("triangles").number(static_cast<double>(drawn.triangles()));
+    reply.header.key("visited").number(visited).key("error_bound").number(error_bound);
+    reply.header.key("seconds").number(seconds).key("draws").number(drawn.draws);
+    reply.header.key("parts").open('[');
+    for (const Part& part : drawn.parts) write_part(reply, part, request);
+    reply.header.close(']').close('}');
+    return reply.bytes();
+}
+
+}  // namespace nestgrid::view

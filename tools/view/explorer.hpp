@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Answers the requests of an interactive page: one request, one frame. Knows no files, sockets,
+// threads of its own or pictures, so that a server and WebAssembly in the page use the same.
+//
+// Invariants:
+//   - the isosurface of a frame is that of isosurface() with the same criterion, vertices rounded
+//     to float, and its slice that of slice();
+//   - a settled frame does not depend on the frames before it: the threshold of a number of
+//     triangles is the least one of 8 significant bits at which the frame keeps within it, or,
+//     where none does, the greatest one;
+//   - a moving frame costs one extraction in most cases (FrameBudget), and two where the first one
+//     misses the number of triangles by more than 5 %.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nestgrid/algorithms/executor.hpp>
+#include <nestgrid/algorithms/frame_budget.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/swept_indicator.hpp>
+
+#include "explored_field.hpp"
+#include "frame_request.hpp"
+
+namespace nestgrid::view {
+
+class Explorer {
+public:
+    /// Makes the prerolls of all frames.
+    /// \param executor borrowed
+    /// \throw InvalidInput where the field is not one of dimension 3, where there is no frame or
+    ///        not one time for each, and as HierarchicalIndicator
+    /// \throw GridError as HierarchicalIndicator
+    explicit Explorer(ExploredField field, const Executor& executor);
+
+    /// What a page needs to begin with, as JSON: the name of the field, its range, box, times, a
+    /// histogram, an isovalue to begin with, nodes, and seconds of the preroll.
+    std::string info() const;
+
+    /// Draws a frame.
+    /// \param request as parse_request() takes it
+    /// \return the layout of frame_reply.hpp. The text has threshold, triangles, visited,
+    ///         error_bound (the greatest of the parts; null where none is known), seconds, draws
+    ///         (extractions that the frame took), and a list of parts: kind (isosurface, slice or
+    ///         outlines), triangles (segments), visited, error_bound, and arrays: positions,
+    ///         three float32 a vertex; indices, three uint32 a triangle, two a segment; normals,
+    ///         four int8 (times 1/127; the last is 0) or three float32 a vertex; values, one
+    ///         float32 a vertex
+    /// \throw InvalidInput with one sentence where the request is malformed, asks for a time
+    ///        outside the frames, or for another indicator than offsets between frames
+    std::vector<std::byte> frame(std::string_view request);
+
+private:
+    struct Moment;
+    struct Drawn;
+    class Drawing;
+
+    Moment moment_at(const FrameRequest& request) const;
+    const Indicator& indicator_at(const Moment& moment, IndicatorName name);
+    const SweptIndicator& size_for(const Moment& moment, double slope);
+    Drawn draw_to_goal(const FrameRequest& request, const Drawing& drawing, double greatest);
+    double range() const { return greatest_ - least_; }
+
+    ExploredField field_;
+    const Executor* executor_;
+    std::vector<HierarchicalIndicator> offsets_;  // of the frames
+    double least_ = 0;                            // of all frames
+    double greatest_ = 0;
+    double preroll_seconds_ = 0;
+
+    /// The last indicator other than offsets, and the last sizes of elements.
+    struct Swept {
+        IndicatorName name;
+        std::size_t frame;
+        SweptIndicator indicator;
+    };
+    std::optional<Swept> swept_;
+    std::optional<SweptIndicator> size_;
+    struct Budget {
+        IndicatorName indicator;
+        FrameBudget thresholds;
+    };
+    std::optional<Budget> budget_;
+};
+
+}  // namespace nestgrid::view

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a page asks for, as text: key=value between &, such as
+//     isovalue=0.3&triangles=50000&motion=moving&normals=int8&axis=z&at=12
+// The server and the WebAssembly module have no other parser.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include <nestgrid/shape.hpp>
+
+namespace nestgrid::view {
+
+enum class IndicatorName { offset, visual, numerical, wavelet };
+enum class NormalType { none, int8, float32 };
+
+struct PlaneRequest {
+    Point through{};
+    Point normal{};
+};
+
+/// Elements are small in a ball, and grow with the distance from it.
+struct LensRequest {
+    Point centre{};
+    double radius = 0;
+    double finest = 0;  ///< size of elements in the ball, in units of length
+    double coarsest = std::numeric_limits<double>::infinity();
+    double slope = 0.5;  ///< by which elements may grow with the distance
+};
+
+struct FrameRequest {
+    std::optional<double> isovalue{};     ///< isovalue=NUMBER; where there is none, no isosurface
+    std::optional<PlaneRequest> plane{};  ///< plane=x,y,z,x,y,z, a point and the normal; or axis=x
+                                          ///< (y, z) with at=COORDINATE
+    double threshold = 0;                 ///< threshold=NUMBER, in units of the indicator
+    std::uint64_t triangles = 0;  ///< triangles=COUNT, a goal beside which there is no threshold
+    bool moving = false;          ///< motion=moving: the goal is missed by a few percent; or
+                                  ///< motion=settled: it is not exceeded
+    IndicatorName indicator = IndicatorName::offset;  ///< indicator=offset (visual, ...)
+    std::optional<LensRequest> lens{};      ///< lens=x,y,z,r with finest=, coarsest= and slope=
+    std::optional<double> time{};           ///< time=NUMBER
+    NormalType normals = NormalType::none;  ///< normals=none (int8, float32), of isosurfaces
+    bool outlines = false;                  ///< outlines=on or off: edges of extracted elements
+};
+
+/// \throw InvalidInput with one sentence for a key that is unknown or given twice, for a value that
+///        is malformed or out of range, and where nothing is to be drawn
+FrameRequest parse_request(std::string_view text);
+
+}  // namespace nestgrid::view
