@@ -14,6 +14,7 @@
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
+#include <nestgrid/detail/geometry.hpp>
 #include <nestgrid/error.hpp>
 
 #include "frame_reply.hpp"
@@ -52,6 +53,21 @@ struct Part {
     const char* kind;
     Isosurface<3> drawn;
 };
+
+/// Sets the normals to the means of those of the triangles around each vertex, weighted by area:
+/// in a tenth of the time that gradients take.
+void set_normals_from_triangles(Surface<3>& surface) {
+    surface.normals.assign(surface.vertices.size(), Point{0, 0, 0});
+    for (const auto& [a, b, c] : surface.simplices) {
+        const Point& x = surface.vertices[a];
+        const Point normal = cross(surface.vertices[b] - x, surface.vertices[c] - x);
+        for (const std::uint32_t v : {a, b, c}) surface.normals[v] = surface.normals[v] + normal;
+    }
+    for (Point& normal : surface.normals) {
+        const double length = std::sqrt(dot(normal, normal));
+        if (length > 0) normal = (1 / length) * normal;
+    }
+}
 
 void write_points(FrameReply& reply, std::string_view name, std::span<const Point> points) {
     const auto to = reply.array<float>(name, "float32", 3 * points.size());
@@ -157,9 +173,13 @@ public:
             IsosurfaceOptions options{.elements = request_.outlines};
             if (plane_) parts.push_back({"slice", draw_slice(hierarchy, criterion)});
             if (!request_.isovalue) return;
-            options.normals = request_.normals != NormalType::none;
+            const bool normals = request_.normals != NormalType::none;
+            options.normals = normals && !request_.moving;
             parts.push_back({"isosurface", isosurface<3>(hierarchy, *request_.isovalue, criterion,
                                                          moment_.bounds(), options, executor_)});
+            if (normals && request_.moving) {
+                set_normals_from_triangles(parts.back().drawn.surface);
+            }
         });
         return parts;
     }
@@ -320,10 +340,12 @@ Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawin
                                        double greatest) {
     const auto goal = static_cast<double>(request.triangles);
     const bool known = budget_ && budget_->indicator == request.indicator;
+    if (!known) budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest)});
+    FrameBudget& thresholds = budget_->thresholds;
+    thresholds.aim(goal);
+    Drawn drawn;
     if (!request.moving || !known) {
-        budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest)});
-        Drawn drawn;
-        drawn.threshold = budget_->thresholds.settle([&](double threshold) {
+        drawn.threshold = thresholds.settle([&](double threshold) {
             ++drawn.draws;
             return drawing.fits(threshold);
         });
@@ -331,9 +353,6 @@ Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawin
         drawn.parts = drawing.draw(drawn.threshold);
         return drawn;
     }
-    FrameBudget& thresholds = budget_->thresholds;
-    thresholds.aim(goal);
-    Drawn drawn;
     const auto draw = [&] {
         drawn.threshold = thresholds.threshold();
         drawn.parts = drawing.draw(drawn.threshold);

@@ -41,10 +41,12 @@ struct FrameRequest {
     bool moving = false;          ///< motion=moving: the goal is missed by a few percent; or
                                   ///< motion=settled: it is not exceeded
     IndicatorName indicator = IndicatorName::offset;  ///< indicator=offset (visual, ...)
-    std::optional<LensRequest> lens{};      ///< lens=x,y,z,r with finest=, coarsest= and slope=
-    std::optional<double> time{};           ///< time=NUMBER
-    NormalType normals = NormalType::none;  ///< normals=none (int8, float32), of isosurfaces
-    bool outlines = false;                  ///< outlines=on or off: edges of extracted elements
+    std::optional<LensRequest> lens{};  ///< lens=x,y,z,r with finest=, coarsest= and slope=
+    std::optional<double> time{};       ///< time=NUMBER
+    /// normals=none (int8, float32), of isosurfaces: from gradients, and from triangles while
+    /// moving.
+    NormalType normals = NormalType::none;
+    bool outlines = false;  ///< outlines=on or off: edges of extracted elements
 };
 
 /// \throw InvalidInput with one sentence for a key that is unknown or given twice, for a value that

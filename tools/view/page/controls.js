@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sliders and selections. They show a state and say which part of it the reader changes; while a
+// slider is dragged the change is 'moving', when it is let go 'settled'.
+import { readable, readableCount } from './colours.js';
+import { diagonalOf } from './state.js';
+
+const byId = (id) => document.getElementById(id);
+const sliderSteps = 1000;
+
+/** Scales between a value and the position of a slider, from 0 to 1. */
+const linear = (from, to) => ({
+  value: (t) => from + t * (to - from),
+  position: (x) => (to > from ? (x - from) / (to - from) : 0),
+});
+const logarithmic = (from, to) => ({
+  value: (t) => from * (to / from) ** t,
+  position: (x) => (x > 0 ? Math.log(x / from) / Math.log(to / from) : 0),
+});
+
+const trianglesScale = logarithmic(1000, 3000000);
+
+/** A count of two digits. */
+const rounded = (n) => {
+  const unit = 10 ** Math.max(0, Math.floor(Math.log10(n)) - 1);
+  return Math.round(n / unit) * unit;
+};
+
+export class Controls {
+  #change;
+  #state;
+  #info;
+  #playing = null;
+
+  /** change(changes, motion) */
+  constructor(change) {
+    this.#change = change;
+    this.#slider('isovalue', (t) => ({ isovalue: this.#valueScale.value(t) }));
+    this.#slider('triangles', (t) => ({ triangles: rounded(trianglesScale.value(t)) }));
+    this.#slider('threshold', (t) => ({ threshold: t === 0 ? 0 : this.#thresholdScale.value(t) }));
+    this.#slider('slice-at', (t) => ({ at: this.#placeScale.value(t) }));
+    this.#slider('lens-radius', (t) => ({ radius: this.#radiusScale.value(t) }));
+    this.#slider('time', (t) => ({ time: this.#timeAt(t) }));
+    for (const id of ['surface', 'outlines']) {
+      byId(id).addEventListener('change', (e) => change({ [id]: e.target.checked }, 'settled'));
+    }
+    for (const id of ['by-triangles', 'by-threshold']) {
+      byId(id).addEventListener('change', (e) => change({ detail: e.target.value }, 'settled'));
+    }
+    byId('lens').addEventListener('change', (e) => {
+      change({ lens: e.target.value, centre: null }, 'settled');
+    });
+    byId('indicator').addEventListener('change', (e) => this.#chooseIndicator(e.target.value));
+    byId('slice').addEventListener('change', (e) => this.#chooseSlice(e.target.value));
+    byId('isovalue-number').addEventListener('change', (e) => {
+      const value = Number(e.target.value.replace(',', '.'));
+      const valid = e.target.value.trim() !== '' && Number.isFinite(value);
+      e.target.setAttribute('aria-invalid', String(!valid));
+      if (valid) change({ isovalue: value }, 'settled');
+    });
+    byId('play').addEventListener('click', () => this.#play());
+  }
+
+  /** Shows a state. */
+  show(state, info) {
+    this.#state = state;
+    this.#info = info;
+    byId('surface').checked = state.surface;
+    byId('outlines').checked = state.outlines;
+    byId('by-triangles').checked = state.detail === 'triangles';
+    byId('by-threshold').checked = state.detail === 'threshold';
+    for (const id of ['indicator', 'slice', 'lens']) byId(id).value = state[id];
+    byId('isovalue-controls').hidden = !state.surface;
+    byId('triangles-controls').hidden = state.detail !== 'triangles';
+    byId('threshold-controls').hidden = state.detail !== 'threshold';
+    byId('slice-controls').hidden = state.slice === 'none';
+    byId('lens-controls').hidden = state.lens === 'off';
+    byId('time-section').hidden = info.times.length < 2;
+    this.#place('isovalue', this.#valueScale.position(state.isovalue));
+    this.#place('triangles', trianglesScale.position(state.triangles));
+    this.#place('threshold', this.#thresholdScale.position(state.threshold));
+    this.#place('slice-at', this.#placeScale.position(state.at));
+    this.#place('lens-radius', this.#radiusScale.position(state.radius));
+    this.#place('time', linear(info.times[0], info.times.at(-1)).position(state.time));
+    this.#showTexts(state, info);
+  }
+
+  #showTexts(state, info) {
+    byId('least').textContent = readable(info.least);
+    byId('greatest').textContent = readable(info.greatest);
+    if (document.activeElement !== byId('isovalue-number')) {
+      byId('isovalue-number').value = readable(state.isovalue);
+    }
+    byId('triangles-text').textContent = `about ${readableCount(state.triangles)} triangles`;
+    byId('threshold-text').textContent = this.#thresholdText(state, info);
+    const place = state.slice === 'view' ? 'distance from the centre' : state.slice;
+    byId('slice-text').textContent = `${place} ${readable(state.at)}`;
+    byId('lens-text').textContent = state.lens === 'click' && !state.centre
+      ? 'click on the surface' : `radius ${readable(state.radius)}`;
+    byId('time-text').textContent = `time ${readable(state.time)}`;
+  }
+
+  #thresholdText(state, info) {
+    if (state.indicator === 'visual') {
+      const degrees = 2 * Math.asin(Math.min(state.threshold / 2, 1)) * (180 / Math.PI);
+      return `folds up to ${readable(degrees)}°`;
+    }
+    const percent = (100 * state.threshold) / (info.greatest - info.least);
+    return `${readable(state.threshold)} (${Number(percent.toPrecision(2))} % of the range)`;
+  }
+
+  get #valueScale() {
+    return linear(this.#info.least, this.#info.greatest);
+  }
+  get #thresholdScale() {
+    const range = this.#state.indicator === 'visual' ? 2 : this.#info.greatest - this.#info.least;
+    return logarithmic(range / 10000, range / 2);
+  }
+  get #radiusScale() {
+    const diagonal = diagonalOf(this.#info.box);
+    return linear(0.01 * diagonal, 0.3 * diagonal);
+  }
+  get #placeScale() {
+    const { slice } = this.#state;
+    const [low, high] = this.#info.box;
+    if (slice === 'view') {
+      const half = diagonalOf(this.#info.box) / 2;
+      return linear(-half, half);
+    }
+    const d = Math.max(['x', 'y', 'z'].indexOf(slice), 0);
+    return linear(low[d], high[d]);
+  }
+
+  /** Between frames only the difference of values is known. */
+  #timeAt(t) {
+    const { times } = this.#info;
+    const time = linear(times[0], times.at(-1)).value(t);
+    if (this.#state.indicator === 'offset') return time;
+    return times.reduce((a, b) => (Math.abs(b - time) < Math.abs(a - time) ? b : a));
+  }
+
+  #chooseIndicator(indicator) {
+    const changes = { indicator };
+    const range = this.#info.greatest - this.#info.least;
+    const visual = indicator === 'visual';
+    if (visual !== (this.#state.indicator === 'visual')) changes.threshold = visual ? 0.1 : 0.01 * range;
+    if (indicator !== 'offset') {
+      const { times } = this.#info;
+      const near = (a, b) => Math.abs(b - this.#state.time) < Math.abs(a - this.#state.time);
+      changes.time = times.reduce((a, b) => (near(a, b) ? b : a));
+    }
+    this.#change(changes, 'settled');
+  }
+
+  #chooseSlice(slice) {
+    this.#state.slice = slice;
+    this.#change({ slice, at: this.#placeScale.value(0.5) }, 'settled');
+  }
+
+  #slider(id, changesAt) {
+    const slider = byId(id);
+    const position = () => Number(slider.value) / sliderSteps;
+    slider.addEventListener('input', () => this.#change(changesAt(position()), 'moving'));
+    slider.addEventListener('change', () => this.#change(changesAt(position()), 'settled'));
+  }
+
+  #place(id, position) {
+    const slider = byId(id);
+    const value = String(Math.round(sliderSteps * Math.min(Math.max(position, 0), 1)));
+    // A slider under the hand stays where the hand is.
+    if (!slider.matches(':active')) slider.value = value;
+  }
+
+  #play() {
+    if (this.#playing) {
+      clearInterval(this.#playing);
+      this.#playing = null;
+      byId('play').textContent = 'Play';
+      this.#change({}, 'settled');
+      return;
+    }
+    byId('play').textContent = 'Pause';
+    const { times } = this.#info;
+    const length = times.at(-1) - times[0];
+    const seconds = 2 * (times.length - 1);
+    let last = performance.now();
+    let at = this.#state.time >= times.at(-1) ? 0 : (this.#state.time - times[0]) / length;
+    this.#playing = setInterval(() => {
+      const now = performance.now();
+      at = (at + (now - last) / 1000 / seconds) % 1;
+      last = now;
+      this.#change({ time: this.#timeAt(at) }, 'moving');
+    }, 30);
+  }
+}

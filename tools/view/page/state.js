@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the reader has chosen: as an object, in the address of the page, and as a request.
+
+export function diagonalOf(box) {
+  return Math.hypot(...box[1].map((x, d) => x - box[0][d]));
+}
+
+/** Where a page begins. */
+export function defaultState(info) {
+  const [low, high] = info.box;
+  return {
+    surface: true,
+    isovalue: info.isovalue,
+    detail: 'triangles',
+    triangles: 50000,
+    threshold: 0.01 * (info.greatest - info.least),
+    indicator: 'offset',
+    outlines: false,
+    slice: 'none',
+    at: (low[2] + high[2]) / 2,
+    normal: [0, 0, 1],
+    lens: 'off',
+    radius: 0.08 * diagonalOf(info.box),
+    centre: null,
+    time: info.times[0],
+    camera: null,
+  };
+}
+
+const choices = {
+  detail: ['triangles', 'threshold'],
+  indicator: ['offset', 'visual', 'numerical', 'wavelet'],
+  slice: ['none', 'x', 'y', 'z', 'view'],
+  lens: ['off', 'cursor', 'click'],
+};
+const lists = { normal: 3, centre: 3, camera: 9 };
+
+/** The state in an address, #key=value&..., on top of where a page begins; what is malformed does not
+    count. */
+export function stateFromAddress(hash, info) {
+  const state = defaultState(info);
+  for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ''))) {
+    if (!(key in state)) continue;
+    if (choices[key]) {
+      if (choices[key].includes(text)) state[key] = text;
+    } else if (typeof state[key] === 'boolean') {
+      state[key] = text === 'on';
+    } else if (lists[key]) {
+      const numbers = text.split(',').map(Number);
+      if (numbers.length === lists[key] && numbers.every(Number.isFinite)) state[key] = numbers;
+    } else if (text !== '' && Number.isFinite(Number(text))) {
+      state[key] = Number(text);
+    }
+  }
+  if (state.triangles < 1) state.triangles = 1;
+  if (state.threshold < 0) state.threshold = 0;
+  if (state.radius < 0) state.radius = 0;
+  return state;
+}
+
+/** The address of a state: what differs from where a page begins. */
+export function addressOf(state, info) {
+  const start = defaultState(info);
+  const short = (x) => String(Number(x.toPrecision(9)));
+  const entries = [];
+  for (const [key, value] of Object.entries(state)) {
+    if (value === null || JSON.stringify(value) === JSON.stringify(start[key])) continue;
+    if (Array.isArray(value)) entries.push(`${key}=${value.map(short).join(',')}`);
+    else if (typeof value === 'boolean') entries.push(`${key}=${value ? 'on' : 'off'}`);
+    else entries.push(`${key}=${typeof value === 'number' ? short(value) : value}`);
+  }
+  return `#${entries.join('&')}`;
+}
+
+/** A request as frame_request.hpp describes it, or null where nothing is to be drawn. */
+export function requestOf(state, info, motion) {
+  const entries = [];
+  if (state.surface) entries.push(`isovalue=${state.isovalue}`);
+  if (state.slice === 'view') {
+    const centre = info.box[0].map((x, d) => (x + info.box[1][d]) / 2);
+    const through = centre.map((x, d) => x + state.at * state.normal[d]);
+    entries.push(`plane=${[...through, ...state.normal].join(',')}`);
+  } else if (state.slice !== 'none') {
+    entries.push(`axis=${state.slice}`, `at=${state.at}`);
+  }
+  if (entries.length === 0) return null;
+  if (state.detail === 'triangles') entries.push(`triangles=${Math.round(state.triangles)}`);
+  else entries.push(`threshold=${state.threshold}`);
+  entries.push(`indicator=${state.indicator}`, `motion=${motion}`, 'normals=int8');
+  if (state.lens !== 'off' && state.centre) {
+    entries.push(`lens=${[...state.centre, state.radius].join(',')}`, 'slope=1');
+  }
+  if (info.times.length > 1) entries.push(`time=${state.time}`);
+  if (state.outlines) entries.push('outlines=on');
+  return entries.join('&');
+}
