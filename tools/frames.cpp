@@ -11,6 +11,7 @@
 #include <nestgrid/error.hpp>
 
 #include "extract.hpp"
+#include "frame_files.hpp"
 #include "hierarchy.hpp"
 
 using nestgrid::InvalidInput;
@@ -131,29 +132,7 @@ private:
     std::vector<nestgrid::HierarchicalIndicator> indicators_;
 };
 
-using Paths = std::vector<std::filesystem::path>;
 using Function = std::function<void(const Frames&)>;
-
-/// \throw nestgrid::InvalidInput where two volumes have another type or geometry
-void require_one_layout(const std::vector<Volume>& volumes, const Paths& paths) {
-    const auto& first = volumes.front().geometry;
-    for (std::size_t i = 1; i < volumes.size(); ++i) {
-        const auto& other = volumes[i].geometry;
-        const char* what = nullptr;
-        if (other.samples != first.samples) {
-            what = "other dimensions";
-        } else if (volumes[i].type != volumes.front().type) {
-            what = "samples of another type";
-        } else if (other.spacing != first.spacing || other.origin != first.origin ||
-                   other.direction != first.direction) {
-            what = "another place in space";
-        }
-        if (what != nullptr) {
-            throw InvalidInput("'" + paths[i].string() + "' has " + what + " than '" +
-                               paths.front().string() + "'");
-        }
-    }
-}
 
 void with_volumes(Input& input, const Paths& paths, int threads, const Function& function) {
     using Grid = nestgrid::LatticeBisection<3>;
@@ -178,46 +157,12 @@ void with_volumes(Input& input, const Paths& paths, int threads, const Function&
     });
 }
 
-/// The numbers of the corners of all leaves, one after the other.
-template <class Grid>
-std::vector<std::uint32_t> leaf_nodes(const Grid& grid) {
-    std::vector<std::uint32_t> nodes;
-    grid.for_each_leaf([&](const nestgrid::Leaf& leaf) {
-        nodes.insert(nodes.end(), leaf.nodes.begin(), leaf.nodes.end());
-    });
-    return nodes;
-}
-
-/// \throw nestgrid::InvalidInput unless the path is that of a hierarchy of this family
-template <class Family>
-void require_family(const std::filesystem::path& path) {
-    bool same = is_hierarchy(path);
-    if (same) {
-        const nestgrid::HierarchyHeader header = nestgrid::read_hierarchy_header(path);
-        same = header.family == Family::name && header.dimension == Family::dimension &&
-               header.corners == Family::max_corners;
-    }
-    if (!same) {
-        throw InvalidInput("'" + path.string() +
-                           "' holds no hierarchy of the family of the first input");
-    }
-}
-
 void with_hierarchies(const Paths& paths, const std::string& array, int threads,
                       const Function& function) {
     with_hierarchy(paths.front(), [&]<class Family>(nestgrid::StoredHierarchy<Family>& first) {
         using Grid = nestgrid::StoredGrid<Family>;
         const nestgrid::NamedField& named = field_named(first.fields, array);
-        std::vector<std::vector<double>> values{named.values};
-        for (const auto& path : std::span(paths).subspan(1)) {
-            require_family<Family>(path);
-            const auto other = nestgrid::read_hierarchy<Family>(path);
-            if (leaf_nodes(other.grid) != leaf_nodes(first.grid) ||
-                other.grid.node_positions() != first.grid.node_positions()) {
-                throw InvalidInput("'" + path.string() + "' has another grid than the first input");
-            }
-            values.push_back(field_named(other.fields, array).values);
-        }
+        const std::vector<std::vector<double>> values = frame_values(first, paths, array);
         std::vector<nestgrid::NodeField<Grid, double>> fields;
         for (const auto& v : values) fields.emplace_back(first.grid, v);
         FramesOf frames(first.grid, fields, named.name, threads);

@@ -23,11 +23,12 @@ int main(int argc, char** argv) {
         "  nestgrid slice head.nii.gz --axis z --at 90 --threshold 2% --image slice.png\n"
         "  nestgrid probe head.nii.gz --line 0,90,90,180,90,90 --count 200 -o line.csv\n"
         "  nestgrid info head.nii.gz\n"
+        "  nestgrid view head.nii.gz\n"
         "  nestgrid mesh part.poly --family bisection --field front --tolerance 0.01 -o "
         "part.nestgrid");
-    const std::vector<Command> commands{add_isosurface(app), add_slice(app),   add_isolines(app),
-                                        add_height(app),     add_surface(app), add_boundary(app),
-                                        add_probe(app),      add_info(app),    add_mesh(app)};
+    const std::vector<Command> commands{
+        add_isosurface(app), add_slice(app), add_isolines(app), add_height(app), add_surface(app),
+        add_boundary(app),   add_probe(app), add_info(app),     add_mesh(app),   add_view(app)};
 
     try {
         app.parse(argc, argv);

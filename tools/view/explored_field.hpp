@@ -58,7 +58,8 @@ Histogram histogram_of(std::size_t count, const At& at) {
 }
 
 struct ExploredField {
-    std::string name = "value";
+    std::string title = "field";          ///< of the page: the name of a file, say
+    std::string name = "value";           ///< of the field
     std::vector<SharedHierarchy> frames;  ///< of one grid; at least one
     std::vector<double> times{0};         ///< of the frames, ascending
     /// Gives the field between frames, from one weight for each. Empty where there is one frame.

@@ -270,7 +270,7 @@ std::string Explorer::info() const {
     const Histogram& h = field_.histogram;
     const bool counted = h.greatest > h.least;
     JsonText text;
-    text.open('{').key("name").string(field_.name);
+    text.open('{').key("title").string(field_.title).key("name").string(field_.name);
     text.key("least").number(least_).key("greatest").number(greatest_);
     text.key("box").open('[');
     for (const Point& corner : field_.box) text.numbers(corner);

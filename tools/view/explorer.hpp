@@ -39,8 +39,8 @@ public:
     /// \throw GridError as HierarchicalIndicator
     explicit Explorer(ExploredField field, const Executor& executor);
 
-    /// What a page needs to begin with, as JSON: the name of the field, its range, box, times, a
-    /// histogram, an isovalue to begin with, nodes, and seconds of the preroll.
+    /// What a page needs to begin with, as JSON: a title, the name of the field, its range, box,
+    /// times, a histogram, an isovalue to begin with, nodes, and seconds of the preroll.
     std::string info() const;
 
     /// Draws a frame.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The picture: surfaces in their box, camera and light.
-import * as THREE from 'three';
+import * as THREE from './three.module.js';
 import { OrbitControls } from './OrbitControls.js';
 import { GLTFExporter } from './GLTFExporter.js';
 import { colourAt, coloursOf } from './colours.js';

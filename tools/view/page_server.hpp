@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Serves the page on 127.0.0.1 and answers its requests.
+//
+// Invariants:
+//   - every address begins with a token of 128 random bits, which other users of the machine do not
+//     know;
+//   - only requests to the hosts localhost and 127.0.0.1 are answered, at any port, so that no page
+//     of another site reaches the server by a name of its own, and a tunnel (ssh -L) does;
+//   - files are in memory and have fixed names: no path from a request reaches the file system;
+//   - a request is a GET without a body, with a head of 16 KiB at most.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nestgrid::view {
+
+/// A file of the page.
+struct PageFile {
+    std::string name;
+    std::string type;  ///< of MIME
+    std::string content;
+};
+
+/// Reads the files of the page, which are index.html, *.css, *.js and nothing else.
+/// \throw IoError where the folder is not that of a page
+std::vector<PageFile> read_page(const std::filesystem::path& folder);
+
+/// What answers the page. Both may be called by several threads at once. Exceptions that are
+/// InvalidInput or GridError are sentences for the reader.
+struct PageAnswers {
+    std::function<std::string()> info;                                      ///< JSON
+    std::function<std::vector<std::byte>(std::string_view request)> frame;  ///< frame_reply.hpp
+};
+
+class PageServer {
+public:
+    /// Takes a port of 127.0.0.1.
+    /// \param port 0: any
+    /// \throw IoError where the port is not free
+    PageServer(std::vector<PageFile> files, PageAnswers answers, int port);
+    ~PageServer();
+    PageServer(const PageServer&) = delete;
+    PageServer& operator=(const PageServer&) = delete;
+
+    /// http://127.0.0.1:PORT/TOKEN/
+    const std::string& address() const { return address_; }
+
+    /// Serves until stop() is called.
+    void run();
+    /// May be called by any thread.
+    void stop();
+
+private:
+    class Http;
+    std::string address_;
+    std::unique_ptr<Http> http_;
+};
+
+}  // namespace nestgrid::view

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <nestgrid/adapters/tbb.hpp>
+#include <nestgrid/error.hpp>
+
+#include "../command_line.hpp"
+#include "explored_files.hpp"
+#include "explorer.hpp"
+#include "page_server.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace nestgrid::view;
+using nestgrid::InvalidInput;
+
+struct Options {
+    Input input;
+    std::vector<fs::path> more;
+    std::vector<double> times;
+    int port = 0;
+    int threads = 0;
+    bool no_browser = false;
+};
+
+/// The folder of the page: beside the program where it was built, in share where it is installed.
+fs::path page_folder() {
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+    const fs::path built = program / "page";
+    return fs::exists(built) ? built : program / NESTGRID_PAGE_FROM_PROGRAM;
+}
+
+std::vector<double> times_of(const Options& o) {
+    const std::size_t files = o.more.size() + 1;
+    if (o.times.empty()) {
+        std::vector<double> numbers(files);
+        std::iota(numbers.begin(), numbers.end(), 0.0);
+        return numbers;
+    }
+    if (o.times.size() != files) {
+        throw InvalidInput("--times has " + std::to_string(o.times.size()) +
+                           " numbers, but there are " + std::to_string(files) + " inputs");
+    }
+    for (std::size_t i = 0; i < files; ++i) {
+        if (!std::isfinite(o.times[i]) || (i > 0 && !(o.times[i - 1] < o.times[i]))) {
+            throw InvalidInput("--times are not finite numbers in ascending order");
+        }
+    }
+    return o.times;
+}
+
+/// Shows an address in the reader's browser, where there is a screen.
+void open_browser(const std::string& address) {
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+    posix_spawn_file_actions_t quiet;
+    posix_spawn_file_actions_init(&quiet);
+    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    std::string program = "xdg-open";
+    std::string argument = address;
+    const std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
+    pid_t child = 0;
+    posix_spawnp(&child, program.c_str(), &quiet, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&quiet);
+}
+
+/// Serves until the program is interrupted or asked to end.
+void serve(PageServer& server) {
+    sigset_t ends;
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGINT);
+    sigaddset(&ends, SIGTERM);
+    std::thread waiting([&] {
+        int signal = 0;
+        sigwait(&ends, &signal);
+        server.stop();
+    });
+    server.run();
+    waiting.join();
+}
+
+void run_view(Options& o) {
+    if (o.port < 0 || o.port > 65535) throw InvalidInput("--port is not from 0 to 65535");
+    if (o.threads < 0) throw InvalidInput("--threads is negative");
+    std::vector<double> times = times_of(o);
+    std::vector<PageFile> files = read_page(page_folder());
+    Paths paths{o.input.path};
+    paths.insert(paths.end(), o.more.begin(), o.more.end());
+    std::optional<ProgressLine> progress(std::in_place);
+    progress->show("reading");
+    ExploredField field = read_explored(o.input, paths, std::move(times));
+    progress->show("preroll");
+
+    // The threads that follow leave these signals to the one that waits for them.
+    sigset_t ends;
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGINT);
+    sigaddset(&ends, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+    std::signal(SIGCHLD, SIG_IGN);
+
+    const nestgrid::TbbExecutor executor(o.threads);
+    Explorer explorer(std::move(field), executor);
+    progress.reset();
+    std::mutex mutex;
+    PageServer server(std::move(files),
+                      {.info = [&] { return explorer.info(); },
+                       .frame =
+                           [&](std::string_view request) {
+                               const std::scoped_lock lock(mutex);
+                               return explorer.frame(request);
+                           }},
+                      o.port);
+    std::printf("%s\n", server.address().c_str());
+    std::fflush(stdout);
+    if (isatty(STDOUT_FILENO) == 1) std::printf("Open this address in a browser; Ctrl+C ends.\n");
+    if (!o.no_browser) open_browser(server.address());
+    serve(server);
+}
+
+}  // namespace
+
+Command add_view(CLI::App& program) {
+    auto o = std::make_shared<Options>();
+    CLI::App* view =
+        program.add_subcommand("view", "explore a field in the browser, by a page on 127.0.0.1");
+    add_input_options(*view, o->input);
+    view->add_option("FRAMES", o->more,
+                     "further files of the same layout: later frames of the same field");
+    view->add_option("--times", o->times, "the times of all frames, ascending; default: 0, 1, ...")
+        ->delimiter(',');
+    view->add_option("--port", o->port, "of 127.0.0.1; default: any that is free");
+    view->add_option("--threads", o->threads, "how many to use; default: all");
+    view->add_flag("--no-browser", o->no_browser, "print the address and open no browser");
+    return {view, [o] { run_view(*o); }};
+}
