@@ -27,6 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 /// A moving frame is drawn again where its triangles miss the goal by more than this part.
 constexpr double tolerance = 0.05;
+constexpr int most_draws = 4;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -97,8 +98,7 @@ void write_indices(FrameReply& reply,
 
 void write_values(FrameReply& reply, const Surface<3>& surface) {
     const std::size_t vertices = surface.vertices.size();
-    if (vertices == 0 || surface.attributes.size() < vertices) return;
-    const std::size_t components = surface.attributes.size() / vertices;
+    const std::size_t components = vertices > 0 ? surface.attributes.size() / vertices : 1;
     const auto to = reply.array<float>("values", "float32", vertices);
     for (std::size_t i = 0; i < vertices; ++i) {
         to[i] = static_cast<float>(surface.attributes[i * components]);
@@ -114,8 +114,11 @@ void write_part(FrameReply& reply, const Part& part, const FrameRequest& request
     text.key("error_bound").number(part.drawn.error_bound);
     write_points(reply, "positions", surface.vertices);
     write_indices(reply, surface.simplices);
-    if (!surface.normals.empty()) write_normals(reply, surface.normals, request.normals);
-    if (part.kind == std::string_view("slice")) write_values(reply, surface);
+    if (part.kind == std::string_view("slice")) {
+        write_values(reply, surface);
+    } else if (request.normals != NormalType::none) {
+        write_normals(reply, surface.normals, request.normals);
+    }
     text.close('}');
     if (!request.outlines) return;
     const Surface<2> lines = outlines(surface);
@@ -359,9 +362,10 @@ Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawin
         ++drawn.draws;
         thresholds.drawn(static_cast<double>(drawn.triangles()));
     };
-    draw();
-    const double miss = std::abs(static_cast<double>(drawn.triangles()) / goal - 1);
-    if (miss > tolerance && thresholds.threshold() != drawn.threshold) draw();
+    do {
+        draw();
+    } while (drawn.draws < most_draws && thresholds.threshold() != drawn.threshold &&
+             std::abs(static_cast<double>(drawn.triangles()) / goal - 1) > tolerance);
     return drawn;
 }
 

@@ -10,7 +10,7 @@
 //   - a settled frame does not depend on the frames before it: the threshold of a number of
 //     triangles is the least one of 8 significant bits at which the frame keeps within it, or,
 //     where none does, the greatest one;
-//   - a moving frame costs one extraction in most cases (FrameBudget), and two where the first one
+//   - a moving frame costs one extraction in most cases (FrameBudget), and up to four where it
 //     misses the number of triangles by more than 5 %.
 #pragma once
 

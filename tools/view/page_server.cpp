@@ -91,6 +91,11 @@ public:
     Http(std::vector<PageFile> files, PageAnswers answers) : answers_{std::move(answers)} {
         for (PageFile& file : files) files_.emplace(file.name, std::move(file));
         new_task_queue = [] { return new httplib::ThreadPool(threads); };
+        // Without the default, SO_REUSEPORT, by which two servers share a port.
+        set_socket_options([](socket_t socket) {
+            const int on = 1;
+            setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+        });
         set_default_headers(
             {{"Cache-Control", "no-store"},
              {"Content-Security-Policy",

@@ -45,10 +45,10 @@ export class Stage {
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.addEventListener('change', () => this.draw());
     this.#controls.addEventListener('end', moved);
-    const lamp = new THREE.DirectionalLight(0xffffff, 2.2);
+    const lamp = new THREE.DirectionalLight(0xffffff, 2.6);
     lamp.position.set(-0.6, 0.9, 1);
     this.#camera.add(lamp);
-    this.#scene.add(this.#camera, new THREE.AmbientLight(0xffffff, 0.9), this.#parts, this.#frame);
+    this.#scene.add(this.#camera, new THREE.AmbientLight(0xffffff, 1.1), this.#parts, this.#frame);
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
       this.setBox(this.#box);
@@ -63,7 +63,8 @@ export class Stage {
     const size = new THREE.Vector3(...box[1]).sub(new THREE.Vector3(...box[0]));
     const edges = new THREE.LineSegments(
       new THREE.EdgesGeometry(new THREE.BoxGeometry(size.x, size.y, size.z)),
-      new THREE.LineBasicMaterial({ color: cssColour('--line') }));
+      new THREE.LineBasicMaterial({
+        color: cssColour('--quiet'), transparent: true, opacity: 0.35 }));
     edges.position.set(...box[0]).addScaledVector(size, 0.5);
     this.#frame.add(edges);
     const step = 0.035 * diagonalOf(box);
@@ -94,7 +95,7 @@ export class Stage {
       this.#camera.up.set(0, 0, 1);
       const narrow = Math.min(1, this.#camera.aspect);
       this.#camera.position.set(...centre)
-        .addScaledVector(new THREE.Vector3(0.55, -0.75, 0.4).normalize(), 1.55 * diagonal / narrow);
+        .addScaledVector(new THREE.Vector3(0.55, -0.75, 0.4).normalize(), 1.75 * diagonal / narrow);
     }
     this.#camera.updateProjectionMatrix();
     this.#controls.update();
@@ -129,8 +130,8 @@ export class Stage {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(part.positions, 3));
     geometry.setIndex(new THREE.BufferAttribute(part.indices, 1));
-    // Nothing is left out that lies beside the camera, so that no one need bound the surface.
     const object = this.#drawn(part, geometry, isovalue, least, greatest);
+    // Spares the search for a sphere around the surface, once a frame.
     object.frustumCulled = false;
     object.userData = { kind: part.kind };
     return object;

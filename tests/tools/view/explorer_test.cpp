@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Frames of the interactive page: the surfaces of the library, within the numbers of triangles that
+// were asked for, and a sentence for each request that is none.
+#include <gtest/gtest.h>
+
+#include <explored_samples.hpp>
+#include <nestgrid/algorithms/key_frames.hpp>
+#include <nestgrid/algorithms/outlines.hpp>
+#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
+
+#include "families.hpp"
+#include "frame_of.hpp"
+#include "refusal.hpp"
+#include "same_surface.hpp"
+#include "sample_fields.hpp"
+
+using namespace nestgrid_test;
+using namespace nestgrid::view;
+
+namespace {
+
+std::string text_of(double x) {
+    std::array<char, 40> digits{};
+    std::snprintf(digits.data(), digits.size(), "%.17g", x);
+    return digits.data();
+}
+
+std::vector<float> floats_of(std::span<const Point> points) {
+    std::vector<float> result;
+    for (const Point& x : points) {
+        for (const double c : x) result.push_back(static_cast<float>(c));
+    }
+    return result;
+}
+
+template <class Simplices>
+std::vector<std::uint32_t> indices_of(const Simplices& simplices) {
+    std::vector<std::uint32_t> result;
+    for (const auto& simplex : simplices)
+        result.insert(result.end(), simplex.begin(), simplex.end());
+    return result;
+}
+
+/// A part of a frame has the vertices and triangles (segments) of a surface.
+template <int dimension>
+void expect_part(const Frame& frame, const std::string& kind, const Surface<dimension>& surface) {
+    expect_same_bits(frame.array<float>(kind, "positions"), floats_of(surface.vertices),
+                     "vertices");
+    expect_same_bits(frame.array<std::uint32_t>(kind, "indices"), indices_of(surface.simplices),
+                     "simplices");
+}
+
+/// A field that borrows a grid and values of the test.
+template <class Grid>
+ExploredField borrowed_field(const Grid& grid, const std::vector<double>& values) {
+    const std::shared_ptr<const Grid> shared(std::shared_ptr<const void>(), &grid);
+    return still_field(shared, NodeField<Grid, double>(grid, values));
+}
+
+template <class Family>
+class Explored : public testing::Test {};
+using FamiliesInSpace = testing::Types<BisectionTetrahedra, RedGreenTetrahedra, RedGreenMixed3,
+                                       UnbalancedOctree, Prisms>;
+TYPED_TEST_SUITE(Explored, FamiliesInSpace);
+
+TYPED_TEST(Explored, FramesHaveTheBitsOfTheLibrary) {
+    for_each_field_at_sphere<TypeParam>(2, 5, [](const auto& grid, const NodalSamples& samples) {
+        using Grid = std::decay_t<decltype(grid)>;
+        const NodeField<Grid, double> field(grid, samples.values);
+        const HierarchicalIndicator indicator(grid, field);
+        const SequentialExecutor executor;
+        Explorer explorer(borrowed_field(grid, samples.values), executor);
+        const Plane plane({0.41, 0.5, 0.5}, {1, 0.2, 0.1});
+        const double isovalue = 0;  // which the fields cross
+        for (const double part : {0.0, 0.05}) {
+            const double threshold = part * (indicator.greatest() - indicator.least());
+            const Threshold s(&indicator, threshold);
+            const auto surface = isosurface(grid, field, isovalue, s, indicator, {.normals = true});
+            const auto cut = slice(grid, field, plane, s, indicator);
+            const Frame frame = frame_of(
+                explorer, "isovalue=" + text_of(isovalue) + "&threshold=" + text_of(threshold) +
+                              "&plane=0.41,0.5,0.5,1,0.2,0.1&normals=float32&outlines=on");
+            expect_part(frame, "isosurface", surface.surface);
+            expect_same_bits(frame.array<float>("isosurface", "normals"),
+                             floats_of(surface.surface.normals), "normals");
+            expect_part(frame, "slice", cut.surface);
+            expect_same_bits(
+                frame.array<float>("slice", "values"),
+                std::vector<float>(cut.surface.attributes.begin(), cut.surface.attributes.end()),
+                "values");
+            expect_part(frame, "outlines", outlines(cut.surface));
+            EXPECT_EQ(frame.number("error_bound", "isosurface"), surface.error_bound);
+            EXPECT_EQ(frame.number("visited", "slice"), double(cut.counts.visited));
+            EXPECT_EQ(frame.number("triangles"),
+                      double(surface.surface.simplices.size() + cut.surface.simplices.size()));
+        }
+    });
+}
+
+LatticeGeometry<3> cube_of(int n) {
+    const double h = 1.0 / (n - 1);
+    return {.samples = {n, n, n}, .spacing = {h, h, h}};
+}
+
+/// The samples of a field in a cube, and what explores them.
+class Volume {
+public:
+    explicit Volume(const SampledField& field, int n)
+        : values_{field.values},
+          explorer{explored_samples(cube_of(n), std::span<const float>(values_)), executor_} {}
+
+private:
+    std::vector<float> values_;
+    SequentialExecutor executor_;
+
+public:
+    Explorer explorer;
+};
+
+SampledField field_named(const std::string& name, int n) {
+    for (SampledField& field : sampled_fields({n, n, n})) {
+        if (field.name == name) return std::move(field);
+    }
+    throw std::out_of_range(name);
+}
+
+TEST(MovingFrames, KeepWithinFivePercentOfTheTriangles) {
+    for (const std::string name : {"sphere", "bucky ball", "gyroid"}) {
+        const SampledField field = field_named(name, 65);
+        Volume volume(field, 65);
+        for (const int goal : {10000, 30000}) {
+            double draws = 0;
+            for (int i = 0; i < 60; ++i) {
+                const double isovalue = field.isovalue + 0.1 * field.range * (i - 30) / 60;
+                const Frame frame =
+                    frame_of(volume.explorer, "motion=moving&triangles=" + std::to_string(goal) +
+                                                  "&isovalue=" + text_of(isovalue));
+                EXPECT_NEAR(frame.number("triangles"), goal, 0.05 * goal) << name << ' ' << i;
+                if (i > 0) draws += frame.number("draws");
+            }
+            EXPECT_LT(draws, 59 * 1.3) << name << " at " << goal;
+        }
+    }
+}
+
+TEST(SettledFrames, HaveTheThresholdOfTheSearch) {
+    for (const SampledField& field : sampled_fields({33, 33, 33})) {
+        SCOPED_TRACE(field.name);
+        Volume volume(field, 33);
+        const LatticeBisection<3> grid(cube_of(33));
+        const LatticeField samples(grid, std::span<const float>(field.values));
+        const HierarchicalIndicator indicator(grid, samples);
+        for (const std::uint64_t goal : {3000U, 700U, 20000U, 10000000U}) {
+            std::string request =
+                "triangles=" + std::to_string(goal) + "&isovalue=" + text_of(field.isovalue);
+            frame_of(volume.explorer, request + "&motion=moving");
+            const Frame frame = frame_of(volume.explorer, request);
+            const TriangleBudget best =
+                find_threshold(grid, samples, field.isovalue, indicator, goal);
+            EXPECT_EQ(frame.number("triangles"), double(best.triangles)) << goal;
+            EXPECT_EQ(frame.number("threshold"), best.threshold) << goal;
+        }
+    }
+}
+
+TEST(SettledFrames, AreTheFinestWithinTheTriangles) {
+    const SampledField field = field_named("gyroid", 33);
+    Volume volume(field, 33);
+    for (const std::string what :
+         {"axis=z&at=0.3", "isovalue=0.1&axis=x&at=0.52", "isovalue=0.1&indicator=visual",
+          "isovalue=0.1&indicator=numerical", "isovalue=0.1&indicator=wavelet",
+          "isovalue=0.1&lens=0.5,0.5,0.5,0.1&slope=1"}) {
+        const Frame frame = frame_of(volume.explorer, what + "&triangles=9000");
+        const double threshold = frame.number("threshold");
+        EXPECT_LE(frame.number("triangles"), 9000) << what;
+        EXPECT_GT(threshold, 0) << what;
+        // The next threshold of 8 significant bits.
+        const double less = threshold - std::exp2(std::ilogb(threshold) - 8);
+        EXPECT_GT(
+            frame_of(volume.explorer, what + "&threshold=" + text_of(less)).number("triangles"),
+            9000)
+            << what;
+    }
+}
+
+TEST(Lenses, AddTrianglesNearTheirBallAndNowhereElse) {
+    Volume volume(field_named("sphere", 65), 65);
+    const std::string coarse = "isovalue=0.37&threshold=0.05";
+    const auto near = [](const Frame& frame) {
+        std::array<std::size_t, 2> count{};
+        const auto x = frame.array<float>("isosurface", "positions");
+        for (std::size_t v = 0; v < x.size(); v += 3) {
+            ++count[std::hypot(x[v] - 0.87, x[v + 1] - 0.5, x[v + 2] - 0.5) < 0.15 ? 0 : 1];
+        }
+        return count;
+    };
+    const auto without = near(frame_of(volume.explorer, coarse));
+    const auto with = near(frame_of(volume.explorer, coarse + "&lens=0.87,0.5,0.5,0.1&slope=4"));
+    EXPECT_GT(with[0], 10 * without[0]);
+    EXPECT_LT(with[1], with[0]);
+}
+
+TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
+    const auto first = field_named("sphere", 33).values;
+    const auto second = field_named("gyroid", 33).values;
+    const SequentialExecutor executor;
+    const std::vector<std::span<const float>> both{first, second};
+    Explorer explorer(explored_samples(cube_of(33), both, {2, 6}), executor);
+    Explorer alone(explored_samples(cube_of(33), both[1]), executor);
+    const std::string what = "isovalue=0.4&threshold=0.02";
+    const Frame last = frame_of(explorer, what + "&time=6");
+    const Frame second_alone = frame_of(alone, what);
+    expect_same_bits(last.array<float>("isosurface", "positions"),
+                     second_alone.array<float>("isosurface", "positions"), "vertices");
+
+    const LatticeBisection<3> grid(cube_of(33));
+    const LatticeField a(grid, both[0]);
+    const LatticeField b(grid, both[1]);
+    const std::array weights{0.75F, 0.25F};
+    const HierarchicalIndicator of_a(grid, a);
+    const HierarchicalIndicator of_b(grid, b);
+    const KeyFrames indicator({&of_a, &of_b}, weights);
+    const Between between({&a, &b}, weights);
+    const Threshold s(&indicator, 0.02);
+    expect_part(frame_of(explorer, what + "&time=3"), "isosurface",
+                isosurface(grid, between, 0.4, s, indicator).surface);
+
+    EXPECT_TRUE(frame_of(explorer, what + "&time=6&indicator=wavelet").has("isosurface"));
+    expect_refused([&] { explorer.frame(what + "&time=3&indicator=wavelet"); }, "between frames");
+    expect_refused([&] { explorer.frame(what + "&time=7"); }, "7");
+    expect_refused([&] { alone.frame(what + "&time=7"); }, "one frame");
+}
+
+TEST(Volumes, OfAnyTypeGiveTheSameSurface) {
+    const std::size_t count = std::size_t{17} * 17 * 17;
+    const SequentialExecutor executor;
+    const auto positions = [&]<class Sample>(Sample) {
+        std::vector<Sample> samples;
+        for (std::size_t i = 0; i < count; ++i) samples.push_back(static_cast<Sample>(i * i % 101));
+        Explorer explorer(explored_samples(cube_of(17), std::span<const Sample>(samples)),
+                          executor);
+        return frame_of(explorer, "isovalue=50.25&threshold=3")
+            .template array<float>("isosurface", "positions");
+    };
+    const auto expected = positions(std::uint8_t{});
+    EXPECT_GT(expected.size(), 1000U);
+    expect_same_bits(positions(std::int16_t{}), expected, "int16");
+    expect_same_bits(positions(float{}), expected, "float");
+}
+
+TEST(Explorers, KeepWhatTheyExploreAlive) {
+    const SequentialExecutor executor;
+    auto samples = std::make_shared<std::vector<float>>(field_named("sphere", 17).values);
+    const std::weak_ptr<std::vector<float>> watch = samples;
+    {
+        Explorer explorer(explored_samples(cube_of(17), std::span<const float>(*samples), samples),
+                          executor);
+        samples.reset();
+        EXPECT_FALSE(watch.expired());
+        EXPECT_GT(frame_of(explorer, "isovalue=0.37").number("triangles"), 100);
+    }
+    EXPECT_TRUE(watch.expired());
+}
+
+TEST(Explorers, RefuseFieldsInThePlane) {
+    const BisectionGrid<2> grid(triangles(1));
+    const std::vector<double> values(grid.node_count(), 1.0);
+    const SequentialExecutor executor;
+    expect_refused([&] { Explorer(borrowed_field(grid, values), executor); }, "2 dimensions");
+}
+
+TEST(Info, TellsRangeBoxAndAnIsovalueThatIsMet) {
+    for (const SampledField& field : sampled_fields({17, 17, 17})) {
+        Volume volume(field, 17);
+        const std::string info = volume.explorer.info();
+        const std::size_t at = info.find("\"isovalue\":") + 11;
+        const Frame frame =
+            frame_of(volume.explorer, "isovalue=" + text_of(std::stod(info.substr(at))));
+        EXPECT_GT(frame.number("triangles"), 0) << field.name;
+        EXPECT_NE(info.find("\"box\":[[0,0,0],[1,1,1]]"), std::string::npos) << info;
+    }
+}
+
+TEST(Requests, ThatAreMalformedAreRefusedInOneSentence) {
+    const std::vector<std::array<std::string, 2>> cases{
+        {"", "nothing is to be drawn"},
+        {"isovalue=", "isovalue is no finite number"},
+        {"isovalue=high", "isovalue is no finite number: 'high'"},
+        {"isovalue=nan", "no finite number"},
+        {"isovalue=inf", "no finite number"},
+        {"isovalue=1e999", "no finite number"},
+        {"isovalue=0x10", "no finite number"},
+        {"isovalue=1,2", "no finite number"},
+        {"isovalue= 1", "no finite number"},
+        {"isovalue=1 ", "no finite number"},
+        {"isovalue=1%20", "no finite number"},
+        {"isovalue=1&isovalue=2", "twice"},
+        {"isovalue", "key=value"},
+        {"isovalue=1&&", "key=value"},
+        {"isovalue=1&colour=red", "knows only"},
+        {"isovalue=1&threshold=-1", "threshold is negative"},
+        {"isovalue=1&threshold=a", "threshold is no finite number"},
+        {"isovalue=1&triangles=0", "triangles is no count"},
+        {"isovalue=1&triangles=1.5", "triangles is no count"},
+        {"isovalue=1&triangles=1e10", "triangles is no count"},
+        {"isovalue=1&triangles=100&threshold=1", "leave out one"},
+        {"isovalue=1&motion=fast", "motion is none of moving, settled"},
+        {"isovalue=1&indicator=best", "indicator is none of offset"},
+        {"isovalue=1&normals=yes", "normals is none of"},
+        {"isovalue=1&outlines=1", "outlines is none of"},
+        {"axis=x", "axis and at"},
+        {"at=1", "axis and at"},
+        {"axis=w&at=1", "axis is none of x, y, z"},
+        {"axis=x&at=", "at is no finite number"},
+        {"axis=x&at=1&plane=0,0,0,1,0,0", "plane alone"},
+        {"plane=0,0,0,1,0", "not 6 finite numbers"},
+        {"plane=0,0,0,1,0,0,0", "not 6 finite numbers"},
+        {"plane=0,0,0,0,0,0", "normal 0"},
+        {"isovalue=1&lens=0,0,0", "not 4 finite numbers"},
+        {"isovalue=1&lens=0,0,0,-1", "negative radius"},
+        {"isovalue=1&slope=1", "need a lens"},
+        {"isovalue=1&lens=0,0,0,1&slope=-1", "slope is negative"},
+        {"isovalue=1&lens=0,0,0,1&finest=2&coarsest=1", "coarsest is below finest"},
+        {"isovalue=1&time=now", "time is no finite number"},
+        {"isovalue=" + std::string(3000, '1'), "longer than"},
+        {"isovalue=\x1b[31m" + std::string(60, 'x'), "'?[31mxxx"}};
+    for (const auto& [request, part] : cases) {
+        const std::string sentence = refusal([&text = request] { parse_request(text); });
+        EXPECT_NE(sentence.find(part), std::string::npos) << request << ": " << sentence;
+        EXPECT_LT(sentence.size(), 200U) << sentence;
+        EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+    }
+}
+
+TEST(Requests, SayWhatTheyAskFor) {
+    const FrameRequest r = parse_request(
+        "isovalue=-1.5e-3&axis=y&at=2&triangles=1e5&motion=moving&indicator=numerical&"
+        "lens=1,2,3,4&finest=0.1&coarsest=8&slope=2&time=3&normals=int8&outlines=on");
+    EXPECT_EQ(r.isovalue, -1.5e-3);
+    EXPECT_EQ(r.plane->through, (Point{0, 2, 0}));
+    EXPECT_EQ(r.plane->normal, (Point{0, 1, 0}));
+    EXPECT_EQ(r.triangles, 100000U);
+    EXPECT_TRUE(r.moving);
+    EXPECT_EQ(r.indicator, IndicatorName::numerical);
+    EXPECT_EQ(r.lens->centre, (Point{1, 2, 3}));
+    EXPECT_EQ(r.lens->radius, 4);
+    EXPECT_EQ(r.lens->finest, 0.1);
+    EXPECT_EQ(r.lens->coarsest, 8);
+    EXPECT_EQ(r.lens->slope, 2);
+    EXPECT_EQ(r.time, 3);
+    EXPECT_EQ(r.normals, NormalType::int8);
+    EXPECT_TRUE(r.outlines);
+}
+
+}  // namespace

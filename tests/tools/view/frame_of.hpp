@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A frame of an Explorer as a page reads it.
+#pragma once
+
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <explorer.hpp>
+
+namespace nestgrid_test {
+
+class Frame {
+public:
+    explicit Frame(std::vector<std::byte> bytes) : bytes_{std::move(bytes)} {
+        std::uint32_t length = 0;
+        std::memcpy(&length, bytes_.data(), sizeof length);
+        arrays_ = sizeof length + length;
+        text_.assign(reinterpret_cast<const char*>(bytes_.data()) + sizeof length, length);
+    }
+
+    const std::string& text() const { return text_; }
+    /// A number of the frame, or of the first part of a kind.
+    double number(const std::string& name, const std::string& kind = "") const {
+        return std::stod(text_.substr(behind("\"" + name + "\":", part(kind))));
+    }
+    bool has(const std::string& kind) const {
+        return text_.find("\"kind\":\"" + kind + "\"") != std::string::npos;
+    }
+    template <class Number>
+    std::vector<Number> array(const std::string& kind, const std::string& name) const {
+        const std::size_t array = behind("\"" + name + "\":{", part(kind));
+        const auto at = std::stoul(text_.substr(behind("\"at\":", array)));
+        const auto count = std::stoul(text_.substr(behind("\"count\":", array)));
+        std::vector<Number> numbers(count);
+        if (arrays_ + at + count * sizeof(Number) > bytes_.size() || at % 4 != 0) {
+            throw std::out_of_range("the array " + name + " is not in the frame");
+        }
+        std::memcpy(numbers.data(), bytes_.data() + arrays_ + at, count * sizeof(Number));
+        return numbers;
+    }
+
+private:
+    std::size_t part(const std::string& kind) const {
+        return kind.empty() ? 0 : behind("\"kind\":\"" + kind + "\"", 0);
+    }
+    std::size_t behind(const std::string& what, std::size_t from) const {
+        const std::size_t found = text_.find(what, from);
+        if (found == std::string::npos) throw std::out_of_range("no " + what + " in " + text_);
+        return found + what.size();
+    }
+
+    std::vector<std::byte> bytes_;
+    std::string text_;
+    std::size_t arrays_;
+};
+
+inline Frame frame_of(nestgrid::view::Explorer& explorer, const std::string& request) {
+    return Frame(explorer.frame(request));
+}
+
+}  // namespace nestgrid_test
