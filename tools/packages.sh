@@ -12,6 +12,9 @@ data_packages=(mricron-data)
 python_packages=(python3-dev python3-numpy python3-pip python3-venv pybind11-dev)
 python_test_packages=(python3-pytest python3-skimage python3-vtk9)
 paraview_packages=(paraview)
+view_packages=(libcpp-httplib-dev chromium)
+# npm of Debian is for its own nodejs: where there is another one, npm is there, too.
+command -v npm >/dev/null || view_packages+=(nodejs npm)
 
 # Unpacks a package into a folder, unless it is there: one that conflicts with others installed.
 unpack_package() {

@@ -11,7 +11,8 @@
 #                                       display, and makes a figure that the same page shows
 #   cmake -B ...                        configures
 #   cmake, ctest --preset NAME          name a preset
-#   bash SCRIPT                         name a script
+#   nestgrid view ...                   is started, and interrupted when it has printed its address
+#   bash SCRIPT PICTURE ...             name a script, and pictures that the same page shows
 # Any other command fails the test, and so does a figure that no command makes.
 # Arguments: the source folder, the build folder, the program, the maker of volumes, Python if it has
 # the package.
@@ -67,6 +68,20 @@ picture() {
     echo "$1" >>made
 }
 
+# Starts a server, which is to print its address and to end when it is interrupted.
+served() {
+    grep -qxF -e "$*" known && return
+    echo "$*" >>known
+    "$@" --no-browser >out 2>&1 &
+    local server=$! tries=0
+    until grep -q . out || [ $((tries += 1)) -gt 100 ]; do sleep 0.1; done
+    # Not every build has the page.
+    grep -q "NESTGRID_VIEW=ON" out && return
+    ran=$((ran + 1))
+    grep -qx "http://127.0.0.1:[0-9]*/[0-9a-f]*/" out || fail "$page: '$*' printed: $(cat out)"
+    kill -INT $server && wait $server || fail "$page: '$*' did not end cleanly: $(cat out)"
+}
+
 nestgrid() {
     local arguments=() skip=
     for argument in "$@"; do
@@ -79,7 +94,11 @@ nestgrid() {
         esac
         arguments+=("$argument")
     done
-    run "$program" "${arguments[@]}"
+    if [ "$1" = view ]; then
+        served "$program" "${arguments[@]}"
+    else
+        run "$program" "${arguments[@]}"
+    fi
 }
 
 # A figure that a script in Python makes, which the page shows.
@@ -116,7 +135,10 @@ check() {
     build/release/tests/benchmarks/*)
         [ -s "$source/tests/benchmarks/${1##*/}.cpp" ] || fail "$page: there is no $1"
         ;;
-    bash) [ -s "$source/$2" ] || fail "$page: there is no $2" ;;
+    bash)
+        [ -s "$source/$2" ] || fail "$page: there is no $2"
+        for file in "${@:3}"; do picture "$file"; done
+        ;;
     cmake | ctest)
         case "$2 $3" in
         "--preset "* | "--build --preset")

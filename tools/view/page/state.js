@@ -54,9 +54,10 @@ export function stateFromAddress(hash, info) {
       state[key] = Number(text);
     }
   }
-  if (state.triangles < 1) state.triangles = 1;
-  if (state.threshold < 0) state.threshold = 0;
-  if (state.radius < 0) state.radius = 0;
+  const start = defaultState(info);
+  if (state.triangles < 1) state.triangles = start.triangles;
+  if (state.threshold < 0) state.threshold = start.threshold;
+  if (state.radius < 0) state.radius = start.radius;
   return state;
 }
 
