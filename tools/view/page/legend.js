@@ -6,8 +6,8 @@ import { cssColourAt, readable } from './colours.js';
 
 const byId = (id) => document.getElementById(id);
 
-/** Draws the legend of a range, with a mark at the isovalue, or none where it is null. */
-export function drawLegend(name, least, greatest, isovalue) {
+/** Draws the bar of the legend, once. */
+export function drawBar(name) {
   byId('legend-title').textContent = name;
   const bar = byId('legend-bar');
   const context = bar.getContext('2d');
@@ -15,6 +15,10 @@ export function drawLegend(name, least, greatest, isovalue) {
     context.fillStyle = cssColourAt(1 - y / (bar.height - 1));
     context.fillRect(0, y, bar.width, 1);
   }
+}
+
+/** Sets the values at the bar, with a mark at the isovalue, or none where it is null. */
+export function markLegend(least, greatest, isovalue) {
   const part = (value) => (greatest > least ? (value - least) / (greatest - least) : 0);
   const ticks = [0, 0.25, 0.5, 0.75, 1].map((t) => ({ at: t, value: least + t * (greatest - least) }));
   const shown = isovalue === null ? ticks

@@ -6,7 +6,7 @@ import { Controls } from './controls.js';
 import { readable, readableCount } from './colours.js';
 import { Engine } from './engine.js';
 import { FrameLoop } from './frame.js';
-import { drawHistogram, drawLegend, pictureWithLegend } from './legend.js';
+import { drawBar, drawHistogram, markLegend, pictureWithLegend } from './legend.js';
 import { Stage } from './stage.js';
 import { addressOf, requestOf, stateFromAddress } from './state.js';
 
@@ -64,6 +64,7 @@ class Page {
       `${readableCount(info.nodes)} nodes, values from ${readable(info.least)} to ${readable(info.greatest)}`;
     document.querySelectorAll('.field-name').forEach((e) => { e.textContent = `“${info.name}”`; });
     drawHistogram(info);
+    drawBar(info.name);
     this.#stage.setBox(info.box);
     this.#restore();
   }
@@ -103,9 +104,9 @@ class Page {
   #show(frame, how) {
     showMessage('');
     const { isovalue, surface } = this.#state;
-    const { least, greatest, name } = this.#info;
+    const { least, greatest } = this.#info;
     this.#stage.show(frame, isovalue, least, greatest);
-    drawLegend(name, least, greatest, surface ? isovalue : null);
+    markLegend(least, greatest, surface ? isovalue : null);
     byId('number-triangles').textContent = readableCount(frame.triangles);
     byId('number-bound').textContent = readable(frame.error_bound);
     byId('number-threshold').textContent = readable(frame.threshold);
