@@ -314,7 +314,7 @@ const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name
             "time of a frame");
     }
     if (swept_ && swept_->name == name && swept_->frame == moment.frame) return swept_->indicator;
-    const double tau = 0x1p-20 * range();
+    const double tau = 0x1p-20 * (greatest_ - least_);
     swept_.emplace(Swept{name, moment.frame,
                          std::visit(
                              [&](const auto& hierarchy) {
@@ -339,11 +339,22 @@ const SweptIndicator& Explorer::size_for(const Moment& moment, double slope) {
     return *size_;
 }
 
-Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawing& drawing,
-                                       double greatest) {
+double Explorer::greatest_threshold(IndicatorName indicator) const {
+    if (indicator == IndicatorName::visual) return 2;
+    const double range = greatest_ - least_;
+    if (!(range > 0)) return 1;
+    // A gradient changes by a few ranges over the height of an element, which is a part of its
+    // diameter.
+    return indicator == IndicatorName::numerical ? 16 * range : range;
+}
+
+Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawing& drawing) {
     const auto goal = static_cast<double>(request.triangles);
     const bool known = budget_ && budget_->indicator == request.indicator;
-    if (!known) budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest)});
+    if (!known) {
+        const double greatest = greatest_threshold(request.indicator);
+        budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest)});
+    }
     FrameBudget& thresholds = budget_->thresholds;
     thresholds.aim(goal);
     Drawn drawn;
@@ -377,12 +388,9 @@ std::vector<std::byte> Explorer::frame(std::string_view text) {
     const SweptIndicator* const size =
         request.lens ? &size_for(moment, request.lens->slope) : nullptr;
     const Drawing drawing(request, moment, indicator, size, *executor_);
-    // Angles have no units of the data, and constant data no range.
-    const double most = request.indicator == IndicatorName::visual ? 2 : range();
-    const double greatest = most > 0 ? most : 1;
     Drawn drawn{request.threshold, 1, {}};
     if (request.triangles > 0) {
-        drawn = draw_to_goal(request, drawing, greatest);
+        drawn = draw_to_goal(request, drawing);
     } else {
         drawn.parts = drawing.draw(request.threshold);
     }

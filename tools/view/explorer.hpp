@@ -64,8 +64,8 @@ private:
     Moment moment_at(const FrameRequest& request) const;
     const Indicator& indicator_at(const Moment& moment, IndicatorName name);
     const SweptIndicator& size_for(const Moment& moment, double slope);
-    Drawn draw_to_goal(const FrameRequest& request, const Drawing& drawing, double greatest);
-    double range() const { return greatest_ - least_; }
+    double greatest_threshold(IndicatorName indicator) const;
+    Drawn draw_to_goal(const FrameRequest& request, const Drawing& drawing);
 
     ExploredField field_;
     const Executor* executor_;
