@@ -23,8 +23,8 @@ ExploredField explored(StoredHierarchy<Family>& first, const Paths& paths, const
     using Grid = StoredGrid<Family>;
     const std::string name = field_named(first.fields, array).name;
     std::vector<std::vector<double>> values = frame_values(first, paths, array);
-    const auto kept =
-        std::make_shared<const Kept<Family>>(std::move(first.grid), std::move(values));
+    const auto kept = std::make_shared<const Kept<Family>>(
+        Kept<Family>{std::move(first.grid), std::move(values)});
     const std::shared_ptr<const Grid> grid(kept, &kept->grid);
     std::vector<NodeField<Grid, double>> fields;
     for (const auto& v : kept->values) fields.emplace_back(*grid, v);

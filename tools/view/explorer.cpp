@@ -25,9 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A moving frame is drawn again where its triangles miss the goal by more than this part.
+/// A moving frame is drawn again where its triangles miss the goal by more than this part of it.
 constexpr double tolerance = 0.05;
-constexpr int most_draws = 4;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -92,7 +91,7 @@ void write_indices(FrameReply& reply,
                    const std::vector<std::array<std::uint32_t, corners>>& simplices) {
     const auto to = reply.array<std::uint32_t>("indices", "uint32", corners * simplices.size());
     for (std::size_t i = 0; i < simplices.size(); ++i) {
-        std::copy_n(simplices[i].begin(), corners, to.begin() + corners * i);
+        std::ranges::copy(simplices[i], to.subspan(corners * i).begin());
     }
 }
 
@@ -353,30 +352,39 @@ Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawin
     const bool known = budget_ && budget_->indicator == request.indicator;
     if (!known) {
         const double greatest = greatest_threshold(request.indicator);
-        budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest)});
+        budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest), false});
     }
     FrameBudget& thresholds = budget_->thresholds;
     thresholds.aim(goal);
     Drawn drawn;
-    if (!request.moving || !known) {
-        drawn.threshold = thresholds.settle([&](double threshold) {
+    const auto draw_at = [&](double threshold) {
+        drawn.threshold = threshold;
+        drawn.parts = drawing.draw(threshold);
+        ++drawn.draws;
+    };
+    const auto draw_exactly = [&] {
+        draw_at(thresholds.settle([&](double threshold) {
             ++drawn.draws;
             return drawing.fits(threshold);
-        });
-        ++drawn.draws;
-        drawn.parts = drawing.draw(drawn.threshold);
+        }));
+    };
+    const auto misses = [&] {
+        return std::abs(static_cast<double>(drawn.triangles()) / goal - 1) > tolerance;
+    };
+    if (!request.moving || !known) {
+        draw_exactly();
+        budget_->in_steps = false;
         return drawn;
     }
-    const auto draw = [&] {
-        drawn.threshold = thresholds.threshold();
-        drawn.parts = drawing.draw(drawn.threshold);
-        ++drawn.draws;
+    for (int i = 0; i < 2; ++i) {
+        draw_at(thresholds.threshold());
         thresholds.drawn(static_cast<double>(drawn.triangles()));
-    };
-    do {
-        draw();
-    } while (drawn.draws < most_draws && thresholds.threshold() != drawn.threshold &&
-             std::abs(static_cast<double>(drawn.triangles()) / goal - 1) > tolerance);
+        // At its least and its greatest value the threshold stays.
+        if (!misses() || thresholds.threshold() == drawn.threshold) return drawn;
+    }
+    if (budget_->in_steps) return drawn;
+    draw_exactly();
+    budget_->in_steps = misses();
     return drawn;
 }
 

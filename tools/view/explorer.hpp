@@ -10,8 +10,10 @@
 //   - a settled frame does not depend on the frames before it: the threshold of a number of
 //     triangles is the least one of 8 significant bits at which the frame keeps within it, or,
 //     where none does, the greatest one;
-//   - a moving frame costs one extraction in most cases (FrameBudget), and up to four where it
-//     misses the number of triangles by more than 5 %.
+//   - a moving frame costs one extraction in most cases (FrameBudget); where it misses the number
+//   of
+//     triangles by more than 5 %, it is drawn again, and then searched for like a settled one, but
+//     not once a search has missed the number, too.
 #pragma once
 
 #include <cstddef>
@@ -85,6 +87,7 @@ private:
     struct Budget {
         IndicatorName indicator;
         FrameBudget thresholds;
+        bool in_steps;  ///< no threshold gives the number of triangles: integer data, say
     };
     std::optional<Budget> budget_;
 };

@@ -37,9 +37,11 @@ public:
         const auto at = std::stoul(text_.substr(behind("\"at\":", array)));
         const auto count = std::stoul(text_.substr(behind("\"count\":", array)));
         std::vector<Number> numbers(count);
-        if (arrays_ + at + count * sizeof(Number) > bytes_.size() || at % 4 != 0) {
-            throw std::out_of_range("the array " + name + " is not in the frame");
+        // Views of a browser begin at multiples of the size of their numbers.
+        if (arrays_ + at + count * sizeof(Number) > bytes_.size() || (arrays_ + at) % 4 != 0) {
+            throw std::out_of_range("the array " + name + " is not where a view can be");
         }
+        if (count == 0) return numbers;
         std::memcpy(numbers.data(), bytes_.data() + arrays_ + at, count * sizeof(Number));
         return numbers;
     }
