@@ -83,7 +83,7 @@ std::vector<PageFile> read_page(const std::filesystem::path& folder) {
     for (const PageFile& file : files) {
         if (file.name == "index.html") return files;
     }
-    throw IoError("'" + folder.string() + "' is not the folder of the page");
+    throw IoError("the page is missing: it is not in '" + folder.lexically_normal().string() + "'");
 }
 
 class PageServer::Http final : public httplib::Server {
