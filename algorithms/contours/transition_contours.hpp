@@ -233,7 +233,7 @@ private:
         }
     }
     void sort_segments(std::size_t face) {
-        std::sort(segments_.begin() + first_on_[face], segments_.begin() + first_on_[face + 1],
+        std::sort(segments_.data() + first_on_[face], segments_.data() + first_on_[face + 1],
                   before);
     }
 

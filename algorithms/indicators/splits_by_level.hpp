@@ -22,7 +22,7 @@ public:
     static constexpr std::uint64_t narrow = std::uint64_t{1} << 32U;
 
     /// \param nodes their number; 0 where it is not known yet, and will not exceed 2^32
-    explicit SplitsByLevel(std::size_t nodes) : wide_{nodes > narrow} {}
+    explicit SplitsByLevel(std::size_t nodes) : wide_{std::uint64_t{nodes} > narrow} {}
 
     /// \param reach the greatest distance between a corner and a new node; 0 for all splits where
     ///        distances do not count

@@ -26,7 +26,7 @@ public:
     /// \param node_count number of dense node keys; 0 where keys are not dense
     LevelSurface(Builder builder, std::size_t node_count)
         : builder_{std::move(builder)},
-          numbers_{node_count > 0 && node_count <= (std::uint64_t{1} << 32U)} {}
+          numbers_{node_count > 0 && std::uint64_t{node_count} <= std::uint64_t{1} << 32U} {}
 
     /// Begins an empty surface, and keeps its memory.
     /// \param gradients at nodes, where normals are wanted here; else null

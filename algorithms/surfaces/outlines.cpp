@@ -34,7 +34,7 @@ public:
             if (last - first == 1) *kept++ = *first;
             first = last;
         }
-        return {sides_.begin(), kept};
+        return std::span(sides_).first(static_cast<std::size_t>(kept - sides_.begin()));
     }
 
 private:

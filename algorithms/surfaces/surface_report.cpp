@@ -53,11 +53,13 @@ Sides sorted_sides(const Surface<3>& surface) {
 /// Calls function(sides of the edge) for every edge.
 template <class Function>
 void for_each_edge(const Sides& sides, Function&& function) {
-    for (auto first = sides.begin(); first != sides.end();) {
-        const auto last = std::find_if(first, sides.end(),
-                                       [&](const Side& s) { return s.ends() != first->ends(); });
-        function(std::span<const Side>(first, last));
-        first = last;
+    for (std::span<const Side> rest = sides; !rest.empty();) {
+        const auto other = std::find_if(rest.begin(), rest.end(), [&](const Side& side) {
+            return side.ends() != rest.front().ends();
+        });
+        const auto count = static_cast<std::size_t>(other - rest.begin());
+        function(rest.first(count));
+        rest = rest.subspan(count);
     }
 }
 

@@ -66,7 +66,10 @@ endfunction()
 function(nestgrid_objects target sources private_includes)
   set(objects ${target}_objects)
   add_library(${objects} OBJECT ${sources})
-  set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  # A module of WebAssembly has no other place.
+  if(NOT EMSCRIPTEN)
+    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
   target_compile_features(${objects} PRIVATE cxx_std_20)
   nestgrid_warnings(${objects})
   # Products and sums are rounded one by one, so that results are equal to the last bit on all

@@ -45,7 +45,8 @@ public:
     using Place = std::uint64_t;
 
     /// \throw InvalidInput for fewer than 2 or more than 2^20 samples along a direction, for a
-    ///        spacing or direction that is not finite or flat, and for blocks below 0 or beyond 20
+    ///        spacing or direction that is not finite or flat, for blocks below 0 or beyond 20, and
+    ///        for more nodes than std::ptrdiff_t counts, on machines of 32 bits
     explicit Lattice(const LatticeGeometry<dim>& geometry);
 
     std::size_t node_count() const { return node_total_; }
@@ -261,8 +262,14 @@ void Lattice<dim>::choose_blocks() {
         while (levels_ > least && padding(levels_) > 1.25) --levels_;
     }
     padding(levels_);
+    std::uint64_t nodes = 1;
     for (const std::uint32_t cells : padded_cells_) {
         if (cells >= 1U << 20U) throw InvalidInput("the padded lattice has 2^20 cells or more");
+        nodes *= cells + 1U;
+    }
+    if (nodes > static_cast<std::uint64_t>(std::numeric_limits<std::ptrdiff_t>::max())) {
+        throw InvalidInput("the padded lattice has " + std::to_string(nodes) +
+                           " nodes, more than this machine can number");
     }
 }
 
