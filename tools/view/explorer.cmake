@@ -1,0 +1,10 @@
+# What answers the requests of the page, for the server and for WebAssembly.
+if(TARGET nestgrid_explorer)
+  return()
+endif()
+set(explorer_sources explored_field.cpp explorer.cpp frame_reply.cpp frame_request.cpp)
+list(TRANSFORM explorer_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
+add_library(nestgrid_explorer STATIC ${explorer_sources})
+target_include_directories(nestgrid_explorer PUBLIC ${CMAKE_CURRENT_LIST_DIR})
+target_link_libraries(nestgrid_explorer PUBLIC nestgrid::nestgrid)
+nestgrid_warnings(nestgrid_explorer)

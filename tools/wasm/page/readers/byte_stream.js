@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Bytes of a file one after the other, packed or not. Holds one chunk of the file at a time.
+import { FileError } from './volume.js';
+
+export class ByteStream {
+  #name;
+  #reader;
+  #chunk = new Uint8Array(0);
+  #packed;
+
+  /**
+   * name: of the file, for messages
+   * blob: where the bytes are
+   * packing: null, 'gzip' or 'deflate' (that of zlib)
+   */
+  constructor(name, blob, packing = null) {
+    this.#name = name;
+    this.#packed = packing !== null;
+    const bytes = blob.stream();
+    this.#reader = (
+      packing ? bytes.pipeThrough(new DecompressionStream(packing)) : bytes
+    ).getReader();
+  }
+
+  /** The next bytes. */
+  async take(count) {
+    const bytes = new Uint8Array(count);
+    await this.fill(bytes);
+    return bytes;
+  }
+
+  /** Fills an array with the next bytes. */
+  async fill(target) {
+    for (let at = 0; at < target.length;) {
+      if (!(await this.#more())) {
+        this.close();
+        throw this.#damaged(at, target.length);
+      }
+      const part = this.#chunk.subarray(0, target.length - at);
+      target.set(part, at);
+      at += part.length;
+      this.#chunk = this.#chunk.subarray(part.length);
+    }
+  }
+
+  async skip(count) {
+    for (let rest = count; rest > 0;) {
+      if (!(await this.#more())) {
+        this.close();
+        throw this.#damaged(count - rest, count);
+      }
+      const part = Math.min(rest, this.#chunk.length);
+      this.#chunk = this.#chunk.subarray(part);
+      rest -= part;
+    }
+  }
+
+  /** Compares the checksum, where the stream ends here. */
+  async finish() {
+    await this.#more();
+    this.close();
+  }
+
+  close() {
+    // Where the stream has failed, somebody has been told.
+    this.#reader.cancel().catch(() => {});
+  }
+
+  /** Makes the chunk not empty; false where there are no more bytes. */
+  async #more() {
+    while (this.#chunk.length === 0) {
+      let next;
+      try {
+        next = await this.#reader.read();
+      } catch {
+        throw this.#packed ? this.#damaged(0, 0) : new FileError(`${this.#name} cannot be read`);
+      }
+      if (next.done) return false;
+      this.#chunk = next.value;
+    }
+    return true;
+  }
+
+  #damaged(found, expected) {
+    return new FileError(
+      this.#packed
+        ? `${this.#name} is truncated or damaged: it cannot be unpacked to its end`
+        : `${this.#name} is truncated: it ends after ${found} bytes of ${expected}`,
+    );
+  }
+}

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Reads files and draws frames beside the page. Answers each message {id, call, ...} with
+// {id, result} or {id, failure}, one after the other.
+import { openVolume } from './readers/open_volume.js';
+import { VolumeModule } from './volume_module.js';
+
+const compiled = fetch(new URL('nestgrid.wasm', import.meta.url))
+  .then((response) => response.arrayBuffer())
+  .then((bytes) => WebAssembly.compile(bytes));
+
+/** The module with the volume in the picture; another one takes its place when it is ready. */
+let module = null;
+
+const calls = {
+  async open({ file, rawFormat }) {
+    const volume = await openVolume(file, rawFormat);
+    const next = await VolumeModule.make(await compiled);
+    const info = await next.open(volume);
+    module = next;
+    return { ...info, title: file.name, name: volume.name ?? 'value' };
+  },
+  async frame({ request }) {
+    if (!module) throw new Error('there is no volume yet');
+    return module.frame(request);
+  },
+};
+
+/** A sentence for the reader. A core that has stopped is not asked again. */
+function sentenceOf(error) {
+  if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) {
+    module = null;
+    return 'the core has stopped, probably because memory does not suffice: open a smaller volume';
+  }
+  return error.message;
+}
+
+async function answer({ id, call, ...values }) {
+  try {
+    const result = await calls[call](values);
+    postMessage({ id, result }, result instanceof ArrayBuffer ? [result] : []);
+  } catch (error) {
+    postMessage({ id, failure: sentenceOf(error) });
+  }
+}
+
+let last = Promise.resolve();
+addEventListener('message', ({ data }) => {
+  last = last.then(() => answer(data));
+});
