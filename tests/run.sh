@@ -9,13 +9,13 @@ cd "$(dirname "$0")/.."
 . tools/packages.sh
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}" \
     "${python_packages[@]}" "${python_test_packages[@]}" "${paraview_packages[@]}" \
-    "${view_packages[@]}"
+    "${view_packages[@]}" "${wasm_packages[@]}"
 # Its Python conflicts with that of VTK.
 unpack_package python3-paraview build/paraview
 
 # What was installed must be found.
 demanded=()
-for component in CGAL DEALII DUNE OPENMESH P4EST PYTHON TBB TETGEN VIEW VTK; do
+for component in CGAL DEALII DUNE OPENMESH P4EST PYTHON TBB TETGEN VIEW VTK WASM; do
     demanded+=(-D "NESTGRID_$component=ON")
 done
 log=$(mktemp)

@@ -13,8 +13,12 @@ python_packages=(python3-dev python3-numpy python3-pip python3-venv pybind11-dev
 python_test_packages=(python3-pytest python3-skimage python3-vtk9)
 paraview_packages=(paraview)
 view_packages=(libcpp-httplib-dev chromium)
+wasm_packages=(emscripten chromium python3)
 # npm of Debian is for its own nodejs: where there is another one, npm is there, too.
-command -v npm >/dev/null || view_packages+=(nodejs npm)
+if ! command -v npm >/dev/null; then
+    view_packages+=(nodejs npm)
+    wasm_packages+=(nodejs npm)
+fi
 
 # Unpacks a package into a folder, unless it is there: one that conflicts with others installed.
 unpack_package() {
