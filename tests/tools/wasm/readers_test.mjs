@@ -74,7 +74,7 @@ for (const name of names.filter((n) => n.endsWith('_text.vti'))) {
   const info = await module.open(await openVolume(fileAt(join(vtis, name))));
   assert.deepEqual([info.least, info.greatest], [0, 112], name);
 }
-await refused(fileAt(join(vtis, 'lz4.vti')), /packed by vtkLZ4DataCompressor/);
+await refused(fileAt(join(vtis, 'lz4.vti')), /packed by 'vtkLZ4DataCompressor'/);
 
 // One volume in every format.
 const bytes = readFileSync(join(volumes, 'v.raw'));
@@ -152,6 +152,12 @@ await refused(
 );
 await refused(claim('1000 1000 100', 'gzip'), /truncated.*at least/);
 await refused(claim('20 24 18', 'gzip'), /cannot be unpacked/);
+const wrongSum = gzipSync(bytes);
+wrongSum[wrongSum.length - 6] ^= 1;
+await refused(
+  new File([`${header}encoding: gzip\n\n`, wrongSum], 'sum.nrrd'),
+  /cannot be unpacked/,
+);
 await refused(claim('65536 65536 1'), /at least 2 along each direction/);
 await refused(claim('1e300 2 2'), /2\^20/);
 await refused(new File([bytes], 'short.raw'), /has 8640 bytes, but 20 x 24 x 19/, {
@@ -178,6 +184,11 @@ for (const [name, pattern] of [['nan.vti', /not|nan|finite/i]]) {
     },
   );
 }
+const many = { ...(await openVolume(packed)), samples: [2000, 2000, 2000] };
+await assert.rejects(
+  (await VolumeModule.make(core)).open(many),
+  /the padded lattice has \d+ nodes, more than this machine can number/,
+);
 const flat = { ...(await openVolume(packed)), spacing: [0, 1, 1] };
 await assert.rejects((await VolumeModule.make(core)).open(flat), /flat or not finite/);
 const module = await VolumeModule.make(core);

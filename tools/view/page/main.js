@@ -172,17 +172,30 @@ class Page {
 
 /** Lets the reader drop or choose a file, for an engine that takes files. */
 function takeFiles(page) {
+  const drop = byId('drop');
+  const panel = byId('panel');
+  const hint = byId('hint');
   const open = async (file) => {
     if (!file) return;
+    const subtitle = byId('subtitle').textContent;
+    byId('subtitle').textContent = `Reading ${file.name} …`;
     try {
-      page.begin(await engine.open(file));
-      byId('drop').hidden = true;
+      const info = await engine.open(file);
+      // The address of another file's picture says nothing about this one.
+      if (drop.hidden) history.replaceState(null, '', location.pathname + location.search);
+      page.begin(info);
+      drop.hidden = true;
+      panel.inert = false;
+      hint.hidden = false;
     } catch (error) {
+      byId('subtitle').textContent = subtitle;
       showMessage(error.message);
     }
   };
-  const drop = byId('drop');
   drop.hidden = false;
+  panel.inert = true;
+  hint.hidden = true;
+  hint.textContent += '. Drop another file to open it';
   byId('drop-formats').textContent = engine.formats ?? '';
   byId('file').addEventListener('change', (event) => open(event.target.files[0]));
   document.addEventListener('dragover', (event) => {

@@ -11,6 +11,7 @@ import {
   checkFound,
   checkedBytes,
   geometryOfSteps,
+  quoted,
   swapBytes,
 } from './volume.js';
 
@@ -70,7 +71,7 @@ function samplesOf(name, fields) {
   while (counts.length > 3 && counts.includes(1)) counts.splice(counts.indexOf(1), 1);
   if (counts.length === 0 || counts.length > 3) {
     throw new FileError(
-      `${name} has the size '${fields.get('sizes') ?? ''}', not that of a volume`,
+      `${name} has the size ${quoted(fields.get('sizes'))}, not that of a volume`,
     );
   }
   return [...counts, 1, 1].slice(0, 3);
@@ -92,7 +93,7 @@ function geometryOf(fields) {
 function packingOf(name, encoding) {
   if (encoding === 'raw') return null;
   if (encoding === 'gzip' || encoding === 'gz') return 'gzip';
-  throw new FileError(`${name} has the encoding '${encoding}', which is not read`);
+  throw new FileError(`${name} has the encoding ${quoted(encoding)}, which is not read`);
 }
 
 export async function openNrrd(file) {
@@ -101,13 +102,13 @@ export async function openNrrd(file) {
   const dataFile = fields.get('data file') ?? fields.get('datafile');
   if (dataFile) {
     throw new FileError(
-      `${name} keeps its samples in another file, '${dataFile}': a page opens one`,
+      `${name} keeps its samples in another file, ${quoted(dataFile)}: a page opens one`,
     );
   }
   const type = types.get((fields.get('type') ?? '').toLowerCase());
   if (!type)
     throw new FileError(
-      `${name} has the sample type '${fields.get('type') ?? ''}', which is not read`,
+      `${name} has the sample type ${quoted(fields.get('type'))}, which is not read`,
     );
   const packing = packingOf(name, (fields.get('encoding') ?? '').toLowerCase());
   const samples = samplesOf(name, fields);

@@ -35,6 +35,12 @@ const mostInOneBlock = 2 ** 31 - 2 ** 20;
 
 const mostAlong = 2 ** 20;
 
+/** What a file says, for a message: short, and without what cannot be printed. */
+export function quoted(text) {
+  const short = (text ?? '').slice(0, 40).replace(/[^ -~]/g, '?');
+  return `'${short}${(text ?? '').length > 40 ? '...' : ''}'`;
+}
+
 /** The bytes of samples. Throws where no volume has them, and where memory does not suffice. */
 export function checkedBytes(name, samples, type) {
   for (const n of samples) {

@@ -4,7 +4,7 @@
 // Image data of VTK, .vti: the active scalars, or else the first array of scalars, of one piece;
 // text, base64 or raw, packed by zlib or not.
 import { Base64Source, BlobSource, readBlocks } from './vtk_blocks.js';
-import { FileError, bytesOfType, checkFound, checkedBytes, swapBytes } from './volume.js';
+import { FileError, bytesOfType, checkFound, checkedBytes, quoted, swapBytes } from './volume.js';
 
 /** Longer headers, and samples inside XML beyond this, are not read. */
 const longestHeader = 2 ** 20;
@@ -29,7 +29,7 @@ function tagsOf(text) {
 function integers(name, text, count) {
   const numbers = (text ?? '').trim().split(/\s+/).map(Number);
   if (numbers.length !== count || !numbers.every(Number.isSafeInteger)) {
-    throw new FileError(`${name} is damaged: '${text ?? ''}' are not ${count} integers`);
+    throw new FileError(`${name} is damaged: ${quoted(text)} are not ${count} integers`);
   }
   return numbers;
 }
@@ -38,7 +38,7 @@ function numbers(name, text, otherwise) {
   if (text === undefined) return otherwise;
   const list = text.trim().split(/\s+/).map(Number);
   if (list.length !== otherwise.length || !list.every(Number.isFinite)) {
-    throw new FileError(`${name} is damaged: '${text}' are not ${otherwise.length} numbers`);
+    throw new FileError(`${name} is damaged: ${quoted(text)} are not ${otherwise.length} numbers`);
   }
   return list;
 }
@@ -101,9 +101,9 @@ function bytesAsIn(name, { attributes }) {
   const { type, byte_order: order, header_type: header = 'UInt32', compressor } = attributes;
   if (type !== 'ImageData') throw new FileError(`${name} is no VTK image data file`);
   if (!['UInt32', 'UInt64'].includes(header))
-    throw new FileError(`${name} has headers of ${header}`);
+    throw new FileError(`${name} has headers of ${quoted(header)}`);
   if (compressor !== undefined && compressor !== 'vtkZLibDataCompressor') {
-    throw new FileError(`${name} is packed by ${compressor}, which is not read`);
+    throw new FileError(`${name} is packed by ${quoted(compressor)}, which is not read`);
   }
   return {
     bigEndian: order === 'BigEndian',
@@ -168,7 +168,7 @@ function readerOf(file, xml, array, layout) {
   if (format === 'ascii')
     return async (target) => readText(name, text.slice(array.to, close), layout.type, target);
   if (format !== 'binary')
-    throw new FileError(`${name} has samples of the format '${format ?? ''}', which is not read`);
+    throw new FileError(`${name} has samples of the format ${quoted(format)}, which is not read`);
   const inline = text.slice(array.to, close).trim();
   const make = (from) => new Base64Source(name, new Blob([inline]), from);
   return (target) => readBlocks(name, make, true, layout, target);
@@ -185,7 +185,7 @@ export async function openVti(file) {
   const type = (array.attributes.type ?? '').toLowerCase();
   if (!Object.hasOwn(bytesOfType, type))
     throw new FileError(
-      `${name} has samples of the type '${array.attributes.type ?? ''}', which is not read`,
+      `${name} has samples of the type ${quoted(array.attributes.type)}, which is not read`,
     );
   const bytes = checkedBytes(name, grid.samples, type);
   const isText = array.attributes.format === 'ascii';
