@@ -14,6 +14,7 @@ import { compileCore, fileAt, isSentence, load } from './folder.mjs';
 const [folder, vtis, volumes] = process.argv.slice(2);
 const { openVolume } = await load(folder, 'readers/open_volume.js');
 const { rawFormatOfName } = await load(folder, 'readers/raw.js');
+const { ByteStream } = await load(folder, 'readers/byte_stream.js');
 const { FileError } = await load(folder, 'readers/volume.js');
 const { VolumeModule } = await load(folder, 'volume_module.js');
 const core = await compileCore(folder);
@@ -152,14 +153,32 @@ await refused(
 );
 await refused(claim('1000 1000 100', 'gzip'), /truncated.*at least/);
 await refused(claim('20 24 18', 'gzip'), /cannot be unpacked/);
+// A wrong checksum, with the samples and apart from them.
 const wrongSum = gzipSync(bytes);
 wrongSum[wrongSum.length - 6] ^= 1;
 await refused(
   new File([`${header}encoding: gzip\n\n`, wrongSum], 'sum.nrrd'),
   /cannot be unpacked/,
 );
+const apart = {
+  stream: () =>
+    new ReadableStream({
+      start(controller) {
+        controller.enqueue(wrongSum.subarray(0, -8));
+        controller.enqueue(wrongSum.subarray(-8));
+        controller.close();
+      },
+    }),
+};
+const stream = new ByteStream('apart', apart, 'gzip');
+await stream.fill(new Uint8Array(bytes.length));
+await assert.rejects(stream.finish(), /apart is truncated or damaged/);
 await refused(claim('65536 65536 1'), /at least 2 along each direction/);
 await refused(claim('1e300 2 2'), /2\^20/);
+await refused(new File([bytes], 'long.raw'), /has 8640 bytes, but 20 x 24 x 17/, {
+  samples: [20, 24, 17],
+  type: 'uint8',
+});
 await refused(new File([bytes], 'short.raw'), /has 8640 bytes, but 20 x 24 x 19/, {
   samples: [20, 24, 19],
   type: 'uint8',

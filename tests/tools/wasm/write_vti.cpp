@@ -63,7 +63,8 @@ void write_all(vtkImageData* image, const std::string& name) {
             }
         }
     }
-    write(image, name + "_text.vti", vtkXMLImageDataWriter::Ascii, false, false, false, false);
+    // The order of bytes says nothing about a text.
+    write(image, name + "_text.vti", vtkXMLImageDataWriter::Ascii, false, false, true, false);
 }
 
 }  // namespace
