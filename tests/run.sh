@@ -15,9 +15,16 @@ unpack_package python3-paraview build/paraview
 
 # What was installed must be found.
 demanded=()
-for component in CGAL DEALII DUNE OPENMESH P4EST PYTHON TBB TETGEN VIEW VTK WASM; do
+for component in CGAL DEALII DUNE OPENMESH P4EST PYTHON TBB TETGEN VTK; do
     demanded+=(-D "NESTGRID_$component=ON")
 done
+# The pages are made with packages of npm.
+pages=ON
+timeout 120 npm view three version >/dev/null 2>&1 || {
+    pages=OFF
+    echo "npm's registry does not answer: the pages for browsers and their tests are left out"
+}
+demanded+=(-D "NESTGRID_VIEW=$pages" -D "NESTGRID_WASM=$pages")
 log=$(mktemp)
 cmake --preset release "${demanded[@]}" >"$log" 2>&1 || { cat "$log"; exit 1; }
 rm "$log"
