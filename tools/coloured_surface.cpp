@@ -19,6 +19,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/detail/geometry.hpp>
 
+#include "collection.hpp"
 #include "expression.hpp"
 #include "extract.hpp"
 #include "film.hpp"
@@ -342,12 +343,13 @@ vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, bool lines_alone) {
 
 void write(const SurfaceOptions& options, const DrawnField& field, const ColouredSurface& what) {
     std::vector<Panel> panels;
+    std::vector<vtkSmartPointer<vtkPolyData>> written;
     for (std::size_t i = 0; i < field.surfaces.size(); ++i) {
         panels.push_back(make_panel(field.surfaces[i], field, what));
         if (options.output.empty()) continue;
-        write_surface(data_of(panels[i], !field.values.empty()),
-                      numbered(options.output, i, field.surfaces.size()));
+        written.push_back(data_of(panels[i], !field.values.empty()));
     }
+    if (!written.empty()) write_surfaces(written, options.output);
     if (!options.image.empty()) write_picture(panels, options.image);
 }
 

@@ -7,6 +7,8 @@
 
 #include <vtkPolyData.h>
 
+#include "collection.hpp"
+
 /// Surfaces at several times, in files, and a .pvd file that lists them, as ParaView opens it.
 /// Invariant: the .pvd file appears when all surfaces are there; unless it does, none of them
 /// stays.
@@ -27,12 +29,7 @@ public:
     void finish();
 
 private:
-    struct Picture {
-        std::filesystem::path path;
-        double time;
-    };
-
     std::filesystem::path path_;
-    std::vector<Picture> pictures_;
+    std::vector<CollectionPart> pictures_;
     bool finished_ = false;
 };

@@ -4,6 +4,7 @@
 
 #include <nestgrid/error.hpp>
 
+#include "collection.hpp"
 #include "command_line.hpp"
 #include "extract.hpp"
 #include "film.hpp"
@@ -87,14 +88,15 @@ void run_isosurface(Options& o) {
 
     start = now();
     std::vector<Panel> panels;
-    for (std::size_t i = 0; i < run.surfaces.size(); ++i) {
-        const Extraction& e = run.surfaces[i];
+    std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
+    for (const Extraction& e : run.surfaces) {
         if (!e.surface) break;
-        if (!s.output.empty()) {
-            progress->show("writing");
-            write_surface(e.surface, numbered(s.output, i, run.surfaces.size()));
-        }
+        surfaces.push_back(e.surface);
         panels.push_back({e.surface, caption(e)});
+    }
+    if (!s.output.empty() && !surfaces.empty()) {
+        progress->show("writing");
+        write_surfaces(surfaces, s.output);
     }
     seconds.write = now() - start;
     start = now();

@@ -32,6 +32,9 @@ run slice v.vti --function 'x-4.75' --threshold 0
 expect area 782
 run slice v.vti --axis x --at 5 --threshold 0 --threshold 20 -o s.vtp
 [ -s s-1.vtp ] && [ -s s-2.vtp ] || fail "no files for two thresholds"
+[ "$(grep -c 'timestep="[12]" part="0" file="s-[12].vtp"' s.pvd)" = 2 ] || fail "s.pvd: $(cat s.pvd)"
+run isosurface v.vti --value 100.5 --threshold 0 --threshold 2 -o i.vtp
+grep -q 'file="i-2.vtp"' i.pvd || fail "i.pvd: $(cat i.pvd)"
 run slice v.vti --axis z --at 17 --max-triangles 600
 [ "$(value triangles)" -le 600 ] || fail "more triangles than asked for"
 
