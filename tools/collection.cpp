@@ -56,8 +56,8 @@ void write_collection(const fs::path& path, const std::vector<CollectionPart>& p
         "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
         "  <Collection>\n";
     for (const CollectionPart& part : parts) {
-        text += "    <DataSet timestep=\"" + number(part.time) +
-                "\" part=\"0\" file=" + quoted(part.path.filename().string()) + "/>\n";
+        text += "    <DataSet timestep=\"" + number(part.time) + R"(" part="0" file=)" +
+                quoted(part.path.filename().string()) + "/>\n";
     }
     text += "  </Collection>\n</VTKFile>\n";
     const fs::path temporary = temporary_beside(path);
