@@ -170,7 +170,8 @@ ChangedPlaces differing(const LeafCorners& a, const LeafCorners& b) {
 
 TYPED_TEST(UpdateOfFamily, FollowsRefinement) {
     for (auto& grid : TypeParam::grids()) {
-        refine_at_sphere(grid, 3 * TypeParam::steps);
+        constexpr int levels = TypeParam::Grid::dimension == 3 ? 2 : 3;
+        refine_at_sphere(grid, levels * TypeParam::steps);
         const WithoutKeys<typename TypeParam::Grid> seen{&grid};
         std::vector<double> values;
         const auto field = [&] {
