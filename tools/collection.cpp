@@ -4,13 +4,11 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <string>
-
-#include <nestgrid/error.hpp>
 
 #include "command_line.hpp"
 #include "surface_file.hpp"
+#include "text_file.hpp"
 
 namespace {
 
@@ -60,17 +58,7 @@ void write_collection(const fs::path& path, const std::vector<CollectionPart>& p
                 quoted(part.path.filename().string()) + "/>\n";
     }
     text += "  </Collection>\n</VTKFile>\n";
-    const fs::path temporary = temporary_beside(path);
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.close();
-    std::error_code error;
-    if (file) fs::rename(temporary, path, error);
-    if (!file || error) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw nestgrid::IoError(path.string() + " could not be written");
-    }
+    write_text(text, path);
 }
 
 void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces,

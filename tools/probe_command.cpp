@@ -11,6 +11,7 @@
 #include "extract.hpp"
 #include "input_hierarchy.hpp"
 #include "surface_file.hpp"
+#include "text_file.hpp"
 
 namespace {
 
@@ -73,7 +74,7 @@ std::string table(const nestgrid::Hierarchy<Real>& hierarchy, const std::string&
     } else {
         const nestgrid::HierarchicalIndicator indicator(hierarchy);
         const double range = indicator.greatest() - indicator.least();
-        const nestgrid::Threshold s(&indicator, t.percent ? t.number / 100 * range : t.number);
+        const nestgrid::Threshold s(&indicator, t.in_units(range));
         result = nestgrid::probe(hierarchy, points, s, indicator);
     }
     std::ostringstream out;
@@ -87,19 +88,6 @@ std::string table(const nestgrid::Hierarchy<Real>& hierarchy, const std::string&
         out << '\n';
     }
     return out.str();
-}
-
-void write_table(const std::string& text, const fs::path& path) {
-    const fs::path temporary = temporary_beside(path);
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.close();
-    std::error_code error;
-    if (file) fs::rename(temporary, path, error);
-    if (file && !error) return;
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw IoError(path.string() + " could not be written");
 }
 
 void run_probe(Options& o) {
@@ -125,7 +113,7 @@ void run_probe(Options& o) {
     if (o.output.empty()) {
         std::fputs(text.c_str(), stdout);
     } else {
-        write_table(text, o.output);
+        write_text(text, o.output);
     }
 }
 
