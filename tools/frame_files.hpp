@@ -16,6 +16,11 @@
 
 using Paths = std::vector<std::filesystem::path>;
 
+/// The times of the frames in some files: those given, or 0, 1, 2, ...
+/// \param given in the option --times; may be empty
+/// \throw nestgrid::InvalidInput where there is not one for each file
+std::vector<double> times_of_frames(const std::vector<double>& given, std::size_t files);
+
 /// \throw nestgrid::InvalidInput where two volumes have another type or geometry
 void require_one_layout(const std::vector<Volume>& volumes, const Paths& paths);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/between.hpp>
@@ -17,10 +16,7 @@
 using nestgrid::InvalidInput;
 
 std::vector<double> TimeOptions::frame_times() const {
-    if (!times.empty()) return times;
-    std::vector<double> numbers(more.size() + 1);
-    std::iota(numbers.begin(), numbers.end(), 0.0);
-    return numbers;
+    return times_of_frames(times, more.size() + 1);
 }
 
 std::vector<double> TimeOptions::drawn_times() const {
@@ -68,11 +64,7 @@ void check(const TimeOptions& time, const SurfaceOptions& surface) {
         return;
     }
     if (time.more.empty()) throw InvalidInput("--time and --frames need several inputs");
-    if (time.frame_times().size() != time.more.size() + 1) {
-        throw InvalidInput("--times has " + std::to_string(time.times.size()) +
-                           " numbers, but there are " + std::to_string(time.more.size() + 1) +
-                           " inputs");
-    }
+    time.frame_times();  // throws where there is not one for each input
     if (!surface.budgets.empty()) throw InvalidInput("--max-triangles is for one input");
     if (time.frames) {
         if (*time.frames < 2) throw InvalidInput("--frames is below 2");

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
-#include <numeric>
 #include <thread>
 
 #include <fcntl.h>
@@ -15,6 +14,7 @@
 #include <nestgrid/error.hpp>
 
 #include "../command_line.hpp"
+#include "../frame_files.hpp"
 #include "explored_files.hpp"
 #include "explorer.hpp"
 #include "page_server.hpp"
@@ -42,22 +42,13 @@ fs::path page_folder() {
 }
 
 std::vector<double> times_of(const Options& o) {
-    const std::size_t files = o.more.size() + 1;
-    if (o.times.empty()) {
-        std::vector<double> numbers(files);
-        std::iota(numbers.begin(), numbers.end(), 0.0);
-        return numbers;
-    }
-    if (o.times.size() != files) {
-        throw InvalidInput("--times has " + std::to_string(o.times.size()) +
-                           " numbers, but there are " + std::to_string(files) + " inputs");
-    }
-    for (std::size_t i = 0; i < files; ++i) {
-        if (!std::isfinite(o.times[i]) || (i > 0 && !(o.times[i - 1] < o.times[i]))) {
+    std::vector<double> times = times_of_frames(o.times, o.more.size() + 1);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (!std::isfinite(times[i]) || (i > 0 && !(times[i - 1] < times[i]))) {
             throw InvalidInput("--times are not finite numbers in ascending order");
         }
     }
-    return o.times;
+    return times;
 }
 
 /// Shows an address in the reader's browser, where there is a screen.
