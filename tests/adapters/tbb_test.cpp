@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // oneTBB's threads keep the contract of an executor.
-#include <atomic>
 #include <concepts>
 #include <stdexcept>
 
@@ -12,6 +11,7 @@
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
+#include "executor_laws.hpp"
 #include "sample_fields.hpp"
 
 using namespace nestgrid;
@@ -24,25 +24,7 @@ static_assert(std::derived_from<TbbExecutor, Executor>);
 TEST(TbbExecutor, WorksOnceAndConsumesInOrder) {
     for (const int threads : {1, 2, 3, 0}) {
         const TbbExecutor executor(threads);
-        EXPECT_GE(executor.concurrency(), 1U);
-        std::vector<std::atomic<int>> times(1000);
-        std::vector<std::size_t> twice(times.size());
-        std::vector<std::size_t> order;
-        executor.run(
-            times.size(),
-            [&](std::size_t i) {
-                ++times[i];
-                twice[i] = 2 * i;
-            },
-            [&](std::size_t i) {
-                EXPECT_EQ(twice[i], 2 * i);
-                order.push_back(i);
-            });
-        ASSERT_EQ(order.size(), times.size());
-        for (std::size_t i = 0; i < times.size(); ++i) {
-            EXPECT_EQ(times[i], 1);
-            EXPECT_EQ(order[i], i);
-        }
+        expect_parts_once_and_in_order(executor);
     }
 }
 

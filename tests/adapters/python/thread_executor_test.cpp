@@ -6,12 +6,12 @@
 #include <chrono>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include <nestgrid/error.hpp>
 
+#include "executor_laws.hpp"
 #include "thread_executor.hpp"
 
 using nestgrid::python::ThreadExecutor;
@@ -21,27 +21,9 @@ namespace {
 TEST(ThreadExecutor, WorksOnceAndConsumesInOrderOnTheCallingThread) {
     for (const int threads : {1, 2, 3, 0}) {
         const ThreadExecutor executor(threads);
-        EXPECT_GE(executor.concurrency(), 1U);
-        std::vector<std::atomic<int>> times(1000);
-        std::vector<std::size_t> twice(times.size());
-        std::vector<std::size_t> order;
         const std::thread::id caller = std::this_thread::get_id();
-        executor.run(
-            times.size(),
-            [&](std::size_t i) {
-                ++times[i];
-                twice[i] = 2 * i;
-            },
-            [&](std::size_t i) {
-                EXPECT_EQ(twice[i], 2 * i);
-                EXPECT_EQ(std::this_thread::get_id(), caller);
-                order.push_back(i);
-            });
-        ASSERT_EQ(order.size(), times.size());
-        for (std::size_t i = 0; i < times.size(); ++i) {
-            EXPECT_EQ(times[i], 1);
-            EXPECT_EQ(order[i], i);
-        }
+        nestgrid_test::expect_parts_once_and_in_order(
+            executor, [&] { EXPECT_EQ(std::this_thread::get_id(), caller); });
     }
 }
 
