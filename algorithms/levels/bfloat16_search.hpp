@@ -6,6 +6,9 @@
 
 namespace nestgrid::engine {
 
+/// So many bfloat16 numbers lie from x to 2 x.
+inline constexpr int octave = 128;
+
 /// The least code in (beyond, within] that fits. Requires: `within` fits, `beyond` does not, and
 /// what is above a code that fits does.
 template <class Fits>

@@ -16,8 +16,6 @@ namespace {
 
 using nestgrid::detail::MakeCriterion;
 
-constexpr std::uint16_t octave = 128;  // bfloat16 numbers from x to 2 x
-
 std::uint16_t halved(std::uint16_t code) {
     return static_cast<std::uint16_t>(code > octave ? code - octave : 0);
 }

@@ -36,7 +36,7 @@ struct Bracket {
     std::uint16_t within;
 };
 
-constexpr int octave = 128;  // bfloat16 numbers from x to 2 x
+using engine::octave;
 
 /// Goes down from a code that fits in steps that double up to an octave, and from `least` to 0.
 template <class Fits>
