@@ -197,7 +197,7 @@ TEST(FrameBudget, SettlesOnTheEndsOfTheThresholds) {
     EXPECT_EQ(budget.settle([](double threshold) { return threshold >= 0.3; }), 0.3);
 }
 
-/// Where the cost falls with the threshold as surfaces do, or as lines do.
+/// The cost of surfaces falls like 1 / threshold, that of lines like its square root.
 TEST(FrameBudget, ReachesTheGoal) {
     for (const double power : {-1.0, -0.5}) {
         for (const double goal : {10.0, 1000.0, 0.03}) {

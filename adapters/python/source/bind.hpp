@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the parts of the module _nestgrid share.
+// The functions that define the module _nestgrid, and conversions that all of them use.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What Python asks of a source, behind one call each. Nothing here knows Python.
+// One function for each extraction that the Python package offers. No type of Python occurs here.
 #pragma once
 
 #include <limits>

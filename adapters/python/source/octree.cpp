@@ -52,7 +52,7 @@ private:
     std::vector<std::size_t> hidden_;  // among the first leaves, so many
 };
 
-/// What a forest is made of, sorted.
+/// The leaves and trees of a forest, sorted as LinearOctree takes them.
 template <int dim>
 class Forest {
 public:

@@ -12,11 +12,12 @@
 
 namespace nestgrid::python {
 
-/// What thresholds are compared with, and what bounds the data.
+/// An indicator to compare thresholds with, and bounds of the data for the search.
 struct ChosenIndicator {
     std::shared_ptr<const Indicator> indicator;
     std::shared_ptr<const Bounds> bounds;
-    /// Where offsets decide that belong to this field alone, the bounds themselves; else null.
+    /// Points to the bounds where they are also the indicator and belong to this field alone;
+    /// else null.
     const HierarchicalIndicator* offsets = nullptr;
 };
 

@@ -15,7 +15,7 @@ namespace nestgrid::python {
 
 namespace {
 
-/// What the threads of one run() share.
+/// The parts of one run(), which its threads share.
 class Parts {
 public:
     Parts(std::size_t count, std::size_t ahead, const std::function<void(std::size_t)>& work)

@@ -13,7 +13,7 @@
 
 namespace nestgrid::python {
 
-/// Where samples lie in space.
+/// Gives the origin, spacing and axes of samples.
 /// \throw InvalidInput where the array has another dimension than dim
 template <int dim>
 LatticeGeometry<dim> lattice_geometry(const Samples& samples) {
