@@ -39,13 +39,6 @@ double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& se
                                        std::span(u).first(t.corners));
 }
 
-/// The greatest eta of some nodes.
-inline double greatest_eta(const Indicator& indicator, std::span<const NodeKey> nodes) {
-    double greatest = 0;
-    for (const NodeKey node : nodes) greatest = std::max(greatest, indicator.stop(node));
-    return greatest;
-}
-
 /// How far points of an element may be from their true positions.
 /// \param bounds of positions, at least their offsets
 /// \param below what S projected away below the element

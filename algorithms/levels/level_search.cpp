@@ -82,9 +82,10 @@ NESTGRID_INLINE auto LevelSearch<Real>::range_of(const View& view, std::size_t c
 /// Whether a level of one component may pass through an element.
 /// \param bound how far the data may leave the range of their corner values
 template <class Real>
-NESTGRID_INLINE bool LevelSearch<Real>::looks_at(const View& view, std::size_t component,
-                                                 Real bound, bool caps) const {
-    if (component < functions_) return looks_at_function(view, component, caps);
+NESTGRID_INLINE bool LevelSearch<Real>::looks_at(const View& view, const Split& split,
+                                                 std::size_t component, Real bound,
+                                                 bool caps) const {
+    if (component < functions_) return looks_at_function(view, split, component, caps);
     const Range range = range_of(view, component);
     return of_interest(range.lo, range.hi, bound, component, caps);
 }
@@ -101,8 +102,8 @@ std::size_t LevelSearch<Real>::corners_at_zero(const View& view, std::size_t com
 /// Whether a slice may pass through an element, or one of its faces on the boundary may lie in the
 /// slice: where no element is below the slice, the element above draws it.
 template <class Real>
-bool LevelSearch<Real>::looks_at_function(const View& view, std::size_t component,
-                                          bool caps) const {
+bool LevelSearch<Real>::looks_at_function(const View& view, const Split& split,
+                                          std::size_t component, bool caps) const {
     Range range = range_of(view, component);
     if (range.lo == 0 && corners_at_zero(view, component) >= 3 && walk_->boundary(view) != 0) {
         range.lo = -range.hi;
@@ -111,8 +112,9 @@ bool LevelSearch<Real>::looks_at_function(const View& view, std::size_t componen
         std::array<Point, max_corners> x;
         walk_->corners(view, nullptr, x.data());
         const auto first = static_cast<double>(view.value[component]);
+        const double stray = walk_->functions()->stray(split.keys, view.interpolated == 0);
         const double variation = walk_->functions()->variation(
-            component, std::span<const Point>(x).first(view.corner_count()));
+            component, std::span<const Point>(x).first(view.corner_count()), stray);
         range.lo = std::min(range.lo, static_cast<Real>(first - variation));
         range.hi = std::max(range.hi, static_cast<Real>(first + variation));
     }
@@ -125,9 +127,9 @@ auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
     const Rule* const rule = split.rule;
     if (rule != nullptr && entries_ != nullptr) prefetch(*entries_, *rule, split.keys);
     const Real bound = rule == nullptr ? Real(0) : bound_of(*rule, split.keys);
-    bool interest = looks_at(view, 0, bound, caps);
+    bool interest = looks_at(view, split, 0, bound, caps);
     for (std::size_t component = 1; !interest && component <= last_component_; ++component) {
-        interest = looks_at(view, component, bound, caps);
+        interest = looks_at(view, split, component, bound, caps);
     }
     if (!interest) return {{Visit::skip, 0}, bound};
     if (rule == nullptr) return {{Visit::stop, 0}, bound};

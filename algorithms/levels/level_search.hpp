@@ -92,9 +92,11 @@ private:
     };
 
     Range range_of(const View& view, std::size_t component) const;
-    bool looks_at(const View& view, std::size_t component, Real bound, bool caps) const;
+    bool looks_at(const View& view, const Split& split, std::size_t component, Real bound,
+                  bool caps) const;
     std::size_t corners_at_zero(const View& view, std::size_t component) const;
-    bool looks_at_function(const View& view, std::size_t component, bool caps) const;
+    bool looks_at_function(const View& view, const Split& split, std::size_t component,
+                           bool caps) const;
     bool of_interest(Real lo, Real hi, Real bound, std::size_t component, bool also_below) const;
     Real bound_of(const Rule& rule, std::span<const NodeKey> nodes) const;
     NodeMask holds(const NewNodes& nodes) const;

@@ -146,7 +146,8 @@ Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
     const auto [decision, bound] = search_->look(view, split, caps, at_hand_.question);
     at_hand_.bound = bound;
     if (options_->position_bounds != nullptr && decision.visit == Visit::stop) {
-        at_hand_.position_bound = greatest_eta(*options_->position_bounds, split.keys);
+        at_hand_.position_bound =
+            nestgrid::detail::greatest_eta(*options_->position_bounds, split.keys);
     }
     return decision;
 }

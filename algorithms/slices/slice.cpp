@@ -27,11 +27,12 @@ private:
 
 /// Calls draw(levels) with the levels of a request.
 template <class Real, class Draw>
-auto with_levels(const Hierarchy<Real>& hierarchy, const SliceRequest& request, Draw&& draw) {
+auto with_levels(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
+                 const IsosurfaceOptions& options, Draw&& draw) {
     hierarchy.facts().require_dimension(3);
     const std::size_t functions = request.functions.size();
     const engine::WidenedHierarchy<Real> widened(hierarchy, functions);
-    const engine::PositionFunctions placed(request.functions, widened);
+    const engine::PositionFunctions placed(request.functions, widened, options.position_bounds);
     engine::Levels<double> levels = engine::isosurface_levels<double>(widened, request.isovalues);
     for (auto& level : levels.levels) level = engine::Level<double>(level.value, functions);
     for (std::size_t i = functions; i-- > 0;) {
@@ -50,7 +51,7 @@ std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequ
                                const Bounds& bounds, IsosurfaceOptions options,
                                const Executor& executor) {
     options.at_nodes = targets.soups.empty();
-    return with_levels(hierarchy, request, [&](const engine::Levels<double>& levels) {
+    return with_levels(hierarchy, request, options, [&](const engine::Levels<double>& levels) {
         return engine::draw_levels<3>(levels, targets, criterion, bounds, options, executor);
     });
 }
@@ -68,7 +69,7 @@ Slice draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function
     }
     std::optional<HierarchicalIndicator> own;
     if (indicator == nullptr) indicator = &own.emplace(hierarchy, LeafErrors{}, executor);
-    return with_levels(hierarchy, request, [&](const engine::Levels<double>& levels) {
+    return with_levels(hierarchy, request, options, [&](const engine::Levels<double>& levels) {
         const Threshold s = engine::criterion_for<3>(levels, *indicator, options, executor);
         IsosurfaceOptions merged = options;
         merged.at_nodes = true;

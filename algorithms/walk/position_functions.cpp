@@ -10,9 +10,11 @@
 namespace nestgrid::engine {
 
 PositionFunctions::PositionFunctions(std::span<const LevelFunction* const> functions,
-                                     const Hierarchy<double>& hierarchy)
-    : functions_(functions.begin(), functions.end()), tolerance_(functions.size(), 0.0) {
-    bounded_ = !hierarchy.offers(Feature::new_positions);
+                                     const Hierarchy<double>& hierarchy, const Indicator* bounds)
+    : functions_(functions.begin(), functions.end()),
+      tolerance_(functions.size(), 0.0),
+      bounded_{!hierarchy.offers(Feature::new_positions)},
+      bounds_{hierarchy.offers(Feature::hanging_parents) ? nullptr : bounds} {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> least(functions.size(), infinity);
     std::vector<double> greatest(functions.size(), -infinity);
@@ -48,11 +50,18 @@ double PositionFunctions::value(std::size_t i, const Point& x) const {
     throw InvalidInput("the function of the slice has no finite value at " + text_of(x));
 }
 
-double PositionFunctions::variation(std::size_t component, std::span<const Point> corners) const {
-    if (!bounded_) return std::numeric_limits<double>::infinity();
+double PositionFunctions::stray(std::span<const NodeKey> nodes, bool placed) const {
+    if (bounded_) return 0;
+    if (bounds_ == nullptr || !placed) return std::numeric_limits<double>::infinity();
+    return nestgrid::detail::greatest_eta(*bounds_, nodes);
+}
+
+double PositionFunctions::variation(std::size_t component, std::span<const Point> corners,
+                                    double stray) const {
+    if (std::isinf(stray)) return stray;
     double radius = 0;
     for (const Point& x : corners.subspan(1)) radius = std::max(radius, norm(x - corners[0]));
-    return functions_[component]->variation(corners[0], radius);
+    return functions_[component]->variation(corners[0], radius + stray);
 }
 
 template <class Real>

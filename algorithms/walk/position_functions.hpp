@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/level_function.hpp>
 #include <nestgrid/hierarchy.hpp>
 
@@ -25,9 +26,10 @@ class PositionFunctions {
 public:
     /// Borrows the functions. Evaluates them at the corners of the coarse grid, which give the
     /// tolerances: 2^-40 of the range of the values there, and of the coordinates' magnitude.
+    /// \param bounds the position_bounds() of the grid, borrowed, or null
     /// \throw InvalidInput where a value is not a finite number
     PositionFunctions(std::span<const LevelFunction* const> functions,
-                      const Hierarchy<double>& hierarchy);
+                      const Hierarchy<double>& hierarchy, const Indicator* bounds = nullptr);
 
     std::size_t count() const { return functions_.size(); }
     /// Whether the values of a component at new nodes are means of those at their parents.
@@ -49,9 +51,14 @@ public:
     Real at(std::size_t component, const Point& x) const {
         return static_cast<Real>(rounded(component, value(component, x)));
     }
-    /// A bound of how far a component may be, within the convex hull of some corners, from its
-    /// value at the first of them.
-    double variation(std::size_t component, std::span<const Point> corners) const;
+    /// A bound of how far nodes below an element may be from the convex hull of its corners:
+    /// infinity where none is known.
+    /// \param nodes the element's new nodes
+    /// \param placed whether its corners are where the grid puts them, none is interpolated
+    double stray(std::span<const NodeKey> nodes, bool placed) const;
+    /// A bound of how far a component may be from its value at the first of some corners, at points
+    /// no farther than `stray` from their convex hull.
+    double variation(std::size_t component, std::span<const Point> corners, double stray) const;
 
 private:
     double value(std::size_t i, const Point& x) const;
@@ -59,6 +66,7 @@ private:
     std::vector<const LevelFunction*> functions_;
     std::vector<double> tolerance_;  // one a function
     bool bounded_ = true;            // elements lie in the convex hulls of their corners
+    const Indicator* bounds_;        // how far they leave these hulls otherwise, or null
 };
 
 /// A hierarchy whose values are doubles, with some components in front of those of the field. These

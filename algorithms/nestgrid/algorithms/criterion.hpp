@@ -97,6 +97,17 @@ protected:
     Indicator& operator=(Indicator&&) noexcept = default;
 };
 
+namespace detail {
+
+/// The greatest eta of some nodes.
+inline double greatest_eta(const Indicator& indicator, std::span<const NodeKey> nodes) {
+    double greatest = 0;
+    for (const NodeKey node : nodes) greatest = std::max(greatest, indicator.stop(node));
+    return greatest;
+}
+
+}  // namespace detail
+
 /// S(x) = (eta(x) <= epsilon). The indicator must outlive the criterion.
 class Threshold final : public Criterion {
 public:

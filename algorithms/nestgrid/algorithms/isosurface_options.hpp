@@ -45,7 +45,7 @@ struct IsosurfaceOptions {
     /// differs: finds keys and positions that do not belong together.
     bool verify = false;
     /// The position_bounds() of the grid (geometry_indicator.hpp), borrowed, to be told how far off
-    /// vertices are; or null.
+    /// vertices are; or null. On grids with true positions, slices visit all elements without them.
     const Indicator* position_bounds = nullptr;
     /// Called now and then with the counts so far; returning false ends the traversal.
     std::function<bool(const TraversalCounts&)> progress{};

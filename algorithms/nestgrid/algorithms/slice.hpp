@@ -10,6 +10,8 @@
 //     once; where nodes lie means of others, vertices are on the plane up to rounding;
 //   - colours are the values of P_S U at vertices and linear on triangles: continuous across all
 //     changes of level and shape.
+// Where a grid gives true positions of new nodes, options.position_bounds tell which elements the
+// function may pass through; without them all are visited.
 // On a curved slice, elements stop where the data allow it: combine the criterion with DeepestLevel
 // or NodeLevels to follow the function more closely.
 #pragma once
