@@ -19,6 +19,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/detail/key_table.hpp>
@@ -212,6 +213,7 @@ public:
         const std::size_t before = heap_bytes();
         time_once("_preroll", [&] { indicator_.emplace(hierarchy); });
         print_megabytes(solver.name + "_indicator", heap_bytes() - before);
+        time_once("_position_bounds", [&] { bounds_ = position_bounds(hierarchy); });
         const std::size_t without = heap_bytes();
         time_once("_leaves_written", [&] { leaves_ = write_leaves(hierarchy, *indicator_); });
         print_megabytes(solver.name + "_written_leaves", heap_bytes() - without);
@@ -245,13 +247,15 @@ public:
         cut->Update();
         contest.add("ours_slice", [&] { ours(plane, 0); });
         contest.add("ours_at_1_percent_slice", [&] { ours(plane, range_ / 100); });
+        contest.add("ours_without_position_bounds_slice", [&] { ours(plane, 0, false); });
         contest.add("cutter_slice", [&] { update_anew(cut.Get()); });
         contest.add("plane_cutter_slice", [&] { update_anew(plane_cut.Get()); });
         contest.add("ours_isolines", [&] { isolines(drawn.surface, 0, values_); });
         contest.add("cutter_isolines", [&] { contour(parts_of(cut->GetOutput()), values_); });
         contest.run();
-        for (const char* who : {"ours_slice", "ours_at_1_percent_slice", "cutter_slice",
-                                "plane_cutter_slice", "ours_isolines", "cutter_isolines"}) {
+        for (const char* who :
+             {"ours_slice", "ours_at_1_percent_slice", "ours_without_position_bounds_slice",
+              "cutter_slice", "plane_cutter_slice", "ours_isolines", "cutter_isolines"}) {
             print(name(who) + "_ms", contest.time(who));
         }
     }
@@ -264,9 +268,10 @@ private:
         print(solver_->name + what + "_ms", contest.time("once"));
     }
 
-    nestgrid::Slice ours(const NamedPlane& at, double threshold) const {
+    nestgrid::Slice ours(const NamedPlane& at, double threshold, bool bounded = true) const {
         const nestgrid::Plane plane(at.through, at.normal);
-        const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
+        nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
+        if (bounded) options.position_bounds = &*bounds_;
         return slice(*hierarchy_, plane, *indicator_, options);
     }
 
@@ -324,6 +329,7 @@ private:
     const Hierarchy<double>* hierarchy_;
     std::size_t rounds_;
     std::optional<HierarchicalIndicator> indicator_;
+    std::optional<nestgrid::SweptIndicator> bounds_;
     vtkSmartPointer<vtkUnstructuredGrid> leaves_;
     double range_ = 0;
     std::vector<double> values_;

@@ -16,6 +16,7 @@
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
+#include "bent_grid.hpp"
 #include "families.hpp"
 #include "projection_judge.hpp"
 #include "refusal.hpp"
@@ -288,26 +289,6 @@ TYPED_TEST(Indicators, OfWaveletsKeepTheIntegral) {
         EXPECT_NEAR(coarsest, finest, 1e-12 * static_cast<double>(lifting.nodes().size()));
     });
 }
-
-/// A grid whose new nodes lie beside the means of their parents.
-template <class Base>
-class Bent : public Base {
-public:
-    explicit Bent(const Base& grid) : Base(grid), straight_{grid.node_positions()} {}
-
-    void new_positions(const typename Base::Element& e, NodeMask which, std::span<Point> out,
-                       typename Base::Context& context) const {
-        const auto nodes = this->new_nodes(e, context);
-        for (std::size_t n = 0; n < out.size(); ++n) {
-            const Point& x = straight_[nodes[n]];
-            const double bend = 0.02 * std::sin(7 * x[0] + 5 * x[1] + 3 * x[2]);
-            if ((which >> n & 1U) != 0) out[n] = x + bend * Point{1, -1, x[2] == 0 ? 0.0 : 1.0};
-        }
-    }
-
-private:
-    std::vector<Point> straight_;
-};
 
 double position_bound(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds,
                       const Indicator& positions) {

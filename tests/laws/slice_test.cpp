@@ -5,9 +5,11 @@
 // degenerate positions.
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 
+#include "bent_grid.hpp"
 #include "closedness.hpp"
 #include "cut_cube.hpp"
 #include "families.hpp"
@@ -190,6 +192,34 @@ TYPED_TEST(Slices, AreTheSameTogetherAndByThreads) {
             for (std::size_t i = 0; i < 3; ++i) expect_same(together[i], threaded[i]);
             expect_same_triangles(together[0], slice(grid, field, first, criterion, indicator));
             expect_same_triangles(together[1], slice(grid, field, second, criterion, indicator));
+        }
+    }
+}
+
+/// Position bounds tell which elements of a bent grid a slice may pass through, and change no bit.
+TYPED_TEST(Slices, VisitFewerElementsWithPositionBounds) {
+    if constexpr (TypeParam::Grid::dimension == 3) {
+        const Plane middle({0.4, 0.5, 0.49}, {0.3, 0.5, 0.81});
+        const Plane face({0.5, 0, 0}, {1, 0, 0});
+        const Sphere round({0.5, 0.5, 0.5}, 0.3);
+        for (auto& straight : TypeParam::grids()) {
+            refine_at_sphere(straight, 3 * TypeParam::steps);
+            const Bent<typename TypeParam::Grid> grid(straight);
+            const auto samples = catching_fields(straight.node_positions(), 3)[1];
+            const NodeField<typename TypeParam::Grid, double> field(straight, samples.values);
+            const auto h = erase(grid, field);
+            const HierarchicalIndicator indicator(h);
+            const SweptIndicator bounds = position_bounds(h);
+            const IsosurfaceOptions bounded{.position_bounds = &bounds};
+            for (const double threshold : {0.0, 0.1}) {
+                const Threshold criterion(&indicator, threshold);
+                const SliceRequest request{{&middle, &face, &round}};
+                const auto all = slices(h, request, criterion, indicator);
+                const auto few = slices(h, request, criterion, indicator, bounded);
+                for (std::size_t i = 0; i < 3; ++i) expect_same_triangles(all[i], few[i]);
+                EXPECT_FALSE(few[0].surface.simplices.empty());
+                EXPECT_LT(few[0].counts.calls, all[0].counts.calls);
+            }
         }
     }
 }
