@@ -76,7 +76,7 @@ Point ElementPolygon<Real>::lifted(Point x, double u) const {
 template <class Real>
 auto ElementPolygon<Real>::vertex(NodeKey key, const Point& x, std::span<const double> values)
     -> Number {
-    return surface_->vertex(surface_->name({key, key}), [&] {
+    return surface_->vertex_between({key, key}, [&] {
         return SurfaceCut{lifted(x, values[0]), {key, key}, 0, values};
     });
 }

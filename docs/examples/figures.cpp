@@ -21,6 +21,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
+#include "discontinuous_figure.hpp"
 #include "growth_figures.hpp"
 #include "indicator_figures.hpp"
 #include "lens_figures.hpp"
@@ -425,6 +426,7 @@ int main(int argc, char** argv) {
         {"wavelet_indicator", wavelet_figure},
         {"norm_indicator", norm_figure},
         {"derived_field", derived_figure},
+        {"discontinuous", discontinuous_figure},
         {"families", families_figure},
         {"isosurface_growth", isosurface_growth_figure},
         {"slice_growth", slice_growth_figure},

@@ -6,6 +6,7 @@
 
 #include <bit>
 
+#include <nestgrid/algorithms/discontinuous.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <nestgrid/detail/key_table.hpp>
 #include <walk/project.hpp>
@@ -111,6 +112,31 @@ inline double size_of(const Surface<2>& lines) {
     return length;
 }
 
+/// Data in cells that are 1 cover what elements of the grid cover, alone and where they stop.
+template <class Grid>
+void expect_pieces_of_one(const Grid& grid) {
+    const auto one = [](const ElementOf<Grid>&) { return 1.0; };
+    const DiscontinuousData data(grid, one);
+    const ElementDeviations deviations(data);
+    std::size_t before = std::numeric_limits<std::size_t>::max();
+    for (const double threshold : {0.0, 1e-12}) {
+        const DiscontinuousOptions options{.threshold = threshold};
+        DiscontinuousSurface drawn;
+        if constexpr (Grid::dimension == 2) {
+            drawn = shading(data, deviations, options);
+            EXPECT_NEAR(size_of(drawn.surface), 1, 1e-12);
+        } else {
+            const Point& slope = slanted_plane.slope;
+            const Plane plane(slanted_plane.isovalue / dot(slope, slope) * slope, slope);
+            drawn = slice(data, plane, deviations, options);
+            EXPECT_NEAR(size_of(drawn.surface), slanted_plane.area(3), 1e-12);
+        }
+        for (const double u : drawn.surface.attributes) EXPECT_EQ(u, 1);
+        EXPECT_LT(drawn.surface.level_of.size(), before);
+        before = drawn.surface.level_of.size();
+    }
+}
+
 /// On a grid that fills the unit cube or square, with the plane's values at the nodes: a linear
 /// function is its own projection, so its surface is the plane, at any threshold, and slices and
 /// height fields have its values.
@@ -118,6 +144,7 @@ template <class Grid, class Field>
 void expect_linear_exact(const Grid& grid, const Field& field) {
     const LinearFunction& plane = slanted<Grid::dimension>;
     const HierarchicalIndicator indicator(grid, field);
+    expect_pieces_of_one(grid);
     for (const double threshold : {0.0, 1e-12, 1.0}) {
         const auto surface =
             isosurface(grid, field, plane.isovalue, indicator, {.threshold = threshold}).surface;

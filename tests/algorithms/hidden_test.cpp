@@ -4,7 +4,9 @@
 // Hidden elements: nothing is drawn in them, and beside them what would be drawn without.
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/discontinuous.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <walk/project.hpp>
 
@@ -80,6 +82,28 @@ TEST(Hidden, ElementsDoNotChangeWhatIsDrawnBesideThem) {
     expect_the_rest_unchanged(kuhn<3>(0), 150);
     expect_the_rest_unchanged(boxes<2>(random, 3), 200);
     expect_the_rest_unchanged(kuhn<2>(2), 500);
+}
+
+/// Elements that are drawn alone stop where nothing below them is hidden.
+TEST(Hidden, ElementsAreNotDrawnAlone) {
+    std::mt19937 random(5);
+    for (int i = 0; i < 10; ++i) {
+        Forest<2> forest = i % 2 == 0 ? boxes<2>(random, 3) : kuhn<2>(2);
+        refine_randomly(forest, random, 200);
+        const HidingForest<2> grid(std::move(forest), random);
+        const auto one = [](std::uint32_t) { return 1.0; };
+        const DiscontinuousData data(grid, one);
+        const Surface<3> leaves = shading(data).surface;
+        const Surface<3> some = shading(data, {.threshold = 1}).surface;
+        EXPECT_LT(some.level_of.size(), leaves.level_of.size());
+        const double area = surface_report(leaves).area;
+        EXPECT_NEAR(surface_report(some).area, area, 1e-12 * area);
+        for (const Surface<3>* drawn : {&leaves, &some}) {
+            for (const std::uint32_t e : drawn->elements.as<std::uint32_t>()) {
+                EXPECT_EQ(grid.hidden(e), Hidden::not_at_all);
+            }
+        }
+    }
 }
 
 /// Not even through the projection, and not where a hidden leaf is coarser.

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pieces/piece_walk.hpp>
+
+#include <algorithm>
+
+#include <nestgrid/error.hpp>
+#include <walk/frontier.hpp>
+
+namespace nestgrid::engine {
+
+PieceWalk::PieceWalk(const Walk<double>& walk, const DiscontinuousData& data,
+                     const ElementDeviations* deviations, const DiscontinuousOptions& options,
+                     std::size_t in_front)
+    : walk_{&walk},
+      corner_values_(data),
+      deviations_{options.threshold > 0 ? deviations : nullptr},
+      options_{&options},
+      in_front_{in_front},
+      values_(max_corners * walk.components()) {}
+
+void PieceWalk::run(DiscontinuousSurface& result) {
+    try {
+        walk_->run(*this);
+    } catch (const Cancelled&) {
+        result.cancelled = true;
+    }
+    result.counts = counts_;
+    result.error_bound = error_bound_;
+}
+
+/// \throw Cancelled where progress says so
+void PieceWalk::count() {
+    ++counts_.calls;
+    if ((counts_.calls & 0xFFFFU) != 0 || !options_->progress) return;
+    if (!options_->progress(counts_)) throw Cancelled{};
+}
+
+Decision PieceWalk::inspect(const View& view, const Split& split) {
+    count();
+    const bool interest = of_interest(view, split);
+    counts_.visited += interest ? 1 : 0;
+    deviation_ = 0;
+    if (split.rule == nullptr) return {interest ? Visit::stop : Visit::skip};
+    if (deviations_ == nullptr) return {interest ? Visit::descend : Visit::skip};
+    const ElementDeviations::Entry& entry = deviations_->entries()[next_];
+    deviation_ = static_cast<double>(entry.deviation);
+    const bool stops = deviation_ <= options_->threshold;
+    next_ += interest && !stops ? 1 : entry.subtree;
+    if (!interest) return {Visit::skip};
+    return {stops ? Visit::stop : Visit::descend};
+}
+
+void PieceWalk::extract(const View& view) {
+    ++counts_.extracted;
+    corner_values_.put(view.element(), view.member->rule, view.shape, values_.data() + in_front_,
+                       walk_->components());
+    View valued = view;
+    valued.value = values_.data();
+    error_bound_ = std::max(error_bound_, deviation_ + draw(valued, values_));
+}
+
+void require_drawable(const DiscontinuousData& data, int dimension,
+                      const ElementDeviations* deviations, const DiscontinuousOptions& options) {
+    data.grid().facts().require_dimension(dimension);
+    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
+    if (!(options.flatness >= 0)) throw InvalidInput("the flatness is negative or not a number");
+    if (deviations != nullptr && deviations->epoch() != data.grid().epoch()) {
+        throw GridError("the grid has changed since the deviations of its elements were computed");
+    }
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Walks the elements at which discontinuous data stop.
+#pragma once
+
+#include <nestgrid/algorithms/discontinuous.hpp>
+#include <pieces/corner_values.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+/// How many components a WidenedHierarchy puts in front of the zero field of discontinuous data, so
+/// that a walk's elements have room for the data, behind others.
+/// \param in_front how many others
+inline std::size_t widening(const DiscontinuousData& data, std::size_t in_front) {
+    return in_front + static_cast<std::size_t>(data.components()) - 1;
+}
+
+/// Draws elements one by one. The walk carries no values: what is drawn gets them here.
+class PieceWalk : public Visitor<double> {
+public:
+    using View = ElementView<double>;
+    static constexpr Needs needs{.values = false, .keys = true, .positions = true};
+
+    /// \param walk of the WidenedHierarchy of the data's grid, see widening()
+    /// \param deviations null: only leaves are drawn
+    /// \param in_front how many components are in front of the data
+    /// All arguments are borrowed.
+    PieceWalk(const Walk<double>& walk, const DiscontinuousData& data,
+              const ElementDeviations* deviations, const DiscontinuousOptions& options,
+              std::size_t in_front);
+
+    /// Walks and draws.
+    void run(DiscontinuousSurface& result);
+
+    Decision inspect(const View& view, const Split& split) final;
+    void extract(const View& view) final;
+
+protected:
+    /// Whether anything is drawn in an element or below it.
+    virtual bool of_interest(const View& view, const Split& split) = 0;
+    /// Draws an element. The components in front of the data are not set.
+    /// \param values as ElementView::value
+    /// \return how far component 0, as it is drawn, is from what the corners interpolate
+    virtual double draw(const View& view, std::span<double> values) = 0;
+
+    const Walk<double>& walk() const { return *walk_; }
+    ~PieceWalk() = default;
+
+private:
+    void count();
+
+    const Walk<double>* walk_;
+    CornerValues corner_values_;
+    const ElementDeviations* deviations_;
+    const DiscontinuousOptions* options_;
+    std::size_t in_front_;
+    std::vector<double> values_;
+    std::size_t next_ = 0;  // entry of the next split element
+    double deviation_ = 0;  // of the element that stops
+    TraversalCounts counts_;
+    double error_bound_ = 0;
+};
+
+/// \throw InvalidInput, GridError as the functions of discontinuous.hpp say
+void require_drawable(const DiscontinuousData& data, int dimension,
+                      const ElementDeviations* deviations, const DiscontinuousOptions& options);
+
+}  // namespace nestgrid::engine
