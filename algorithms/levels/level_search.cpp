@@ -108,17 +108,17 @@ bool LevelSearch<Real>::looks_at_function(const View& view, const Split& split,
     if (range.lo == 0 && corners_at_zero(view, component) >= 3 && walk_->boundary(view) != 0) {
         range.lo = -range.hi;
     }
-    if (!view.is_leaf() && !walk_->functions()->affine(component)) {
-        std::array<Point, max_corners> x;
-        walk_->corners(view, nullptr, x.data());
-        const auto first = static_cast<double>(view.value[component]);
-        const double stray = walk_->functions()->stray(split.keys, view.interpolated == 0);
-        const double variation = walk_->functions()->variation(
-            component, std::span<const Point>(x).first(view.corner_count()), stray);
-        range.lo = std::min(range.lo, static_cast<Real>(first - variation));
-        range.hi = std::max(range.hi, static_cast<Real>(first + variation));
-    }
-    return of_interest(range.lo, range.hi, 0, component, caps);
+    if (of_interest(range.lo, range.hi, 0, component, caps)) return true;
+    const PositionFunctions& functions = *walk_->functions();
+    if (view.is_leaf() || functions.affine(component)) return false;
+    std::array<Point, max_corners> x;
+    walk_->corners(view, nullptr, x.data());
+    const auto [least, greatest] =
+        functions.range(component, std::span<const Point>(x).first(view.corner_count()),
+                        {static_cast<double>(range.lo), static_cast<double>(range.hi)},
+                        static_cast<double>(view.value[component]),
+                        functions.stray(split.keys, view.interpolated == 0));
+    return of_interest(static_cast<Real>(least), static_cast<Real>(greatest), 0, component, caps);
 }
 
 template <class Real>

@@ -47,8 +47,9 @@ bool PieceSlice::of_interest(const View& view, const engine::Split& split) {
     const auto [least, greatest] = std::ranges::minmax(std::span(f_).first(x.size()));
     if (least <= 0 && greatest >= 0) return true;
     if (view.is_leaf() || function_->affine(0)) return false;
-    const double variation = function_->variation(0, x, function_->stray(split.keys, true));
-    return f_[0] - variation <= 0 && f_[0] + variation >= 0;
+    const auto within =
+        function_->range(0, x, {least, greatest}, f_[0], function_->stray(split.keys, true));
+    return within.least <= 0 && within.greatest >= 0;
 }
 
 double PieceSlice::draw(const View& view, std::span<double> values) {

@@ -56,12 +56,25 @@ double PositionFunctions::stray(std::span<const NodeKey> nodes, bool placed) con
     return nestgrid::detail::greatest_eta(*bounds_, nodes);
 }
 
-double PositionFunctions::variation(std::size_t component, std::span<const Point> corners,
-                                    double stray) const {
-    if (std::isinf(stray)) return stray;
-    double radius = 0;
-    for (const Point& x : corners.subspan(1)) radius = std::max(radius, norm(x - corners[0]));
-    return functions_[component]->variation(corners[0], radius + stray);
+/// An affine function is between its values at the corners within their hull. Others are within
+/// what they vary around the first corner.
+auto PositionFunctions::range(std::size_t component, std::span<const Point> corners,
+                              const Range& at_corners, double at_first, double stray) const
+    -> Range {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (stray == infinity) return {-infinity, infinity};
+    const LevelFunction& function = *functions_[component];
+    if (function.affine()) {
+        const double beyond = function.variation(corners[0], stray);
+        return {at_corners.least - beyond, at_corners.greatest + beyond};
+    }
+    double radius = stray;
+    for (const Point& x : corners.subspan(1)) {
+        radius = std::max(radius, norm(x - corners[0]) + stray);
+    }
+    const double variation = function.variation(corners[0], radius);
+    return {std::min(at_corners.least, at_first - variation),
+            std::max(at_corners.greatest, at_first + variation)};
 }
 
 template <class Real>
