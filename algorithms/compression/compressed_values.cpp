@@ -72,14 +72,23 @@ public:
 private:
     using Bits = Integer<Real>;
 
-    /// The number of the multiple of the step that is next to a value.
+    /// The number of the multiple of the step that is next to a value; 0 where an integer has no
+    /// place for it, as codes that no encoder made may ask for.
     std::uint64_t multiple(Real value) const {
-        return static_cast<std::uint64_t>(
-            static_cast<std::int64_t>(std::nearbyint(static_cast<double>(value) / step_)));
+        const double at = std::nearbyint(static_cast<double>(value) / step_);
+        if (!(std::abs(at) < 0x1p63)) return 0;
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(at));
     }
 
     double step_;
 };
+
+/// \throw InvalidInput unless the step is a finite number of at least 0
+void require_step(double step) {
+    if (step >= 0 && std::isfinite(step)) return;
+    throw InvalidInput("values are compressed by a step of at least 0, not " +
+                       std::to_string(step));
+}
 
 }  // namespace
 
@@ -156,63 +165,83 @@ private:
 template <class Real>
 CompressedValues<Real>::CompressedValues(const Hierarchy<Real>& hierarchy,
                                          const CompressionOptions& options)
-    : components_{static_cast<std::size_t>(hierarchy.facts().components)}, step_{options.step} {
+    : components_{static_cast<std::size_t>(hierarchy.facts().components)},
+      size_{hierarchy.facts().node_count * components_},
+      packed_{options.step, {}, {}} {
     const std::size_t nodes = hierarchy.facts().node_count;
     if (nodes == 0) throw InvalidInput("values are compressed on grids with dense keys only");
-    if (!(step_ >= 0) || !std::isfinite(step_)) {
-        throw InvalidInput("values are compressed by a step of at least 0, not " +
-                           std::to_string(step_));
-    }
+    require_step(options.step);
     const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
     const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true}, &hanging);
-    Encoder encoder(walk, step_, nodes);
+    Encoder encoder(walk, options.step, nodes);
     walk.run(encoder);
     pack(encoder.codes());
 }
 
 template <class Real>
+CompressedValues<Real>::CompressedValues(std::size_t count, std::size_t components,
+                                         PackedValues packed)
+    : components_{components}, size_{count}, packed_{std::move(packed)} {
+    require_step(packed_.step);
+    const auto& block = packed_.block;
+    const bool complete = components > 0 && count % components == 0 &&
+                          block.size() == (count + block_size - 1) / block_size + 1 &&
+                          block.front() == 0 && block.back() == packed_.words.size();
+    const bool narrow = std::ranges::adjacent_find(block, [](std::uint32_t a, std::uint32_t b) {
+                            return a > b || b - a > block_size;
+                        }) == block.end();
+    if (!complete || !narrow) {
+        throw InvalidInput("the blocks of compressed values are not those of " +
+                           std::to_string(count) + " values");
+    }
+}
+
+template <class Real>
 void CompressedValues<Real>::pack(const std::vector<std::uint64_t>& codes) {
-    block_.push_back(0);
+    auto& words = packed_.words;
+    packed_.block.push_back(0);
     for (std::size_t first = 0; first < codes.size(); first += block_size) {
         const auto block =
             std::span(codes).subspan(first, std::min(block_size, codes.size() - first));
         std::uint64_t all = 0;
         for (const std::uint64_t code : block) all |= code;
         const auto width = static_cast<std::size_t>(std::bit_width(all));
-        const std::size_t begin = words_.size();
+        const std::size_t begin = words.size();
         if (begin + width > std::numeric_limits<std::uint32_t>::max()) {
             throw InvalidInput("compressed values take more than 2^35 bytes");
         }
-        words_.resize(begin + width);
+        words.resize(begin + width);
         for (std::size_t k = 0; k < block.size() && width > 0; ++k) {
             const std::size_t bit = k * width;
-            words_[begin + bit / 64] |= block[k] << bit % 64;
-            if (bit % 64 + width > 64) words_[begin + bit / 64 + 1] |= block[k] >> (64 - bit % 64);
+            words[begin + bit / 64] |= block[k] << bit % 64;
+            if (bit % 64 + width > 64) words[begin + bit / 64 + 1] |= block[k] >> (64 - bit % 64);
         }
-        block_.push_back(static_cast<std::uint32_t>(words_.size()));
+        packed_.block.push_back(static_cast<std::uint32_t>(words.size()));
     }
 }
 
 template <class Real>
 std::uint64_t CompressedValues<Real>::code(std::size_t at) const {
-    const std::size_t begin = block_[at / block_size];
-    const std::size_t width = block_[at / block_size + 1] - begin;
+    const auto& words = packed_.words;
+    const std::size_t begin = packed_.block[at / block_size];
+    const std::size_t width = packed_.block[at / block_size + 1] - begin;
     if (width == 0) return 0;
     const std::size_t bit = at % block_size * width;
-    std::uint64_t code = words_[begin + bit / 64] >> bit % 64;
-    if (bit % 64 + width > 64) code |= words_[begin + bit / 64 + 1] << (64 - bit % 64);
+    std::uint64_t code = words[begin + bit / 64] >> bit % 64;
+    if (bit % 64 + width > 64) code |= words[begin + bit / 64 + 1] << (64 - bit % 64);
     return code & ~std::uint64_t{0} >> (64 - width);
 }
 
 template <class Real>
 std::size_t CompressedValues<Real>::memory_bytes() const {
-    return block_.size() * sizeof(block_[0]) + words_.size() * sizeof(words_[0]);
+    return packed_.block.size() * sizeof(packed_.block[0]) +
+           packed_.words.size() * sizeof(packed_.words[0]);
 }
 
 template <class Real>
 void CompressedValues<Real>::decode_coarse(std::span<const NodeKey> nodes,
                                            std::span<Real> out) const {
-    const Codec<Real> codec(step_);
+    const Codec<Real> codec(packed_.step);
     for (std::size_t i = 0; i < nodes.size() * components_; ++i) {
         const std::size_t at =
             static_cast<std::size_t>(nodes[i / components_]) * components_ + i % components_;
@@ -224,7 +253,7 @@ template <class Real>
 void CompressedValues<Real>::decode(const Rule& rule, NodeMask which,
                                     std::span<const NodeKey> nodes, std::span<const Real> corners,
                                     std::span<Real> out) const {
-    const Codec<Real> codec(step_);
+    const Codec<Real> codec(packed_.step);
     std::array<Real, max_corners + max_new_nodes> value;
     const auto before = static_cast<std::size_t>(rule.corner_count());
     for (std::size_t c = 0; c < components_; ++c) {
@@ -237,6 +266,27 @@ void CompressedValues<Real>::decode(const Rule& rule, NodeMask which,
             if (!wanted) continue;
             at = codec.decode(code(static_cast<std::size_t>(nodes[n]) * components_ + c), at);
             out[n * components_ + c] = at;
+        }
+    }
+}
+
+template <class Real>
+void CompressedValues<Real>::decode_split(const Rule& rule, NodeMask hanging,
+                                          std::span<const NodeKey> nodes,
+                                          std::span<const Real> corners,
+                                          std::span<Real> out) const {
+    decode(rule, rule.all() & ~hanging, nodes, corners, out);
+    if (hanging == 0) return;
+    std::array<Real, max_corners + max_new_nodes> value;
+    const auto before = static_cast<std::size_t>(rule.corner_count());
+    for (std::size_t c = 0; c < components_; ++c) {
+        for (std::size_t k = 0; k < before; ++k) value[k] = corners[k * components_ + c];
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            Real& at = out[n * components_ + c];
+            if ((hanging >> n & 1U) != 0) {
+                at = detail::interpolate(rule.new_nodes[n], value.data(), 1);
+            }
+            value[before + n] = at;
         }
     }
 }

@@ -27,6 +27,15 @@ struct CompressionOptions {
     double step = 0;
 };
 
+/// Compressed values as they lie in a file.
+struct PackedValues {
+    double step = 0;                   ///< of CompressionOptions
+    std::vector<std::uint32_t> block;  ///< in `words`: where each block begins; the end
+    std::vector<std::uint64_t> words;  ///< block k has block[k + 1] - block[k] bits a code
+
+    friend bool operator==(const PackedValues&, const PackedValues&) = default;
+};
+
 /// The values at all nodes of a hierarchy with dense keys.
 template <class Real>
 class CompressedValues {
@@ -36,7 +45,14 @@ public:
     ///        value has no place among its multiples
     explicit CompressedValues(const Hierarchy<Real>& hierarchy,
                               const CompressionOptions& options = {});
+    /// Takes what packed() of other values returned. Whatever its words are, decoding is defined.
+    /// \param count values: that of nodes times that of components
+    /// \throw InvalidInput where the step or the blocks are not those of so many values
+    CompressedValues(std::size_t count, std::size_t components, PackedValues packed);
 
+    const PackedValues& packed() const { return packed_; }
+    /// Values: nodes times components.
+    std::size_t size() const { return size_; }
     int components() const { return static_cast<int>(components_); }
     std::size_t memory_bytes() const;
 
@@ -47,6 +63,10 @@ public:
     /// \param corners values at the corners
     void decode(const Rule& rule, NodeMask which, std::span<const NodeKey> nodes,
                 std::span<const Real> corners, std::span<Real> out) const;
+    /// Sets the values at all new nodes of a split.
+    /// \param hanging the nodes that hang, which have the mean of their parents
+    void decode_split(const Rule& rule, NodeMask hanging, std::span<const NodeKey> nodes,
+                      std::span<const Real> corners, std::span<Real> out) const;
 
 private:
     class Encoder;
@@ -55,9 +75,8 @@ private:
     void pack(const std::vector<std::uint64_t>& codes);
 
     std::size_t components_;
-    double step_;
-    std::vector<std::uint32_t> block_;  // where each block of codes begins; the end
-    std::vector<std::uint64_t> words_;  // block k has block_[k + 1] - block_[k] bits a code
+    std::size_t size_;
+    PackedValues packed_;
 };
 
 /// Compressed values as a field. Grid and values must outlive it.
