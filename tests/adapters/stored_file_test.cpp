@@ -8,10 +8,12 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/stored_file.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/check_grid.hpp>
 
 #include "families.hpp"
 #include "refusal.hpp"
+#include "same_surface.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -51,8 +53,9 @@ class StoredFiles : public testing::Test {};
 TYPED_TEST_SUITE(StoredFiles, Families);
 
 template <class Family>
-StoredHierarchy<Family> read_back(const StoredGrid<Family>&, const std::filesystem::path& path) {
-    return read_hierarchy<Family>(path);
+StoredHierarchy<Family> read_back(const StoredGrid<Family>&, const std::filesystem::path& path,
+                                  Encoded encoded = Encoded::decode) {
+    return read_hierarchy<Family>(path, encoded);
 }
 
 TYPED_TEST(StoredFiles, ComeBackAsTheyWere) {
@@ -122,10 +125,23 @@ TEST(StoredFile, RefusesEveryDamage) {
         EXPECT_NE(refusal<IoError>(read), "") << "byte " << i;
     }
     auto later = sound;
-    later[8] = 2;
+    later[8] = 3;
     write_bytes(path, later);
-    EXPECT_NE(refusal<IoError>(read).find("version 2"), std::string::npos);
+    EXPECT_NE(refusal<IoError>(read).find("version 3"), std::string::npos);
     std::filesystem::remove(path);
+}
+
+/// Damages bytes behind the header, at places from `first` on, and makes the checksums correct.
+std::vector<char> damaged(const std::vector<char>& sound, std::size_t first, int changes,
+                          std::mt19937& random) {
+    auto bytes = sound;
+    for (int k = 0; k < changes; ++k) {
+        const std::size_t at = first + random() % (bytes.size() - first);
+        bytes[at] =
+            random() % 3 == 0 ? static_cast<char>(random()) : static_cast<char>(bytes[at] + 1);
+    }
+    set_checksums(bytes);
+    return bytes;
 }
 
 /// Damage with correct checksums: refused, or a grid that can be walked and adapted safely.
@@ -139,14 +155,7 @@ TYPED_TEST(StoredFiles, SurviveMalice) {
     std::size_t refused = 0;
     constexpr int tries = 400;
     for (int i = 0; i < tries; ++i) {
-        auto bytes = sound;
-        for (unsigned k = 0; k <= static_cast<unsigned>(i % 3); ++k) {
-            const std::size_t at = 56 + random() % (bytes.size() - 56);
-            bytes[at] =
-                random() % 3 == 0 ? static_cast<char>(random()) : static_cast<char>(bytes[at] + 1);
-        }
-        set_checksums(bytes);
-        write_bytes(path, bytes);
+        write_bytes(path, damaged(sound, 56, 1 + i % 3, random));
         try {
             auto back = read_back(grid, path);
             std::size_t count = 0;
@@ -160,6 +169,158 @@ TYPED_TEST(StoredFiles, SurviveMalice) {
         }
     }
     EXPECT_GT(refused, static_cast<std::size_t>(tries / 4));
+    std::filesystem::remove(path);
+}
+
+/// Frames of two fields: waves that move, and their squares.
+template <class Grid>
+std::vector<NamedField> moving_fields(const Grid& grid, const std::vector<double>& times) {
+    NamedField wave{"wave", {}};
+    NamedField square{"square", {}};
+    for (const double t : times) {
+        for (const double value :
+             sample_nodes(grid, [t](const Point& x) { return std::sin(9 * x[0] - t) + x[1]; })) {
+            wave.values.push_back(value);
+            square.values.push_back(value * value);
+        }
+    }
+    return {wave, square};
+}
+
+/// The greatest difference at nodes that do not hang.
+template <class Grid>
+double difference(const Grid& grid, std::span<const double> a, std::span<const double> b) {
+    double greatest = 0;
+    grid.for_each_leaf([&](const Leaf& leaf) {
+        for (const std::uint32_t node : leaf.nodes) {
+            if (!grid.hangs(node)) greatest = std::max(greatest, std::abs(a[node] - b[node]));
+        }
+    });
+    return greatest;
+}
+
+/// Files of one frame of plain values are those that earlier versions wrote and read.
+TEST(StoredFile, HasTheLowestVersionThatHoldsIt) {
+    const auto path = temporary(std::to_string(::getpid()) + "_version.nestgrid");
+    const OctreeGrid<2> grid(quadrilaterals(1));
+    const NamedField field{"f", std::vector<double>(grid.node_count(), 1)};
+    const auto version = [&](const StoredFileOptions& options) {
+        write_hierarchy(grid, path, {field}, options);
+        return int{bytes_of(path)[8]};
+    };
+    EXPECT_EQ(version({}), 1);
+    EXPECT_EQ(version({.times = {2}}), 2);
+    EXPECT_EQ(version({.compression = CompressionOptions{}}), 2);
+    std::filesystem::remove(path);
+}
+
+TYPED_TEST(StoredFiles, KeepFrames) {
+    const auto path = temporary(std::to_string(::getpid()) + "_frames.nestgrid");
+    const std::vector<double> times{-1, 0.5, 3};
+    for (auto grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 2 * TypeParam::steps);
+        const auto fields = moving_fields(grid, times);
+        write_hierarchy(grid, path, fields, {.times = times});
+        const auto back = read_back(grid, path);
+        EXPECT_EQ(leaves(back.grid), leaves(grid));
+        EXPECT_EQ(back.times, times);
+        ASSERT_EQ(back.fields.size(), 2U);
+        for (std::size_t f = 0; f < 2; ++f) {
+            EXPECT_EQ(back.fields[f].name, fields[f].name);
+            EXPECT_EQ(back.fields[f].values, fields[f].values);
+        }
+        const auto last = back.frame(back.fields[1], 2);
+        EXPECT_TRUE(
+            std::ranges::equal(last, std::span(fields[1].values).last(back.grid.node_count())));
+    }
+    std::filesystem::remove(path);
+}
+
+/// Encoded values are the values: bit for bit with step 0, within half a step otherwise, at all
+/// nodes but those that hang. Those have the mean of their parents, as a CompressedField has it.
+TYPED_TEST(StoredFiles, KeepEncodedValues) {
+    using Grid = typename TypeParam::Grid;
+    const auto path = temporary(std::to_string(::getpid()) + "_encoded.nestgrid");
+    for (auto grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 3 * TypeParam::steps);
+        const std::vector<double> times{0, 1};
+        const auto fields = moving_fields(grid, times);
+        for (const double step : {0.0, 0.01}) {
+            write_hierarchy(grid, path, fields,
+                            {.times = times, .compression = CompressionOptions{step}});
+            const auto back = read_back(grid, path);
+            const auto kept = read_back(grid, path, Encoded::keep);
+            for (std::size_t f = 0; f < 2; ++f) {
+                ASSERT_TRUE(kept.fields[f].values.empty());
+                ASSERT_EQ(kept.fields[f].encoded.size(), 2U);
+                for (std::size_t i = 0; i < 2; ++i) {
+                    const auto values = back.frame(back.fields[f], i);
+                    const auto first = i * grid.node_count();
+                    const double off =
+                        difference(grid, values, std::span(fields[f].values).subspan(first));
+                    EXPECT_LE(off, step / 2 * (1 + 1e-9));
+                    EXPECT_EQ(decode(kept.grid, kept.fields[f].encoded[i]),
+                              std::vector<double>(values.begin(), values.end()));
+                    const NodeField decoded(back.grid, values);
+                    const auto violation = check_grid(back.grid, decoded);
+                    EXPECT_FALSE(violation) << violation->sentence;
+                    const CompressedField<Grid, double> direct(kept.grid,
+                                                               kept.fields[f].encoded[i]);
+                    expect_same(isosurface(kept.grid, direct, 0.4, {.threshold = 0.05}).surface,
+                                isosurface(back.grid, decoded, 0.4, {.threshold = 0.05}).surface);
+                }
+            }
+            // Encoded fields are written as they are.
+            const std::vector<char> bytes = bytes_of(path);
+            write_hierarchy(kept.grid, path, kept.fields, {.times = kept.times});
+            EXPECT_EQ(bytes_of(path), bytes);
+        }
+    }
+    std::filesystem::remove(path);
+}
+
+/// Damaged times, values and codes with correct checksums: refused, or values that algorithms take
+/// or refuse.
+TYPED_TEST(StoredFiles, SurviveMaliceInFrames) {
+    const auto path = temporary(std::to_string(::getpid()) + "_malice_in_frames.nestgrid");
+    auto grid = TypeParam::grids().front();
+    refine_at_sphere(grid, 2 * TypeParam::steps);
+    write_hierarchy(grid, path);
+    const std::size_t of_grid = bytes_of(path).size();
+    const std::vector<double> times{0, 1};
+    const auto fields = moving_fields(grid, times);
+    std::mt19937 random(5);
+    std::size_t refused = 0;
+    for (const double step : {-1.0, 0.0, 0.001}) {  // below 0: plain values
+        StoredFileOptions options{.times = times};
+        if (step >= 0) options.compression = CompressionOptions{step};
+        write_hierarchy(grid, path, fields, options);
+        const std::vector<char> sound = bytes_of(path);
+        for (int i = 0; i < 100; ++i) {
+            // Every other time among the numbers that tell how long arrays are.
+            const std::size_t end = i % 2 == 0 ? sound.size() : of_grid + 100;
+            std::vector<char> part(sound.begin(), sound.begin() + std::ptrdiff_t(end));
+            part = damaged(part, of_grid - 8, 1 + i % 3, random);
+            std::vector<char> bytes = sound;
+            std::ranges::copy(part, bytes.begin());
+            set_checksums(bytes);
+            write_bytes(path, bytes);
+            try {
+                const auto back = read_back(grid, path);
+                const auto kept = read_back(grid, path, Encoded::keep);
+                EXPECT_EQ(back.fields.size(), kept.fields.size());
+                for (const NamedField& field : back.fields) {
+                    ASSERT_EQ(field.values.size(), back.times.size() * back.grid.node_count());
+                    const NodeField values(back.grid, back.frame(field, back.times.size() - 1));
+                    static_cast<void>(isosurface(back.grid, values, 0.1, {.threshold = 0.1}));
+                }
+            } catch (const IoError&) {
+                ++refused;
+            } catch (const InvalidInput&) {  // values that are no usable numbers
+            }
+        }
+    }
+    EXPECT_GT(refused, 75U);
     std::filesystem::remove(path);
 }
 
@@ -184,6 +345,14 @@ TEST(StoredFile, RefusesFieldsOfTheWrongLength) {
     const OctreeGrid<2> grid(quadrilaterals(1));
     const auto path = temporary("never.nestgrid");
     EXPECT_THROW(write_hierarchy(grid, path, {{"f", {1, 2}}}), InvalidInput);
+    const NamedField field{"f", std::vector<double>(2 * grid.node_count())};
+    EXPECT_THROW(write_hierarchy(grid, path, {field}), InvalidInput);
+    EXPECT_THROW(write_hierarchy(grid, path, {field}, {.times = {0, 1, 2}}), InvalidInput);
+    EXPECT_THROW(write_hierarchy(grid, path, {field}, {.times = {1, 1}}), InvalidInput);
+    EXPECT_THROW(write_hierarchy(grid, path, {field}, {.times = {0, NAN}}), InvalidInput);
+    EXPECT_THROW(write_hierarchy(grid, path, {}, {.times = {}}), InvalidInput);
+    const StoredFileOptions negative{.times = {0, 1}, .compression = CompressionOptions{-1}};
+    EXPECT_THROW(write_hierarchy(grid, path, {field}, negative), InvalidInput);
     EXPECT_THROW(write_hierarchy(grid, "/nowhere/file.nestgrid", {}), IoError);
     EXPECT_FALSE(std::filesystem::exists(path));
 }

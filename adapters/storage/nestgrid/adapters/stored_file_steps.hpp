@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "the file format is li
 /// The first bytes of a file; what follows them is `body` bytes long.
 struct FileHeader {
     std::array<char, 8> magic{'n', 'e', 's', 't', 'g', 'r', 'i', 'd'};
-    std::uint32_t version = 1;
+    std::uint32_t version = 1;  // 2 where there are frames, or encoded values
     std::uint32_t dimension = 0;
     std::array<char, 16> family{};
     std::uint32_t corners = 0;
@@ -95,9 +95,9 @@ inline FileHeader read_file_header(std::ifstream& file, const std::filesystem::p
         header.magic != FileHeader{}.magic) {
         throw IoError(quoted(path) + " is no nestgrid hierarchy");
     }
-    if (header.version != FileHeader{}.version) {
+    if (header.version != 1 && header.version != 2) {
         throw IoError(quoted(path) + " has version " + std::to_string(header.version) +
-                      " of the format; this program reads version 1");
+                      " of the format; this program reads versions 1 and 2");
     }
     if (header.header_checksum != header.own_checksum()) {
         throw IoError(quoted(path) + " is damaged: the checksum of its header is wrong");
@@ -109,13 +109,43 @@ inline std::string text(const std::array<char, 16>& name) {
     return {name.data(), strnlen(name.data(), name.size())};
 }
 
+/// Completes the header and writes both. The file appears when it is complete.
+inline void write_file(const std::filesystem::path& path, FileHeader header,
+                       const std::vector<char>& body) {
+    header.body = body.size();
+    boost::crc_32_type crc;
+    crc.process_bytes(body.data(), body.size());
+    header.body_checksum = crc.checksum();
+    header.header_checksum = header.own_checksum();
+
+    std::filesystem::path part = path;
+    part += ".part";
+    {
+        std::ofstream file(part, std::ios::binary);
+        file.write(reinterpret_cast<const char*>(&header), sizeof(header));
+        file.write(body.data(), static_cast<std::streamsize>(body.size()));
+        file.close();
+        if (!file) {
+            std::error_code ignored;
+            std::filesystem::remove(part, ignored);
+            throw IoError(quoted(path) + " cannot be written");
+        }
+    }
+    std::error_code failed;
+    std::filesystem::rename(part, path, failed);
+    if (failed) {
+        std::filesystem::remove(part, failed);
+        throw IoError(quoted(path) + " cannot be written");
+    }
+}
+
 /// Reading and writing what a StoredGrid keeps private.
 template <class Family>
 class GridFile {
 public:
     using Grid = StoredGrid<Family>;
 
-    static void write(const Grid& grid, const std::vector<NamedField>& fields, Writer& out) {
+    static void write(const Grid& grid, Writer& out) {
         const CoarseGrid& coarse = grid.coarse_;
         out.put(static_cast<std::uint64_t>(coarse.nodes.size()));
         for (std::size_t i = 0; i < coarse.nodes.size(); ++i) out.put(coarse.nodes[i]);
@@ -142,14 +172,9 @@ public:
             for (const std::uint32_t node : leaf.nodes) used[node] = true;
         });
         out.put_all(bits(used));
-        out.put(static_cast<std::uint64_t>(fields.size()));
-        for (const NamedField& f : fields) {
-            out.put_all(std::vector<char>(f.name.begin(), f.name.end()));
-            out.put_all(f.values);
-        }
     }
 
-    static StoredHierarchy<Family> read(Reader& in, const Family& family) {
+    static Grid read(Reader& in, const Family& family) {
         Grid grid;
         grid.family_ = family;
         read_coarse(grid, in);
@@ -160,17 +185,7 @@ public:
         grid.words_ = in.get_all<std::uint32_t>();
         grid.hanging_ = in.get_all<std::uint32_t>();
         GridFile(grid, in).check(in.get_all<std::uint32_t>());
-        std::vector<NamedField> fields;
-        const auto count = in.get<std::uint64_t>();
-        for (std::uint64_t i = 0; i < count; ++i) {
-            const auto name = in.get_all<char>();
-            fields.push_back({std::string(name.begin(), name.end()), in.get_all<double>()});
-            if (fields.back().values.size() != grid.node_count_) {
-                in.fail("field '" + fields.back().name + "' has another number of values");
-            }
-        }
-        if (!in.at_end()) in.fail("there is something after its end");
-        return {std::move(grid), std::move(fields)};
+        return grid;
     }
 
 private:
@@ -254,48 +269,30 @@ private:
 
 }  // namespace detail
 
+}  // namespace nestgrid
+
+#include <nestgrid/adapters/stored_values_steps.hpp>
+
+namespace nestgrid {
+
 template <class Family>
 void write_hierarchy(const StoredGrid<Family>& grid, const std::filesystem::path& path,
-                     const std::vector<NamedField>& fields) {
-    for (const NamedField& f : fields) {
-        if (f.values.size() != grid.node_count()) {
-            throw InvalidInput("field '" + f.name + "' has " + std::to_string(f.values.size()) +
-                               " values, but the grid " + std::to_string(grid.node_count()) +
-                               " nodes");
-        }
-    }
-    detail::Writer body;
-    detail::GridFile<Family>::write(grid, fields, body);
+                     const std::vector<NamedField>& fields, const StoredFileOptions& options) {
+    detail::check_values(fields, grid.node_count(), options.times);
     detail::FileHeader header;
+    header.version = detail::version_for(fields, options);
+    detail::Writer body;
+    detail::GridFile<Family>::write(grid, body);
+    if (header.version == 1) {
+        detail::write_plain(fields, body);
+    } else {
+        detail::write_frames(grid, fields, options, body);
+    }
     header.dimension = static_cast<std::uint32_t>(Family::dimension);
     std::strncpy(header.family.data(), Family::name, header.family.size() - 1);
     header.corners = static_cast<std::uint32_t>(Family::max_corners);
     header.options = detail::options(grid.family());
-    header.body = body.bytes.size();
-    boost::crc_32_type crc;
-    crc.process_bytes(body.bytes.data(), body.bytes.size());
-    header.body_checksum = crc.checksum();
-    header.header_checksum = header.own_checksum();
-
-    std::filesystem::path part = path;
-    part += ".part";
-    {
-        std::ofstream file(part, std::ios::binary);
-        file.write(reinterpret_cast<const char*>(&header), sizeof(header));
-        file.write(body.bytes.data(), static_cast<std::streamsize>(body.bytes.size()));
-        file.close();
-        if (!file) {
-            std::error_code ignored;
-            std::filesystem::remove(part, ignored);
-            throw IoError(detail::quoted(path) + " cannot be written");
-        }
-    }
-    std::error_code failed;
-    std::filesystem::rename(part, path, failed);
-    if (failed) {
-        std::filesystem::remove(part, failed);
-        throw IoError(detail::quoted(path) + " cannot be written");
-    }
+    detail::write_file(path, header, body.bytes);
 }
 
 inline HierarchyHeader read_hierarchy_header(const std::filesystem::path& path) {
@@ -306,7 +303,7 @@ inline HierarchyHeader read_hierarchy_header(const std::filesystem::path& path) 
 }
 
 template <class Family>
-StoredHierarchy<Family> read_hierarchy(const std::filesystem::path& path) {
+StoredHierarchy<Family> read_hierarchy(const std::filesystem::path& path, Encoded encoded) {
     std::ifstream file(path, std::ios::binary);
     const detail::FileHeader header = detail::read_file_header(file, path);
     if (detail::text(header.family) != Family::name ||
@@ -333,7 +330,15 @@ StoredHierarchy<Family> read_hierarchy(const std::filesystem::path& path) {
         throw IoError(detail::quoted(path) + " is damaged: its checksum is wrong");
     }
     detail::Reader body(std::move(bytes), detail::quoted(path));
-    return detail::GridFile<Family>::read(body, detail::from_options<Family>(header.options));
+    StoredHierarchy<Family> stored{
+        detail::GridFile<Family>::read(body, detail::from_options<Family>(header.options)), {}};
+    if (header.version == 1) {
+        detail::read_plain(body, stored);
+    } else {
+        detail::read_frames(body, encoded, stored);
+    }
+    if (!body.at_end()) body.fail("there is something after its end");
+    return stored;
 }
 
 }  // namespace nestgrid
