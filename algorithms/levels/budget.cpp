@@ -15,6 +15,7 @@ namespace engine {
 namespace {
 
 using nestgrid::detail::MakeCriterion;
+using nestgrid::detail::SearchBounds;
 
 std::uint16_t halved(std::uint16_t code) {
     return static_cast<std::uint16_t>(code > octave ? code - octave : 0);
@@ -25,11 +26,11 @@ template <int dimension, class Real>
 class BudgetSearch {
 public:
     BudgetSearch(const Levels<Real>& levels, const MakeCriterion& criterion_at,
-                 const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                 const SearchBounds& bounds, std::uint64_t max_triangles,
                  const IsosurfaceOptions& options, const Executor& executor)
         : levels_{levels},
           criterion_at_{criterion_at},
-          indicator_{indicator},
+          bounds_{bounds},
           max_triangles_{max_triangles},
           options_{options},
           executor_{executor} {}
@@ -37,8 +38,7 @@ public:
     TriangleBudget run() {
         if (fits(0)) return best_;
         // The greatest stopping number is at most the range of the data.
-        std::uint16_t within =
-            bfloat16_above(float_above(indicator_.greatest() - indicator_.least()));
+        std::uint16_t within = bfloat16_above(float_above(bounds_.range));
         if (within == 0 || !fits(within)) throw_too_few(within);
         std::uint16_t beyond = halved(within);
         while (beyond > 0 && fits(beyond)) {
@@ -52,7 +52,7 @@ public:
 private:
     std::optional<std::uint64_t> count(std::uint16_t code, std::uint64_t most) const {
         const std::unique_ptr<const Criterion> criterion = criterion_at_(bfloat16_value(code));
-        return count_simplices<dimension>(levels_, *criterion, indicator_, most, options_,
+        return count_simplices<dimension>(levels_, *criterion, bounds_.bounds, most, options_,
                                           executor_);
     }
 
@@ -78,7 +78,7 @@ private:
 
     const Levels<Real>& levels_;
     const MakeCriterion& criterion_at_;
-    const HierarchicalIndicator& indicator_;
+    SearchBounds bounds_;
     std::uint64_t max_triangles_;
     const IsosurfaceOptions& options_;
     const Executor& executor_;
@@ -89,9 +89,9 @@ private:
 
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& criterion_at,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
+                              const SearchBounds& bounds, std::uint64_t max_triangles,
                               const IsosurfaceOptions& options, const Executor& executor) {
-    return BudgetSearch<dimension, Real>(levels, criterion_at, indicator, max_triangles, options,
+    return BudgetSearch<dimension, Real>(levels, criterion_at, bounds, max_triangles, options,
                                          executor)
         .run();
 }
@@ -104,8 +104,9 @@ Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator&
     const MakeCriterion everywhere = [&](double threshold) {
         return std::make_unique<const Threshold>(&indicator, threshold);
     };
-    const TriangleBudget best = find_threshold<dimension>(levels, everywhere, indicator,
-                                                          options.max_triangles, options, executor);
+    const TriangleBudget best = find_threshold<dimension>(
+        levels, everywhere, {indicator, indicator.greatest() - indicator.least()},
+        options.max_triangles, options, executor);
     return {&indicator, best.threshold};
 }
 
@@ -115,12 +116,12 @@ namespace detail {
 
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
-                              const MakeCriterion& criterion_at,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options, const Executor& executor) {
+                              const MakeCriterion& criterion_at, const SearchBounds& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                              const Executor& executor) {
     const auto levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
-    return engine::find_threshold<dimension>(levels, criterion_at, indicator, max_triangles,
-                                             options, executor);
+    return engine::find_threshold<dimension>(levels, criterion_at, bounds, max_triangles, options,
+                                             executor);
 }
 
 template <int dimension, class Real>
@@ -133,18 +134,18 @@ Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
 
 }  // namespace detail
 
-#define NESTGRID_INSTANTIATE(dimension, Real)                                                    \
-    template TriangleBudget engine::find_threshold<dimension>(                                   \
-        const engine::Levels<Real>&, const detail::MakeCriterion&, const HierarchicalIndicator&, \
-        std::uint64_t, const IsosurfaceOptions&, const Executor&);                               \
-    template Threshold engine::criterion_for<dimension>(                                         \
-        const engine::Levels<Real>&, const HierarchicalIndicator&, const IsosurfaceOptions&,     \
-        const Executor&);                                                                        \
-    template TriangleBudget detail::find_threshold<dimension>(                                   \
-        const Hierarchy<Real>&, double, const detail::MakeCriterion&,                            \
-        const HierarchicalIndicator&, std::uint64_t, const IsosurfaceOptions&, const Executor&); \
-    template Threshold detail::criterion_for<dimension>(                                         \
-        const Hierarchy<Real>&, double, const HierarchicalIndicator&, const IsosurfaceOptions&,  \
+#define NESTGRID_INSTANTIATE(dimension, Real)                                                      \
+    template TriangleBudget engine::find_threshold<dimension>(                                     \
+        const engine::Levels<Real>&, const detail::MakeCriterion&, const detail::SearchBounds&,    \
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);                                 \
+    template Threshold engine::criterion_for<dimension>(                                           \
+        const engine::Levels<Real>&, const HierarchicalIndicator&, const IsosurfaceOptions&,       \
+        const Executor&);                                                                          \
+    template TriangleBudget detail::find_threshold<dimension>(                                     \
+        const Hierarchy<Real>&, double, const detail::MakeCriterion&, const detail::SearchBounds&, \
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);                                 \
+    template Threshold detail::criterion_for<dimension>(                                           \
+        const Hierarchy<Real>&, double, const HierarchicalIndicator&, const IsosurfaceOptions&,    \
         const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)

@@ -75,8 +75,9 @@ std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const C
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Levels<Real>& levels,
                               const nestgrid::detail::MakeCriterion& criterion_at,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options, const Executor& executor);
+                              const nestgrid::detail::SearchBounds& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                              const Executor& executor);
 
 /// S from options.threshold or options.max_triangles.
 /// \throw InvalidInput as find_threshold(), and where the threshold is negative or not a number

@@ -78,13 +78,28 @@ Slice draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function
     });
 }
 
-#define NESTGRID_INSTANTIATE(Real)                                                              \
-    template std::vector<Slice> draw_slices(const Hierarchy<Real>&, const SliceRequest&,        \
-                                            const SurfaceTargets<3>&, const Criterion&,         \
-                                            const Bounds&, IsosurfaceOptions, const Executor&); \
-    template Slice draw_slice(const Hierarchy<Real>&, const LevelFunction&,                     \
-                              const HierarchicalIndicator*, const IsosurfaceOptions&,           \
-                              const Executor&);
+template <class Real>
+TriangleBudget find_slice_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                                    const MakeCriterion& criterion_at, const SearchBounds& bounds,
+                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                                    const Executor& executor) {
+    return with_levels(hierarchy, {{&function}}, options,
+                       [&](const engine::Levels<double>& levels) {
+                           return engine::find_threshold<3>(levels, criterion_at, bounds,
+                                                            max_triangles, options, executor);
+                       });
+}
+
+#define NESTGRID_INSTANTIATE(Real)                                                               \
+    template std::vector<Slice> draw_slices(const Hierarchy<Real>&, const SliceRequest&,         \
+                                            const SurfaceTargets<3>&, const Criterion&,          \
+                                            const Bounds&, IsosurfaceOptions, const Executor&);  \
+    template Slice draw_slice(const Hierarchy<Real>&, const LevelFunction&,                      \
+                              const HierarchicalIndicator*, const IsosurfaceOptions&,            \
+                              const Executor&);                                                  \
+    template TriangleBudget find_slice_threshold(                                                \
+        const Hierarchy<Real>&, const LevelFunction&, const MakeCriterion&, const SearchBounds&, \
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(float)
 NESTGRID_INSTANTIATE(double)
 #undef NESTGRID_INSTANTIATE

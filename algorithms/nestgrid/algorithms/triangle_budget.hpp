@@ -5,7 +5,8 @@
 //
 // Stopping numbers are bfloat16, so S changes at these 2^15 thresholds only: the search is one over
 // integers. It ends between two neighbours, of which the greater threshold keeps within the budget
-// and the lesser one does not.
+// and the lesser one does not. Between frames S changes at other thresholds, too: the one found may
+// be greater than the least by 1/128 of it.
 // Cost: every trial ends when the budget is exceeded. Threshold 0 is tried first; then thresholds
 // are halved from the greatest one until the budget is exceeded, and 7 bisections remain, for an
 // octave has 128 numbers: at most 10 times the budget, and what fitted before the last halving.
@@ -16,8 +17,17 @@
 #include <memory>
 
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/level_function.hpp>
 
 namespace nestgrid {
+
+/// Bounds that know the range of the data: a HierarchicalIndicator, or KeyFrames between frames. No
+/// offset is greater than the range.
+template <class T>
+concept RangedBounds = std::derived_from<T, Bounds> && requires(const T& bounds) {
+    { bounds.least() } -> std::convertible_to<double>;
+    { bounds.greatest() } -> std::convertible_to<double>;
+};
 
 struct TriangleBudget {
     double threshold = 0;
@@ -30,12 +40,34 @@ namespace detail {
 
 using MakeCriterion = std::function<std::unique_ptr<const Criterion>(double threshold)>;
 
+/// Where the search begins.
+struct SearchBounds {
+    const Bounds& bounds;
+    double range;  ///< of the data: the greatest threshold
+};
+
 /// Defined for dimensions 2 and 3, float and double.
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
-                              const MakeCriterion& criterion_at,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options, const Executor& executor);
+                              const MakeCriterion& criterion_at, const SearchBounds& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                              const Executor& executor);
+/// The same for a slice, with the triangles that it has before vertices are merged at nodes.
+template <class Real>
+TriangleBudget find_slice_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                                    const MakeCriterion& criterion_at, const SearchBounds& bounds,
+                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                                    const Executor& executor);
+
+/// Calls find(make) with a function that makes a criterion on the heap.
+template <class Criteria, class Find>
+TriangleBudget with_made(const Criteria& criterion_at, const Find& find) {
+    using S = decltype(criterion_at(0.0));
+    const MakeCriterion make = [&](double threshold) {
+        return std::make_unique<const S>(criterion_at(threshold));
+    };
+    return find(make);
+}
 
 }  // namespace detail
 
@@ -44,54 +76,67 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
 /// \param options cap and progress count
 /// \throw InvalidInput where even the coarsest surface has more than max_triangles, and for a
 ///        hierarchy of another dimension
-template <int dimension, class Real, class MakeCriterion>
+template <int dimension, class Real, class MakeCriterion, RangedBounds Ranged>
     requires requires(const MakeCriterion& make) {
         { make(0.0) } -> std::derived_from<Criterion>;
     }
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
-                              const MakeCriterion& criterion_at,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options = {},
+                              const MakeCriterion& criterion_at, const Ranged& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
                               const Executor& executor = SequentialExecutor{}) {
-    using S = decltype(criterion_at(0.0));
-    const detail::MakeCriterion make = [&](double threshold) {
-        return std::make_unique<const S>(criterion_at(threshold));
-    };
     hierarchy.facts().require_dimension(dimension);
-    return detail::find_threshold<dimension>(hierarchy, isovalue, make, indicator, max_triangles,
-                                             options, executor);
+    return detail::with_made(criterion_at, [&](const detail::MakeCriterion& make) {
+        return detail::find_threshold<dimension>(hierarchy, isovalue, make,
+                                                 {bounds, bounds.greatest() - bounds.least()},
+                                                 max_triangles, options, executor);
+    });
 }
-template <class Grid, class Field, class MakeCriterion>
+/// The same for the slice along the zero of a function. Triangles are counted before vertices are
+/// merged at nodes: the slice has no more.
+template <class Real, class MakeCriterion, RangedBounds Ranged>
+    requires requires(const MakeCriterion& make) {
+        { make(0.0) } -> std::derived_from<Criterion>;
+    }
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                              const MakeCriterion& criterion_at, const Ranged& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
+                              const Executor& executor = SequentialExecutor{}) {
+    return detail::with_made(criterion_at, [&](const detail::MakeCriterion& make) {
+        return detail::find_slice_threshold(hierarchy, function, make,
+                                            {bounds, bounds.greatest() - bounds.least()},
+                                            max_triangles, options, executor);
+    });
+}
+template <class Grid, class Field, class MakeCriterion, RangedBounds Ranged>
     requires requires(const MakeCriterion& make) {
         { make(0.0) } -> std::derived_from<Criterion>;
     }
 TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
-                              const MakeCriterion& criterion_at,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options = {},
+                              const MakeCriterion& criterion_at, const Ranged& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
                               const Executor& executor = SequentialExecutor{}) {
     return find_threshold<detail::surface_dimension<Grid>()>(
-        erase(grid, field), isovalue, criterion_at, indicator, max_triangles, options, executor);
+        erase(grid, field), isovalue, criterion_at, bounds, max_triangles, options, executor);
 }
 
 /// The same with the indicator's own criterion.
-template <int dimension, class Real>
-TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options = {},
-                              const Executor& executor = SequentialExecutor{}) {
-    const auto everywhere = [&](double threshold) { return Threshold(&indicator, threshold); };
-    return find_threshold<dimension>(hierarchy, isovalue, everywhere, indicator, max_triangles,
-                                     options, executor);
-}
-template <class Grid, class Field>
-TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
-                              const HierarchicalIndicator& indicator, std::uint64_t max_triangles,
-                              const IsosurfaceOptions& options = {},
-                              const Executor& executor = SequentialExecutor{}) {
-    return find_threshold<detail::surface_dimension<Grid>()>(
-        erase(grid, field), isovalue, indicator, max_triangles, options, executor);
-}
+template <int dimension, class Real, RangedBounds Ranged>
+    requires std::derived_from<Ranged, Indicator> TriangleBudget
+    find_threshold(const Hierarchy<Real>& hierarchy, double isovalue, const Ranged& indicator,
+                   std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
+                   const Executor& executor = SequentialExecutor{}) {
+        const auto everywhere = [&](double threshold) { return Threshold(&indicator, threshold); };
+        return find_threshold<dimension>(hierarchy, isovalue, everywhere, indicator, max_triangles,
+                                         options, executor);
+    }
+template <class Grid, class Field, RangedBounds Ranged>
+    requires std::derived_from<Ranged, Indicator> TriangleBudget
+    find_threshold(const Grid& grid, const Field& field, double isovalue, const Ranged& indicator,
+                   std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
+                   const Executor& executor = SequentialExecutor{}) {
+        return find_threshold<detail::surface_dimension<Grid>()>(
+            erase(grid, field), isovalue, indicator, max_triangles, options, executor);
+    }
 
 /// S from options.threshold or options.max_triangles.
 /// \throw InvalidInput where the threshold is negative or not a number, where even the coarsest
