@@ -10,6 +10,7 @@ struct Options {
     Input input;
     SurfaceOptions surface;
     LensText lens;
+    TimeOptions time;
     bool outlines = false;
     double colour_tolerance = 0;
 };
@@ -22,6 +23,7 @@ Command add_boundary(CLI::App& program) {
     add_input_options(*boundary, o->input);
     add_surface_options(*boundary, o->surface);
     add_lens_options(*boundary, o->lens);
+    add_time_options(*boundary, o->time);
     boundary->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     add_colour_option(*boundary, o->colour_tolerance);
     return {boundary, [o] {
@@ -32,6 +34,7 @@ Command add_boundary(CLI::App& program) {
                                .outlines = o->outlines,
                                .empty = "the hierarchy has no boundary",
                                .lens = parse(o->lens),
-                               .colour_tolerance = o->colour_tolerance});
+                               .colour_tolerance = o->colour_tolerance},
+                              o->time);
             }};
 }

@@ -10,20 +10,20 @@
 
 #include <vtkAppendPolyData.h>
 
-#include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/detail/geometry.hpp>
 
 #include "collection.hpp"
 #include "expression.hpp"
 #include "extract.hpp"
 #include "film.hpp"
-#include "input_hierarchy.hpp"
+#include "moments.hpp"
 #include "picture.hpp"
 #include "print.hpp"
 #include "surface_file.hpp"
@@ -57,62 +57,69 @@ struct DrawnField {
     std::vector<double> values;  ///< of isolines
 };
 
+/// \throw nestgrid::InvalidInput where the surface is none of a field of this dimension, or options
+///        do not go together
+void check(const ColouredSurface& what, const SurfaceOptions& options,
+           const nestgrid::HierarchyFacts& facts) {
+    const bool in_space = what.function != nullptr || what.isovalue;
+    if (!in_space && facts.dimension == 3) {
+        throw nestgrid::InvalidInput(
+            "the field is one in space: give a slice, for isolines, or use 'isosurface'");
+    }
+    facts.require_dimension(in_space ? 3 : 2);
+    if (!in_space && !options.budgets.empty()) {
+        throw nestgrid::InvalidInput("--max-triangles is for grids of dimension 3");
+    }
+    if (what.colour_tolerance > 0 && !options.budgets.empty()) {
+        throw nestgrid::InvalidInput("--max-triangles excludes --colour-tolerance");
+    }
+}
+
+/// Draws the surfaces at one moment.
 template <class Real>
 class Drawing {
 public:
-    Drawing(const nestgrid::Hierarchy<Real>& hierarchy, const SurfaceOptions& options,
-            const ColouredSurface& what)
-        : hierarchy_{hierarchy}, options_{options}, what_{what}, executor_{options.threads} {
-        const bool in_space = what.function != nullptr || what.isovalue;
-        if (!in_space && hierarchy.facts().dimension == 3) {
-            throw nestgrid::InvalidInput(
-                "the field is one in space: give a slice, for isolines, or use 'isosurface'");
-        }
-        hierarchy.facts().require_dimension(in_space ? 3 : 2);
-        if (!in_space && !options.budgets.empty()) {
-            throw nestgrid::InvalidInput("--max-triangles is for grids of dimension 3");
-        }
-        if (what.colour_tolerance > 0 && !options.budgets.empty()) {
-            throw nestgrid::InvalidInput("--max-triangles excludes --colour-tolerance");
-        }
-        if (what.lens && !options.budgets.empty()) {
-            throw nestgrid::InvalidInput("--max-triangles with --lens is for isosurfaces");
-        }
+    Drawing(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& moment,
+            const SurfaceOptions& options, const ColouredSurface& what,
+            const nestgrid::Executor& executor)
+        : hierarchy_{hierarchy},
+          moment_{moment},
+          options_{options},
+          what_{what},
+          executor_{executor} {
+        check(what, options, hierarchy.facts());
     }
 
-    void draw_all(DrawnField& field) {
-        const double start = now();
+    /// \param take take(drawn) takes each surface
+    template <class Take>
+    void draw_all(const Take& take) {
         const bool unlimited = options_.thresholds.empty() && options_.budgets.empty();
-        const bool plain = unlimited && !what_.lens && !what_.isovalue;
-        if (!plain) {
-            indicators_.emplace(hierarchy_, options_.projection, what_.lens, executor_);
+        if (unlimited && !what_.lens && !what_.isovalue) {
+            take(draw(0, [&](Drawn& d) { d.slice = draw_exactly(); }));
+            return;
         }
-        field.preroll_seconds = now() - start;
-        if (plain) {
-            field.surfaces.push_back(draw(0, [&](Drawn& d) { d.slice = draw_exactly(); }));
-        }
-        for (const std::int64_t budget : options_.budgets) {
-            field.surfaces.push_back(draw(
-                0, [&](Drawn& d) { d.slice = draw_within(static_cast<std::uint64_t>(budget)); }));
-        }
+        const ChosenIndicator& indicators = moment_.indicators();
         std::vector<ThresholdText> thresholds;
         for (const std::string& text : options_.thresholds) {
             thresholds.push_back(parse_threshold(text));
         }
-        if (unlimited && !plain) set_default_threshold(thresholds, what_.lens.has_value());
-        for (const ThresholdText& t : thresholds) {
-            const double threshold = indicators_->threshold(t);
-            indicators_->with_criteria([&](const auto& criterion_at) {
-                field.surfaces.push_back(
-                    draw(threshold, [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
-            });
-        }
+        if (unlimited) set_default_threshold(thresholds, what_.lens.has_value());
+        indicators.with_criteria([&](const auto& criterion_at) {
+            const auto take_at = [&](double threshold) {
+                take(draw(threshold, [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
+            };
+            for (const std::int64_t budget : options_.budgets) {
+                take_at(threshold_for(static_cast<std::uint64_t>(budget), criterion_at));
+            }
+            for (const ThresholdText& t : thresholds) take_at(indicators.threshold(t));
+        });
     }
 
 private:
     template <class Draw>
     Drawn draw(double threshold, const Draw& draw_into) {
         Drawn drawn;
+        drawn.time = moment_.time();
         drawn.threshold = threshold;
         const double start = now();
         draw_into(drawn);
@@ -137,17 +144,24 @@ private:
             refine_colours(surface, hierarchy_, what_.colour_tolerance, with...);
         }
     }
-    nestgrid::Slice draw_within(std::uint64_t budget) const {
-        const nestgrid::HierarchicalIndicator& offsets = indicators_->offsets();
-        nestgrid::IsosurfaceOptions options{.max_triangles = budget, .cap = what_.cap};
-        if (what_.function != nullptr) {
-            return slice(hierarchy_, *what_.function, offsets, options, executor_);
-        }
-        options.normals = true;
-        return isosurface<3>(hierarchy_, *what_.isovalue, offsets, options, executor_);
+    /// The least threshold at which the slice, or the isosurface, keeps within a number of
+    /// triangles.
+    template <class CriterionAt>
+    double threshold_for(std::uint64_t budget, const CriterionAt& criterion_at) const {
+        const nestgrid::IsosurfaceOptions options{.cap = what_.cap};
+        return moment_.indicators().with_offsets([&](const auto& offsets) {
+            if (what_.function != nullptr) {
+                return find_threshold(hierarchy_, *what_.function, criterion_at, offsets, budget,
+                                      options, executor_)
+                    .threshold;
+            }
+            return nestgrid::find_threshold<3>(hierarchy_, *what_.isovalue, criterion_at, offsets,
+                                               budget, options, executor_)
+                .threshold;
+        });
     }
     void draw_with(const nestgrid::Criterion& criterion, Drawn& drawn) const {
-        const nestgrid::HierarchicalIndicator& bounds = indicators_->offsets();
+        const nestgrid::Bounds& bounds = moment_.indicators().bounds();
         nestgrid::IsosurfaceOptions options{.cap = what_.cap};
         if (what_.isovalue && what_.function != nullptr) {
             auto both = slices(hierarchy_, {{what_.function}, {*what_.isovalue}}, criterion, bounds,
@@ -178,13 +192,14 @@ private:
     }
 
     const nestgrid::Hierarchy<Real>& hierarchy_;
+    const Moment& moment_;
     const SurfaceOptions& options_;
     const ColouredSurface& what_;
-    nestgrid::TbbExecutor executor_;
-    std::optional<ChosenIndicator> indicators_;
+    const nestgrid::Executor& executor_;
 };
 
 void print(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
+    if (d.time) line("time", *d.time);
     line("threshold", d.threshold);
     line("inspect_calls", std::size_t{d.slice.counts.calls});
     line("visited", std::size_t{d.slice.counts.visited});
@@ -223,30 +238,27 @@ void print_table(const DrawnField& field) {
     }
 }
 
-/// Gives isosurfaces that have no other field the values of an expression at their vertices.
-void colour_by(const std::string& expression, DrawnField& field) {
-    field.name = expression;
-    for (Drawn& d : field.surfaces) {
-        nestgrid::Surface<3>& surface = d.slice.surface;
-        if (!surface.attributes.empty()) continue;
-        const Expression f(expression);
-        for (const nestgrid::Point& x : surface.vertices) surface.attributes.push_back(f(x));
-    }
+/// Gives an isosurface that has no other field the values of an expression at its vertices.
+void colour_by(const Expression& f, nestgrid::Surface<3>& surface) {
+    if (!surface.attributes.empty()) return;
+    for (const nestgrid::Point& x : surface.vertices) surface.attributes.push_back(f(x));
 }
 
-/// Draws the isolines on all surfaces.
-void draw_isolines(DrawnField& field, const ColouredSurface& what) {
-    field.values = what.values;
-    for (int i = 1; i <= what.value_count; ++i) {
-        field.values.push_back(field.least +
-                               i * (field.greatest - field.least) / (what.value_count + 1));
+/// Values of isolines between a least and a greatest one.
+std::vector<double> values_between(double least, double greatest, int count) {
+    std::vector<double> values;
+    for (int i = 1; i <= count; ++i) {
+        values.push_back(least + i * (greatest - least) / (count + 1));
     }
-    if (field.values.empty()) return;
-    for (Drawn& d : field.surfaces) {
-        const double start = now();
-        d.isolines = nestgrid::isolines(d.slice.surface, 0, field.values);
-        d.seconds += now() - start;
-    }
+    return values;
+}
+
+/// Draws the isolines on a surface.
+void draw_isolines(Drawn& d, const std::vector<double>& values) {
+    if (values.empty()) return;
+    const double start = now();
+    d.isolines = nestgrid::isolines(d.slice.surface, 0, values);
+    d.seconds += now() - start;
 }
 
 /// Widens the range of the colours by those of a surface.
@@ -357,26 +369,46 @@ void require_triangles(const Drawn& d, const ColouredSurface& what) {
     if (d.report.triangles == 0) throw nestgrid::InvalidInput(what.empty);
 }
 
-/// Draws the slices at one time between frames, one for each threshold.
-/// \param range of the data, for thresholds in percent
-/// \param taken taken(slice) is called as soon as a slice is drawn
-template <class Real, class Taken>
-void draw_time(double t, const nestgrid::Hierarchy<Real>& hierarchy,
-               const nestgrid::KeyFrames& indicator, double range, const SurfaceOptions& options,
-               const ColouredSurface& what, DrawnField& field, const Taken& taken) {
-    const nestgrid::TbbExecutor executor(options.threads);
-    for (const std::string& text : options.thresholds) {
-        Drawn& d = field.surfaces.emplace_back();
-        d.time = t;
-        d.threshold = parse_threshold(text).in_units(range);
-        const double begin = now();
-        d.slice = slice(hierarchy, *what.function, nestgrid::Threshold(&indicator, d.threshold),
-                        indicator, {.cap = what.cap}, executor);
-        d.seconds = now() - begin;
-        d.report = nestgrid::surface_report(d.slice.surface);
-        add_range(d, field);
-        taken(d);
+/// Draws the surfaces at all moments.
+/// \param film takes the surfaces, which are then dropped; or null
+void draw_moments(const Moments& moments, const SurfaceOptions& options,
+                  const ColouredSurface& what, const std::string& by, Film* film,
+                  DrawnField& field) {
+    std::optional<Expression> expression;
+    const bool by_another = what.isovalue && what.function == nullptr;
+    field.values = what.values;
+    if (film != nullptr && what.value_count > 0) {
+        // The range of all surfaces is known too late for a film: that of the frames takes its
+        // place.
+        const FramePrerolls& all = moments.prerolls();
+        field.values = values_between(all.least(), all.greatest(), what.value_count);
     }
+    moments.for_each([&](const Moment& moment) {
+        moment.visit([&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy) {
+            Drawing<Real> drawing(hierarchy, moment, options, what, moments.executor());
+            drawing.draw_all([&](Drawn&& d) {
+                if (by_another && d.slice.surface.attributes.empty()) {
+                    if (!expression) expression.emplace(by);
+                    colour_by(*expression, d.slice.surface);
+                }
+                add_range(d, field);
+                const bool may_vanish = by_another && d.time;
+                if (field.surfaces.empty() && !may_vanish) require_triangles(d, what);
+                if (film != nullptr) {
+                    draw_isolines(d, field.values);
+                    film->add(data_of(make_panel(d, field, what), !field.values.empty()), *d.time);
+                    d.slice.surface = {};
+                    d.isosurface = {};
+                }
+                field.surfaces.push_back(std::move(d));
+            });
+        });
+    });
+    if (film != nullptr) return film->finish();
+    if (what.value_count > 0) {
+        field.values = values_between(field.least, field.greatest, what.value_count);
+    }
+    for (Drawn& d : field.surfaces) draw_isolines(d, field.values);
 }
 
 }  // namespace
@@ -389,37 +421,14 @@ void add_colour_option(CLI::App& command, double& tolerance) {
         ->check(positive_number);
 }
 
-void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what) {
-    check(options);
-    DrawnField field;
-    {
-        ProgressLine progress;
-        progress.show("reading");
-        with_field(input, [&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy,
-                                          const std::string& name) {
-            progress.show("drawing");
-            field.name = field.input_name = name;
-            Drawing<Real>(hierarchy, options, what).draw_all(field);
-        });
-        if (what.isovalue && what.function == nullptr) colour_by(input.by, field);
-        for (const Drawn& d : field.surfaces) add_range(d, field);
-        require_triangles(field.surfaces.front(), what);
-        draw_isolines(field, what);
-        progress.show("writing");
-        write(options, field, what);
-    }
-    if (field.surfaces.size() == 1) {
-        print(field.surfaces.front(), field, what);
-    } else {
-        print_table(field);
-    }
-}
-
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what,
                    const TimeOptions& time) {
     check(options);
-    check(time, options);
-    if (options.thresholds.empty()) options.thresholds = {"0"};
+    check(time, input.path);
+    check_film(time, options);
+    if (time.frames && what.isovalue && what.function == nullptr && what.value_count > 0) {
+        throw nestgrid::InvalidInput("a film of isolines on a surface needs --values");
+    }
     for (const std::string& text : options.thresholds) parse_threshold(text);
     DrawnField field;
     {
@@ -427,29 +436,21 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
         progress.show("reading");
         std::optional<Film> film;
         if (time.frames) film.emplace(options.output);
-        const auto taken = [&](Drawn& d) {
-            require_triangles(d, what);
-            if (!film) return;
-            film->add(data_of(make_panel(d, field, what), !field.values.empty()), *d.time);
-            d.slice.surface = {};
-        };
-        with_frames(input, time, options.threads, [&](const Frames& frames) {
-            progress.show("drawing");
-            field.name = frames.name;
-            field.preroll_seconds = frames.preroll_seconds;
-            const double range = frames.greatest - frames.least;
-            for (const double t : time.drawn_times()) {
-                frames.at(time.weights(t), [&](const auto& hierarchy, const auto& indicator) {
-                    draw_time(t, hierarchy, indicator, range, options, what, field, taken);
-                });
-            }
-        });
+        const std::filesystem::path path = input.path;
+        const InputField read = read_field(input, time.more, time.times);
+        progress.show("drawing");
+        const Moments moments(read, time, path, options.projection, what.lens, options.threads);
+        field.input_name = read.name;
+        const bool by_another = what.isovalue && what.function == nullptr;
+        field.name = by_another ? input.by : read.name;
+        draw_moments(moments, options, what, input.by, film ? &*film : nullptr, field);
+        field.preroll_seconds = moments.preroll_seconds();
         progress.show("writing");
-        if (film) {
-            film->finish();
-        } else {
-            write(options, field, what);
-        }
+        if (!film) write(options, field, what);
     }
-    print_table(field);
+    if (field.surfaces.size() == 1) {
+        print(field.surfaces.front(), field, what);
+    } else {
+        print_table(field);
+    }
 }

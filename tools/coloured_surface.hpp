@@ -6,8 +6,8 @@
 
 #include <nestgrid/algorithms/slice.hpp>
 
-#include "frames.hpp"
 #include "lens_options.hpp"
+#include "time_options.hpp"
 
 /// A surface that is coloured by the field; an isosurface without a slice by Input::by.
 struct ColouredSurface {
@@ -34,9 +34,8 @@ struct ColouredSurface {
 /// Adds the option for ColouredSurface::colour_tolerance.
 void add_colour_option(CLI::App& command, double& tolerance);
 
-/// Draws, writes, paints and prints the surface at each threshold or budget.
+/// Draws, writes, paints and prints the surface at each threshold or budget, of the field or at
+/// times between its frames.
 /// \throw nestgrid::IoError, nestgrid::InvalidInput, nestgrid::GridError
-void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what);
-/// The same at times between frames of hierarchies of dimension 3.
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what,
                    const TimeOptions& time);

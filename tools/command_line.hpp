@@ -30,6 +30,7 @@ Command add_surface(CLI::App& program);
 Command add_probe(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_mesh(CLI::App& program);
+Command add_pack(CLI::App& program);
 Command add_view(CLI::App& program);
 
 /// A check for options: what is wrong with the text of a positive finite number, or nothing.

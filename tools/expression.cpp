@@ -29,7 +29,7 @@ std::string message(const mu::Parser::exception_type& error) {
 
 }  // namespace
 
-Expression::Expression(const std::string& text)
+Expression::Expression(const std::string& text, Variables variables)
     : parser_{std::make_unique<mu::Parser>()}, text_{text} {
     std::string formula = text;
     for (const NamedExpression& n : named) {
@@ -39,19 +39,22 @@ Expression::Expression(const std::string& text)
         parser_->DefineVar("x", &x_[0]);
         parser_->DefineVar("y", &x_[1]);
         parser_->DefineVar("z", &x_[2]);
+        if (variables == Variables::place_and_time) parser_->DefineVar("t", &t_);
         parser_->DefineConst("pi", 3.14159265358979323846);
         parser_->SetExpr(formula);
         parser_->Eval();
     } catch (const mu::Parser::exception_type& error) {
-        throw nestgrid::InvalidInput("the expression '" + text +
-                                     "' is no expression in x, y and z: " + message(error));
+        throw nestgrid::InvalidInput("the expression '" + text + "' is no expression in x, y" +
+                                     (variables == Variables::place ? " and z: " : ", z and t: ") +
+                                     message(error));
     }
 }
 
 Expression::~Expression() = default;
 
-double Expression::operator()(const nestgrid::Point& x) const {
+double Expression::operator()(const nestgrid::Point& x, double t) const {
     x_ = x;
+    t_ = t;
     const double value = parser_->Eval();
     if (!std::isfinite(value)) {
         throw nestgrid::InvalidInput("the expression '" + text_ + "' is no finite number at " +

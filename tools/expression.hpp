@@ -11,17 +11,20 @@ namespace mu {
 class Parser;
 }
 
-/// A function of x, y, z: one with a name, or an expression such as sin(3*x)+y*z (muparser).
+/// A function of x, y, z and perhaps t: one with a name, or an expression such as sin(3*x)+y*z
+/// (muparser).
 class Expression {
 public:
+    enum class Variables { place, place_and_time };
+
     /// \throw nestgrid::InvalidInput for an expression that cannot be understood
-    explicit Expression(const std::string& text);
+    explicit Expression(const std::string& text, Variables variables = Variables::place);
     ~Expression();
     Expression(const Expression&) = delete;
     Expression& operator=(const Expression&) = delete;
 
     /// \throw nestgrid::InvalidInput where the value is not a number
-    double operator()(const nestgrid::Point& x) const;
+    double operator()(const nestgrid::Point& x, double t = 0) const;
 
     /// Names and what they stand for, one per line.
     static std::string names();
@@ -29,5 +32,6 @@ public:
 private:
     std::unique_ptr<mu::Parser> parser_;
     mutable nestgrid::Point x_{};
+    mutable double t_ = 0;
     std::string text_;
 };

@@ -4,12 +4,10 @@
 
 #include <chrono>
 
-#include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/error.hpp>
 
-#include "hierarchy.hpp"
 #include "memory.hpp"
 
 namespace {
@@ -35,7 +33,7 @@ nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request) {
 /// \param e takes what the surface costs and, where it is kept, the surface
 template <int dimension, class Real>
 void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Criterion& criterion,
-                 const nestgrid::Bounds& bounds, const nestgrid::TbbExecutor& executor,
+                 const nestgrid::Bounds& bounds, const nestgrid::Executor& executor,
                  const ExtractionRequest& request, Extraction& e) {
     const std::size_t before = memory::current();
     memory::reset_peak();
@@ -58,13 +56,11 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Cri
 }
 
 /// The box of a request as a region; none where there is no box.
-/// \param make_region makes the region of a function bool(const Point&)
-template <class MakeRegion>
 std::optional<nestgrid::Region> box_region(const ExtractionRequest& request, int dimension,
-                                           const MakeRegion& make_region) {
+                                           const InputField& field) {
     if (!request.box) return std::nullopt;
     if (request.progress) request.progress("region");
-    return make_region([bounds = request.box->bounds, dimension](const nestgrid::Point& x) {
+    return field.region([bounds = request.box->bounds, dimension](const nestgrid::Point& x) {
         for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d) {
             if (x[d] < bounds[2 * d] || x[d] > bounds[2 * d + 1]) return false;
         }
@@ -72,94 +68,65 @@ std::optional<nestgrid::Region> box_region(const ExtractionRequest& request, int
     });
 }
 
-/// Calls draw(criterion_at) with the function that makes, in a box, the criterion for a threshold.
+/// Calls draw(criterion_at) with the function that makes a criterion of a threshold.
 template <class Draw>
-void with_box(const nestgrid::Indicator& indicator, const nestgrid::Region& region,
-              const ExtractionRequest& request, const Draw& draw) {
+void with_criteria(const ChosenIndicator& indicators, const std::optional<nestgrid::Region>& region,
+                   const ExtractionRequest& request, const Draw& draw) {
+    if (!region) return indicators.with_criteria(draw);
     draw([&](double threshold) {
-        return nestgrid::fine_inside(region, indicator, threshold, request.box->threshold);
+        return nestgrid::fine_inside(*region, indicators.chosen(), threshold,
+                                     request.box->threshold);
     });
 }
 
-/// Draws all surfaces of one field, at thresholds and budgets.
+/// Draws all surfaces at one moment, at thresholds and budgets.
 template <int dimension, class Real>
-void extract_field(const nestgrid::Hierarchy<Real>& hierarchy, const ChosenIndicator& indicators,
-                   const std::optional<nestgrid::Region>& region,
-                   const nestgrid::TbbExecutor& executor, const ExtractionRequest& request,
-                   ExtractionRun& run) {
-    const nestgrid::HierarchicalIndicator& offsets = indicators.offsets();
-    const auto draw = [&](const auto& criterion_at) {
+void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& moment,
+                    const std::optional<nestgrid::Region>& region,
+                    const nestgrid::Executor& executor, const ExtractionRequest& request,
+                    ExtractionRun& run) {
+    const ChosenIndicator& indicators = moment.indicators();
+    const auto draw = [&](const auto& criterion_at, Extraction e) {
+        e.time = moment.time();
+        extract_one<dimension>(hierarchy, criterion_at(e.threshold), indicators.bounds(), executor,
+                               request, e);
+        run.surfaces.push_back(std::move(e));
+        if (request.drawn) request.drawn(run.surfaces.back());
+    };
+    with_criteria(indicators, region, request, [&](const auto& criterion_at) {
         for (const std::uint64_t budget : request.budgets) {
-            Extraction& e = run.surfaces.emplace_back();
+            Extraction e;
             e.budget = budget;
             const double start = now();
-            e.search =
-                nestgrid::find_threshold<dimension>(hierarchy, request.isovalue, criterion_at,
-                                                    offsets, budget, options_of(request), executor);
+            e.search = indicators.with_offsets([&](const auto& offsets) {
+                return nestgrid::find_threshold<dimension>(hierarchy, request.isovalue,
+                                                           criterion_at, offsets, budget,
+                                                           options_of(request), executor);
+            });
             e.search_seconds = now() - start;
             e.threshold = e.search.threshold;
-            extract_one<dimension>(hierarchy, criterion_at(e.threshold), offsets, executor, request,
-                                   e);
+            draw(criterion_at, std::move(e));
         }
         for (const ThresholdText& t : request.thresholds) {
-            Extraction& e = run.surfaces.emplace_back();
+            Extraction e;
             e.threshold = indicators.threshold(t);
-            extract_one<dimension>(hierarchy, criterion_at(e.threshold), offsets, executor, request,
-                                   e);
+            draw(criterion_at, std::move(e));
         }
-    };
-    if (region) {
-        with_box(indicators.chosen(), *region, request, draw);
-    } else {
-        indicators.with_criteria(draw);
-    }
+    });
 }
 
-template <class Grid, class Field>
-void extract_all(const Grid& grid, const Field& field, const ExtractionRequest& request,
-                 ExtractionRun& run) {
-    run.dimension = Grid::dimension;
+/// Makes the prerolls of all frames, and measures what they cost.
+void preroll(const Moments& moments, const ExtractionRequest& request, ExtractionRun& run) {
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
     if (request.progress) request.progress("preroll");
-    const nestgrid::TbbExecutor executor(request.threads);
-    const auto erased = nestgrid::erase(grid, field);
-    const nestgrid::Hierarchy<typename Field::value_type>& hierarchy = erased;
-    const ChosenIndicator indicators(hierarchy, request.projection, request.lens, executor);
+    const FramePrerolls& prerolls = moments.prerolls();
     run.preroll_seconds = now() - start;
     run.preroll_peak_bytes = memory::peak() - before;
-    run.preroll_kept_bytes = indicators.memory_bytes();
-    run.least = indicators.offsets().least();
-    run.greatest = indicators.offsets().greatest();
-    const auto region = box_region(request, Grid::dimension, [&](const auto& inside) {
-        return nestgrid::Region(grid, inside);
-    });
-    extract_field<Grid::dimension>(hierarchy, indicators, region, executor, request, run);
-}
-
-/// Draws the surfaces at one time between frames, one for each threshold.
-template <int dimension, class Real>
-void extract_time(double t, const nestgrid::Hierarchy<Real>& hierarchy,
-                  const nestgrid::KeyFrames& indicator,
-                  const std::optional<nestgrid::Region>& region, const ExtractionRequest& request,
-                  ExtractionRun& run) {
-    const nestgrid::TbbExecutor executor(request.threads);
-    const auto draw = [&](const auto& criterion_at) {
-        for (const ThresholdText& threshold : request.thresholds) {
-            Extraction& e = run.surfaces.emplace_back();
-            e.time = t;
-            e.threshold = threshold.in_units(run.greatest - run.least);
-            extract_one<dimension>(hierarchy, criterion_at(e.threshold), indicator, executor,
-                                   request, e);
-            if (request.drawn) request.drawn(e);
-        }
-    };
-    if (region) {
-        with_box(indicator, *region, request, draw);
-    } else {
-        draw([&](double threshold) { return nestgrid::Threshold(&indicator, threshold); });
-    }
+    run.preroll_kept_bytes = prerolls.memory_bytes();
+    run.least = prerolls.least();
+    run.greatest = prerolls.greatest();
 }
 
 }  // namespace
@@ -169,51 +136,24 @@ double now() {
         .count();
 }
 
-ExtractionRun extract(const Volume& volume, const ExtractionRequest& request) {
-    const nestgrid::LatticeBisection<3> grid(volume.geometry);
+ExtractionRun extract(const InputField& field, const TimeOptions& time,
+                      const std::filesystem::path& path, const ExtractionRequest& request) {
     ExtractionRun run;
-    run.nodes = volume.sample_count();
-    run.leaf_elements = leaf_count(grid);
-    with_samples(volume, [&](auto samples) {
-        extract_all(grid, nestgrid::LatticeField(grid, samples), request, run);
-    });
-    return run;
-}
-
-ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string& array,
-                      const ExtractionRequest& request) {
-    ExtractionRun run;
-    with_hierarchy(hierarchy, [&](const auto& stored) {
-        const nestgrid::NodeField field(stored.grid, field_named(stored.fields, array).values);
-        run.nodes = stored.grid.used_node_count();
-        run.leaf_elements = stored.grid.leaf_count();
-        extract_all(stored.grid, field, request, run);
-    });
-    return run;
-}
-
-ExtractionRun extract(Input& input, const TimeOptions& time, const ExtractionRequest& request) {
-    ExtractionRun run;
-    with_frames(input, time, request.threads, [&](const Frames& frames) {
-        run.dimension = frames.dimension;
-        run.nodes = frames.nodes;
-        run.leaf_elements = frames.leaf_elements;
-        run.least = frames.least;
-        run.greatest = frames.greatest;
-        run.preroll_seconds = frames.preroll_seconds;
-        run.preroll_kept_bytes = frames.preroll_bytes;
-        const auto region =
-            box_region(request, frames.dimension,
-                       [&](const Frames::Inside& inside) { return frames.region(inside); });
-        for (const double t : time.drawn_times()) {
-            frames.at(time.weights(t), [&](const auto& hierarchy, const auto& indicator) {
-                if (frames.dimension == 3) {
-                    extract_time<3>(t, hierarchy, indicator, region, request, run);
-                } else {
-                    extract_time<2>(t, hierarchy, indicator, region, request, run);
-                }
-            });
-        }
+    const Moments moments(field, time, path, request.projection, request.lens, request.threads);
+    run.dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
+                               field.frames.front());
+    run.nodes = field.nodes;
+    run.leaf_elements = field.leaf_elements;
+    preroll(moments, request, run);
+    const auto region = box_region(request, run.dimension, field);
+    moments.for_each([&](const Moment& moment) {
+        moment.visit([&](const auto& hierarchy) {
+            if (run.dimension == 3) {
+                extract_moment<3>(hierarchy, moment, region, moments.executor(), request, run);
+            } else {
+                extract_moment<2>(hierarchy, moment, region, moments.executor(), request, run);
+            }
+        });
     });
     return run;
 }

@@ -12,10 +12,8 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
-#include "frames.hpp"
-#include "projection.hpp"
+#include "moments.hpp"
 #include "surface_file.hpp"
-#include "volume.hpp"
 
 /// A box in the coordinates of the grid, and the threshold within it.
 struct FineBox {
@@ -39,13 +37,13 @@ struct ExtractionRequest {
     bool at_nodes = false;
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
-    /// Takes each surface between frames as soon as it is drawn, and need not leave it.
+    /// Takes each surface as soon as it is drawn, and need not leave it; or empty.
     std::function<void(Extraction&)> drawn{};
 };
 
 /// One surface and what it cost.
 struct Extraction {
-    double time = 0;  ///< where it is between frames
+    std::optional<double> time;  ///< where it is between frames
     double threshold = 0;
     std::uint64_t budget = 0;         ///< 0: none
     nestgrid::TriangleBudget search;  ///< of the threshold for the budget
@@ -71,17 +69,12 @@ struct ExtractionRun {
     std::vector<Extraction> surfaces;
 };
 
-ExtractionRun extract(const Volume& volume, const ExtractionRequest& request);
-
-/// The same of a field in a file of a hierarchy.
-/// \param array its name; may be empty where there is only one
-/// \throw nestgrid::InvalidInput where there is no such field
-ExtractionRun extract(const std::filesystem::path& hierarchy, const std::string& array,
-                      const ExtractionRequest& request);
-
-/// The same at times between frames, which need no preroll of their own.
-/// \throw nestgrid::InvalidInput where the inputs have not one layout
-ExtractionRun extract(Input& input, const TimeOptions& time, const ExtractionRequest& request);
+/// Draws the surfaces of a field, or at times between its frames, which need no preroll of their
+/// own.
+/// \param path of its file
+/// \throw nestgrid::InvalidInput, nestgrid::GridError as Moments and isosurface()
+ExtractionRun extract(const InputField& field, const TimeOptions& time,
+                      const std::filesystem::path& path, const ExtractionRequest& request);
 
 /// VTK's own contour of the same samples (vtkFlyingEdges3D, without normals), for comparison.
 struct Contour {

@@ -4,8 +4,10 @@
 // Hierarchies in files, and which families the program knows.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <nestgrid/adapters/bisection_grid.hpp>
@@ -19,10 +21,14 @@ inline bool is_hierarchy(const std::filesystem::path& path) {
     return path.extension() == ".nestgrid";
 }
 
+/// \throw nestgrid::IoError unless a file is called like a hierarchy
+void require_hierarchy_name(const std::filesystem::path& path);
+
 /// Calls function(StoredHierarchy<Family>&) with the hierarchy of a file.
 /// \throw nestgrid::IoError for a file that holds none
 template <class Function>
-void with_hierarchy(const std::filesystem::path& path, Function&& function) {
+void with_hierarchy(const std::filesystem::path& path, Function&& function,
+                    nestgrid::Encoded encoded = nestgrid::Encoded::decode) {
     using namespace nestgrid;
     const HierarchyHeader header = read_hierarchy_header(path);
     const auto tried = [&]<class Family>() {
@@ -30,7 +36,7 @@ void with_hierarchy(const std::filesystem::path& path, Function&& function) {
             header.corners != Family::max_corners) {
             return false;
         }
-        auto stored = read_hierarchy<Family>(path);
+        auto stored = read_hierarchy<Family>(path, encoded);
         function(stored);
         return true;
     };
@@ -55,10 +61,12 @@ const nestgrid::NamedField* find_field(const std::vector<nestgrid::NamedField>& 
 const nestgrid::NamedField& field_named(const std::vector<nestgrid::NamedField>& fields,
                                         const std::string& name);
 
-struct FieldRange {
+struct FieldInfo {
     std::string name;
-    double least = 0;
-    double greatest = 0;
+    double least = INFINITY;  ///< of all frames
+    double greatest = -INFINITY;
+    std::optional<double> step{};  ///< of encoded values, 0 where they are kept bit for bit
+    std::size_t bytes = 0;         ///< of all frames in the file
 };
 
 struct HierarchyInfo {
@@ -72,7 +80,8 @@ struct HierarchyInfo {
     int levels = 0;
     double measure = 0;  ///< volume or area
     std::size_t bytes = 0;
-    std::vector<FieldRange> fields;
+    std::vector<double> times;  ///< of the frames
+    std::vector<FieldInfo> fields;
 };
 
 HierarchyInfo hierarchy_info(const std::filesystem::path& path);

@@ -16,6 +16,7 @@ struct Options {
     SurfaceOptions surface;
     SliceOptions slice;
     LensText lens;
+    TimeOptions time;
     std::optional<double> isovalue;
     std::vector<double> values;
     int count = 0;
@@ -47,7 +48,9 @@ void run_isolines(Options& o) {
          .normal = f.function == nullptr ? nestgrid::Point{0, 0, 1} : f.normal,
          .empty = o.isovalue ? "the isosurface is empty" : "the slice does not meet the domain",
          .values = o.values,
-         .value_count = o.count});
+         .value_count = o.count,
+         .lens = parse(o.lens)},
+        o.time);
 }
 
 }  // namespace
@@ -72,5 +75,6 @@ Command add_isolines(CLI::App& program) {
     on_surface->needs(by);
     add_surface_options(*isolines, o->surface);
     add_lens_options(*isolines, o->lens);
+    add_time_options(*isolines, o->time);
     return {isolines, [o] { run_isolines(*o); }};
 }

@@ -8,11 +8,12 @@
 #include "command_line.hpp"
 #include "extract.hpp"
 #include "film.hpp"
-#include "hierarchy.hpp"
 #include "picture.hpp"
 #include "print.hpp"
 
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Options {
     Input input;
@@ -48,7 +49,8 @@ void run_isosurface(Options& o) {
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     SurfaceOptions& s = o.surface;
     check(s);
-    check(o.time, s);
+    check(o.time, o.input.path);
+    check_film(o.time, s);
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
     request.projection = s.projection;
@@ -57,33 +59,30 @@ void run_isosurface(Options& o) {
     }
     if (!o.box.empty()) request.box = fine_box(o);
     request.lens = parse(o.lens);
-    if (o.time.in_use()) require_offsets_alone(s.projection, request.lens);
     for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
     if (s.budgets.empty()) set_default_threshold(request.thresholds, request.lens.has_value());
     if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
-    if (o.against_vtk && (is_hierarchy(o.input.path) || o.time.in_use())) {
-        throw nestgrid::InvalidInput("--against-vtk is for one volume");
-    }
     request.keep_surfaces = !s.output.empty() || !s.image.empty();
     Seconds seconds;
     std::optional<ProgressLine> progress(std::in_place);
     request.progress = [&](const std::string& text) { progress->show(text); };
     progress->show("reading");
     double start = now();
-    std::optional<Volume> volume;
     std::optional<Film> film;
     if (o.time.frames) {
         film.emplace(s.output);
         request.drawn = [&film](Extraction& e) {
-            film->add(e.surface, e.time);
+            film->add(e.surface, *e.time);
             e.surface = nullptr;
         };
     }
-    if (!is_hierarchy(o.input.path) && !o.time.in_use()) volume = read_volume(o.input);
+    const fs::path path = o.input.path;
+    const InputField field = read_field(o.input, o.time.more, o.time.times);
+    if (o.against_vtk && (!field.volumes || o.time.in_use())) {
+        throw nestgrid::InvalidInput("--against-vtk is for one volume");
+    }
     seconds.read = now() - start;
-    const ExtractionRun run = o.time.in_use() ? extract(o.input, o.time, request)
-                              : volume        ? extract(*volume, request)
-                                              : extract(o.input.path, o.input.array, request);
+    const ExtractionRun run = extract(field, o.time, path, request);
     if (film) film->finish();
 
     start = now();
@@ -108,7 +107,7 @@ void run_isosurface(Options& o) {
     std::optional<Contour> contour;
     if (o.against_vtk) {
         progress->show("contouring with VTK");
-        contour = contour_with_vtk(*volume, o.value);
+        contour = contour_with_vtk(field.volumes->front(), o.value);
     }
     progress.reset();
     if (o.time.in_use()) {

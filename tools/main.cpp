@@ -26,9 +26,10 @@ int main(int argc, char** argv) {
         "  nestgrid view head.nii.gz\n"
         "  nestgrid mesh part.poly --family bisection --field front --tolerance 0.01 -o "
         "part.nestgrid");
-    const std::vector<Command> commands{
-        add_isosurface(app), add_slice(app), add_isolines(app), add_height(app), add_surface(app),
-        add_boundary(app),   add_probe(app), add_info(app),     add_mesh(app),   add_view(app)};
+    const std::vector<Command> commands{add_isosurface(app), add_slice(app),   add_isolines(app),
+                                        add_height(app),     add_surface(app), add_boundary(app),
+                                        add_probe(app),      add_info(app),    add_mesh(app),
+                                        add_pack(app),       add_view(app)};
 
     try {
         app.parse(argc, argv);

@@ -79,21 +79,47 @@ bool all_simplices(const CoarseGrid& coarse) {
 }
 
 /// Largest distance of the field from its interpolant at the midpoints of edges and the centre.
-double interpolation_error(const Expression& f, const Leaf& leaf) {
+double interpolation_error(const Expression& f, double t, const Leaf& leaf) {
     std::array<double, max_corners> value{};
     double sum = 0;
     for (std::size_t i = 0; i < leaf.corners.size(); ++i) {
-        value[i] = f(leaf.corners[i]);
+        value[i] = f(leaf.corners[i], t);
         sum += value[i];
     }
-    double error = std::abs(f(leaf.centre()) - sum / static_cast<double>(leaf.corners.size()));
-    const Topology& t = topology(leaf.shape);
-    for (std::size_t e = 0; e < t.edges; ++e) {
-        const auto [a, b] = t.edge[e];
-        error = std::max(error, std::abs(f(0.5 * (leaf.corners[a] + leaf.corners[b])) -
+    double error = std::abs(f(leaf.centre(), t) - sum / static_cast<double>(leaf.corners.size()));
+    const Topology& shape = topology(leaf.shape);
+    for (std::size_t e = 0; e < shape.edges; ++e) {
+        const auto [a, b] = shape.edge[e];
+        error = std::max(error, std::abs(f(0.5 * (leaf.corners[a] + leaf.corners[b]), t) -
                                          0.5 * (value[a] + value[b])));
     }
     return error;
+}
+
+Expression expression_of(const std::string& text, const MeshRequest& request) {
+    return Expression(text, request.times.empty() ? Expression::Variables::place
+                                                  : Expression::Variables::place_and_time);
+}
+
+std::vector<double> times_of(const MeshRequest& request) {
+    return request.times.empty() ? std::vector<double>{0} : request.times;
+}
+
+/// The values of a field at the nodes, frame after frame.
+template <class Grid>
+std::vector<double> sample(const Grid& grid, const Expression& f,
+                           const std::vector<double>& times) {
+    std::vector<double> values;
+    for (const double t : times) {
+        const std::size_t first = values.size();
+        values.resize(first + grid.node_count(), 0);
+        grid.for_each_leaf([&](const Leaf& leaf) {
+            for (std::size_t i = 0; i < leaf.nodes.size(); ++i) {
+                values[first + leaf.nodes[i]] = f(leaf.corners[i], t);
+            }
+        });
+    }
+    return values;
 }
 
 template <class Grid>
@@ -123,26 +149,23 @@ void refine_and_write(Grid grid, const MeshRequest& request) {
         refine_if([](const Leaf&) { return true; });
         tell(i + 1);
     }
+    const std::vector<double> times = times_of(request);
     std::vector<NamedField> fields;
     for (const std::string& name : request.fields) {
-        const Expression f(name);
+        const Expression f = expression_of(name, request);
         for (int step = 1; request.tolerance > 0 && fields.empty(); ++step) {
             const Adaptation done = refine_if([&](const Leaf& leaf) {
-                return leaf.level < request.levels &&
-                       interpolation_error(f, leaf) > request.tolerance;
+                return leaf.level < request.levels && std::ranges::any_of(times, [&](double t) {
+                           return interpolation_error(f, t, leaf) > request.tolerance;
+                       });
             });
             tell(step);
             if (done.marked == 0) break;
         }
-        NamedField field{name, std::vector<double>(grid.node_count(), 0)};
-        grid.for_each_leaf([&](const Leaf& leaf) {
-            for (std::size_t i = 0; i < leaf.nodes.size(); ++i) {
-                field.values[leaf.nodes[i]] = f(leaf.corners[i]);
-            }
-        });
-        fields.push_back(std::move(field));
+        fields.push_back({name, sample(grid, f, times)});
     }
-    write_hierarchy(grid, request.output, fields);
+    write_hierarchy(grid, request.output, fields,
+                    {.times = times, .compression = request.encoding.compression()});
 }
 
 void build(CoarseGrid coarse, const MeshRequest& request) {
@@ -169,10 +192,13 @@ void build(CoarseGrid coarse, const MeshRequest& request) {
 
 void make_hierarchy(const MeshRequest& request) {
     for (const std::string& name : request.fields) {
-        static_cast<void>(Expression(name));
+        expression_of(name, request);  // throws where it is none
         if (std::ranges::count(request.fields, name) > 1) {
             throw InvalidInput("--field names '" + name + "' twice");
         }
+    }
+    if (request.fields.empty() && (!request.times.empty() || request.encoding.compression())) {
+        throw InvalidInput("--times and --encode need a --field");
     }
     if (request.tolerance > 0 && request.fields.empty()) {
         throw InvalidInput("--tolerance needs a --field");

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "encoding_options.hpp"
+
 struct MeshRequest {
     std::filesystem::path input;    ///< .off .obj .ply .stl, .node .ele .poly .smesh
     std::string family;             ///< red-green, bisection, octree, prism
@@ -16,6 +18,8 @@ struct MeshRequest {
     double maximum_volume = 0;        ///< of the tetrahedra that fill a .poly or .smesh; 0 for any
     int refine = 0;                   ///< uniform refinements
     std::vector<std::string> fields;  ///< names or expressions; may be empty
+    std::vector<double> times;        ///< of frames of the fields; empty: there is one without t
+    EncodingOptions encoding{};       ///< of the fields in the file
     double tolerance = 0;  ///< refine until the first field is interpolated to this; 0: do not
     int levels = 30;       ///< refinements at most
     std::size_t maximum_elements = 20000000;  ///< leaves, before the closure

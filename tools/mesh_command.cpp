@@ -11,9 +11,7 @@
 namespace {
 
 void run_mesh(MeshRequest& o) {
-    if (!is_hierarchy(o.output)) {
-        throw nestgrid::IoError("'" + o.output.string() + "' is no name of a .nestgrid file");
-    }
+    require_hierarchy_name(o.output);
     check_writable(o.output);
     {
         ProgressLine progress;
@@ -46,11 +44,14 @@ void add_mesh_options(CLI::App& command, MeshRequest& o) {
     command.add_option("--refine", o.refine, "uniform refinements");
     command
         .add_option("--field", o.fields,
-                    "a name (see below) or an expression in x, y and z, kept at the nodes; give it "
-                    "again for several")
+                    "a name (see below) or an expression in x, y and z, kept at the nodes, with "
+                    "--times also in t; give it again for several")
         ->take_all();
+    command.add_option("--times", o.times, "frames of the fields at these times, ascending")
+        ->delimiter(',');
+    add_encoding_options(command, o.encoding);
     command.add_option("--tolerance", o.tolerance,
-                       "refine until the first field is interpolated up to this");
+                       "refine until the first field is interpolated up to this, in all frames");
     command.add_option("--levels", o.levels, "refinements of an element at most")
         ->capture_default_str();
     command.add_option("--max-elements", o.maximum_elements, "refuse to make more than these")

@@ -14,6 +14,7 @@ struct Options {
     Input input;
     SurfaceOptions surface;
     LensText lens;
+    TimeOptions time;
     double scale = 0;
     bool outlines = false;
     double colour_tolerance = 0;
@@ -25,6 +26,7 @@ Command add(CLI::App& program, const char* name, const char* what, bool lifted) 
     add_input_options(*command, o->input);
     add_surface_options(*command, o->surface);
     add_lens_options(*command, o->lens);
+    add_time_options(*command, o->time);
     command->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     if (lifted) {
         command->add_option("--scale", o->scale, "heights in multiples of the field")->required();
@@ -41,7 +43,8 @@ Command add(CLI::App& program, const char* name, const char* what, bool lifted) 
                                .flat = false,
                                .empty = "the hierarchy has no elements",
                                .lens = parse(o->lens),
-                               .colour_tolerance = o->colour_tolerance});
+                               .colour_tolerance = o->colour_tolerance},
+                              o->time);
             }};
 }
 

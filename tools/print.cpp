@@ -6,10 +6,14 @@
 
 namespace {
 
-std::string list(const double* v) {
-    char text[100];
-    std::snprintf(text, sizeof(text), "%.9g %.9g %.9g", v[0], v[1], v[2]);
-    return text;
+std::string list(std::span<const double> numbers) {
+    std::string result;
+    for (const double number : numbers) {
+        char text[40];
+        std::snprintf(text, sizeof(text), "%s%.9g", result.empty() ? "" : " ", number);
+        result += text;
+    }
+    return result;
 }
 
 void print_emptiness(const ExtractionRun& run, double isovalue) {
@@ -122,7 +126,7 @@ void print_times(const ExtractionRun& run, double isovalue) {
     std::printf("\n%10s %12s %10s %10s %10s %11s %10s %9s\n", "time", "threshold", "bound",
                 "triangles", "vertices", "visited", "open edges", "seconds");
     for (const Extraction& e : run.surfaces) {
-        std::printf("%10.6g %12.6g %10.4g %10zu %10zu %11llu %10zu %9.3f\n", e.time, e.threshold,
+        std::printf("%10.6g %12.6g %10.4g %10zu %10zu %11llu %10zu %9.3f\n", *e.time, e.threshold,
                     e.error_bound, e.report.triangles, e.report.vertices,
                     static_cast<unsigned long long>(e.counts.visited), e.report.open_edges,
                     e.seconds);
@@ -142,10 +146,19 @@ void print_info(const HierarchyInfo& info) {
     line("levels", static_cast<std::size_t>(info.levels));
     line("measure", info.measure);
     line("bytes_per_leaf", static_cast<double>(info.bytes) / static_cast<double>(info.leaves));
-    for (const FieldRange& f : info.fields) {
+    if (info.times != std::vector<double>{0}) {
+        line("frames", info.times.size());
+        line("times", list(info.times));
+    }
+    for (const FieldInfo& f : info.fields) {
         line("field", f.name);
         line("least_value", f.least);
         line("greatest_value", f.greatest);
+        if (!f.step) continue;
+        if (*f.step == 0) line("encoded", std::string("bit for bit"));
+        if (*f.step > 0) line("encoded_within", *f.step / 2);
+        line("bytes_per_value",
+             static_cast<double>(f.bytes) / static_cast<double>(info.nodes * info.times.size()));
     }
 }
 
@@ -159,11 +172,11 @@ void print_info(const Volume& volume) {
     line("samples", std::to_string(g.samples[0]) + " " + std::to_string(g.samples[1]) + " " +
                         std::to_string(g.samples[2]));
     line("type", volume.type);
-    line("spacing", list(g.spacing.data()));
-    line("origin", list(g.origin.data()));
+    line("spacing", list(g.spacing));
+    line("origin", list(g.origin));
     for (std::size_t d = 0; d < 3; ++d) {
         const nestgrid::Point axis{g.direction[0][d], g.direction[1][d], g.direction[2][d]};
-        line(d == 0 ? "axis_x" : d == 1 ? "axis_y" : "axis_z", list(axis.data()));
+        line(d == 0 ? "axis_x" : d == 1 ? "axis_y" : "axis_z", list(axis));
     }
     line("least_value", least);
     line("greatest_value", greatest);

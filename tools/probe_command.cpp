@@ -8,8 +8,7 @@
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/error.hpp>
 
-#include "extract.hpp"
-#include "input_hierarchy.hpp"
+#include "moments.hpp"
 #include "surface_file.hpp"
 #include "text_file.hpp"
 
@@ -25,7 +24,10 @@ struct Options {
     std::vector<double> line;
     int count = 100;
     fs::path points;
-    std::string threshold = "0";
+    std::vector<std::string> threshold;  ///< at most one
+    ProjectionChoice projection;
+    LensText lens;
+    TimeOptions time;
     fs::path output;
 };
 
@@ -64,29 +66,55 @@ std::vector<Point> read_points(const fs::path& path) {
     return points;
 }
 
-template <class Real>
-std::string table(const nestgrid::Hierarchy<Real>& hierarchy, const std::string& name,
-                  const std::vector<Point>& points, const std::string& threshold) {
-    const ThresholdText t = parse_threshold(threshold);
-    nestgrid::ProbeResult result;
-    if (t.number == 0) {
-        result = nestgrid::probe(hierarchy, points);
-    } else {
-        const nestgrid::HierarchicalIndicator indicator(hierarchy);
-        const double range = indicator.greatest() - indicator.least();
-        const nestgrid::Threshold s(&indicator, t.in_units(range));
-        result = nestgrid::probe(hierarchy, points, s, indicator);
-    }
-    std::ostringstream out;
-    out.precision(17);
-    out << "x,y,z," << name << ",level\n";
+/// Takes points down at one moment.
+/// \param threshold at most one; default: 0, or with a lens whatever the data are
+nestgrid::ProbeResult probe_at(const Moment& moment, const std::vector<Point>& points,
+                               std::vector<ThresholdText> threshold, bool with_lens) {
+    const bool exactly = !with_lens && (threshold.empty() || threshold.front().number == 0);
+    return moment.visit([&](const auto& hierarchy) {
+        if (exactly) return nestgrid::probe(hierarchy, points);
+        set_default_threshold(threshold, with_lens);
+        const ChosenIndicator& indicators = moment.indicators();
+        nestgrid::ProbeResult result;
+        indicators.with_criteria([&](const auto& criterion_at) {
+            result = nestgrid::probe(hierarchy, points,
+                                     criterion_at(indicators.threshold(threshold.front())),
+                                     indicators.bounds());
+        });
+        return result;
+    });
+}
+
+/// Appends a row for each point.
+/// \param time the first column, where it is one
+void append_rows(const nestgrid::ProbeResult& result, const std::vector<Point>& points,
+                 const std::optional<double>& time, std::ostream& out) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto& [x, y, z] = points[i];
+        if (time) out << *time << ',';
         out << x << ',' << y << ',' << z << ',';
         if (result.found(i)) out << result.values[i * result.components] << ',' << result.level[i];
         if (!result.found(i)) out << ',';
         out << '\n';
     }
+}
+
+/// The values at the points; with --frames at each time, in front of which it stands.
+std::string table(Options& o, const std::vector<Point>& points) {
+    std::vector<ThresholdText> threshold;
+    for (const std::string& text : o.threshold) threshold.push_back(parse_threshold(text));
+    const std::optional<LensRequest> lens = parse(o.lens);
+    const fs::path path = o.input.path;
+    const InputField field = read_field(o.input, o.time.more, o.time.times);
+    const Moments moments(field, o.time, path, o.projection, lens, 0);
+    std::ostringstream out;
+    out.precision(17);
+    const bool several = o.time.frames.has_value();
+    out << (several ? "time," : "") << "x,y,z," << field.name << ",level\n";
+    moments.for_each([&](const Moment& moment) {
+        append_rows(probe_at(moment, points, threshold, lens.has_value()), points,
+                    several ? moment.time() : std::nullopt, out);
+    });
     return out.str();
 }
 
@@ -96,7 +124,9 @@ void run_probe(Options& o) {
     }
     if (o.count < 2) throw InvalidInput("--count is below 2");
     if (!o.output.empty()) check_writable(o.output);
-    parse_threshold(o.threshold);
+    for (const std::string& text : o.threshold) parse_threshold(text);
+    check(o.projection);
+    check(o.time, o.input.path);
     std::vector<Point> points;
     if (o.line.empty()) {
         points = read_points(o.points);
@@ -106,10 +136,7 @@ void run_probe(Options& o) {
                                              static_cast<std::size_t>(o.count))
                      .points;
     }
-    std::string text;
-    with_field(o.input, [&](const auto& hierarchy, const std::string& name) {
-        text = table(hierarchy, name, points, o.threshold);
-    });
+    const std::string text = table(o, points);
     if (o.output.empty()) {
         std::fputs(text.c_str(), stdout);
     } else {
@@ -128,9 +155,16 @@ Command add_probe(CLI::App& program) {
         ->expected(6);
     probe->add_option("--count", o->count, "how many points on the line")->capture_default_str();
     probe->add_option("--points", o->points, "a file with x,y,z on each line, .csv");
-    probe->add_option("--threshold", o->threshold,
-                      "offsets up to this are projected away: in units of the data, or in percent "
-                      "of their range (2%)");
+    probe
+        ->add_option("--threshold", o->threshold,
+                     "detail up to this is projected away: in units of --indicator, or in percent "
+                     "of the range of the data (2%)")
+        ->expected(1);
+    add_projection_options(*probe, o->projection);
+    add_lens_options(*probe, o->lens);
+    add_time_options(*probe, o->time);
+    probe->get_option("--frames")
+        ->description("so many times from the first frame to the last, one after the other");
     probe->add_option("-o,--output", o->output,
                       ".csv; default: standard output. Values are left "
                       "out at points outside the grid");

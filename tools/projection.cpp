@@ -16,14 +16,15 @@ namespace {
 
 using nestgrid::InvalidInput;
 
+/// The chosen indicator; nothing where offsets are chosen.
+/// \param range of the data
 template <class Real>
-std::optional<nestgrid::SweptIndicator> swept_indicator(
-    const nestgrid::Hierarchy<Real>& hierarchy, const ProjectionChoice& choice,
-    const nestgrid::HierarchicalIndicator& offsets) {
+std::optional<nestgrid::SweptIndicator> swept_indicator(const nestgrid::Hierarchy<Real>& hierarchy,
+                                                        const ProjectionChoice& choice,
+                                                        double range) {
     const nestgrid::Spread spread{.factor = choice.blend};
     if (choice.indicator == "visual") {
-        const double tau = 0x1p-20 * (offsets.greatest() - offsets.least());
-        return visual_indicator(hierarchy, {.tau = tau, .spread = spread});
+        return visual_indicator(hierarchy, {.tau = 0x1p-20 * range, .spread = spread});
     }
     if (choice.indicator == "numerical") return numerical_indicator(hierarchy, {.spread = spread});
     if (choice.indicator == "wavelet") return wavelet_indicator(hierarchy, {.spread = spread});
@@ -76,40 +77,71 @@ void check(const ProjectionChoice& choice) {
     throw InvalidInput("--blend is not a finite number of at least 1");
 }
 
-void require_offsets_alone(const ProjectionChoice& choice, const std::optional<LensRequest>& lens) {
-    if (choice.is_default() && !lens) return;
-    throw InvalidInput("between frames thresholds are those of offsets: leave out " +
-                       std::string(lens                ? "--lens"
-                                   : choice.blend == 1 ? "--indicator"
-                                                       : "--blend"));
-}
-
-template <class Real>
-ChosenIndicator::ChosenIndicator(const nestgrid::Hierarchy<Real>& hierarchy,
-                                 const ProjectionChoice& choice,
-                                 const std::optional<LensRequest>& lens,
-                                 const nestgrid::Executor& executor)
+FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames,
+                             const ProjectionChoice& choice, const std::optional<LensRequest>& lens,
+                             const nestgrid::Executor& executor)
     : choice_{choice},
       lens_{lens},
-      offsets_(hierarchy, nestgrid::LeafErrors{}, executor,
-               {.factor = choice.indicator == "offset" ? choice.blend : 1}),
-      swept_{swept_indicator(hierarchy, choice, offsets_)} {
-    if (lens) size_.emplace(nestgrid::mesh_size(hierarchy, lens->spread));
+      least_{std::numeric_limits<double>::infinity()},
+      greatest_{-least_} {
+    const nestgrid::Spread spread{.factor = choice.indicator == "offset" ? choice.blend : 1};
+    for (const SharedHierarchy& frame : frames) {
+        std::visit(
+            [&](const auto& hierarchy) {
+                offsets_.emplace_back(*hierarchy, nestgrid::LeafErrors{}, executor, spread);
+            },
+            frame);
+        least_ = std::min(least_, offsets_.back().least());
+        greatest_ = std::max(greatest_, offsets_.back().greatest());
+    }
+    if (!lens) return;
+    std::visit(
+        [&](const auto& hierarchy) {
+            sizes_.emplace(nestgrid::mesh_size(*hierarchy, lens->spread));
+        },
+        frames.front());
 }
 
-template ChosenIndicator::ChosenIndicator(const nestgrid::Hierarchy<float>&,
-                                          const ProjectionChoice&,
-                                          const std::optional<LensRequest>&,
-                                          const nestgrid::Executor&);
-template ChosenIndicator::ChosenIndicator(const nestgrid::Hierarchy<double>&,
-                                          const ProjectionChoice&,
-                                          const std::optional<LensRequest>&,
-                                          const nestgrid::Executor&);
+std::size_t FramePrerolls::memory_bytes() const {
+    std::size_t bytes = sizes_ ? sizes_->memory_bytes() : 0;
+    for (const auto& frame : offsets_) bytes += frame.memory_bytes();
+    return bytes;
+}
+
+ChosenIndicator::ChosenIndicator(const FramePrerolls& prerolls, const SharedHierarchy& hierarchy,
+                                 std::span<const float> weights)
+    : prerolls_{&prerolls} {
+    const auto& offsets = prerolls.offsets();
+    if (offsets.size() == 1) {
+        alone_ = &offsets.front();
+    } else {
+        std::vector<const nestgrid::HierarchicalIndicator*> frames;
+        for (const auto& frame : offsets) frames.push_back(&frame);
+        between_.emplace(std::move(frames), weights);
+    }
+    std::visit(
+        [&](const auto& each) {
+            swept_ = swept_indicator(*each, prerolls.choice(), greatest() - least());
+        },
+        hierarchy);
+}
+
+const nestgrid::Bounds& ChosenIndicator::bounds() const {
+    if (between_) return *between_;
+    return *alone_;
+}
+
+const nestgrid::Indicator& ChosenIndicator::chosen() const {
+    if (swept_) return *swept_;
+    if (between_) return *between_;
+    return *alone_;
+}
 
 double ChosenIndicator::threshold(const ThresholdText& text) const {
-    if (text.percent && (choice_.indicator == "visual" || choice_.indicator == "geometry")) {
-        throw InvalidInput("thresholds of the " + choice_.indicator +
+    const std::string& indicator = prerolls_->choice().indicator;
+    if (text.percent && (indicator == "visual" || indicator == "geometry")) {
+        throw InvalidInput("thresholds of the " + indicator +
                            " indicator are no percentages: they have no units of the data");
     }
-    return text.in_units(offsets_.greatest() - offsets_.least());
+    return text.in_units(greatest() - least());
 }

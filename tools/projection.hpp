@@ -10,8 +10,10 @@
 #include <CLI/CLI.hpp>
 
 #include <nestgrid/algorithms/blended.hpp>
+#include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
+#include "frame_field.hpp"
 #include "lens_options.hpp"
 
 /// A threshold as the user gave it: in units of the indicator, or in percent of the range of the
@@ -41,26 +43,48 @@ void add_projection_options(CLI::App& command, ProjectionChoice& choice);
 /// \throw nestgrid::InvalidInput where the factor is out of range
 void check(const ProjectionChoice& choice);
 
-/// \throw nestgrid::InvalidInput where anything else than the offsets decides: between frames
-void require_offsets_alone(const ProjectionChoice& choice, const std::optional<LensRequest>& lens);
+/// The prerolls of the frames of a field.
+class FramePrerolls {
+public:
+    /// Walks all frames.
+    FramePrerolls(const std::vector<SharedHierarchy>& frames, const ProjectionChoice& choice,
+                  const std::optional<LensRequest>& lens, const nestgrid::Executor& executor);
 
-/// The indicators of one field: that of offsets, which gives bounds, the chosen one, and the sizes
-/// of elements for a lens.
+    const ProjectionChoice& choice() const { return choice_; }
+    const std::optional<LensRequest>& lens() const { return lens_; }
+    /// Of each frame, spread for blending where the choice compares thresholds with them.
+    const std::vector<nestgrid::HierarchicalIndicator>& offsets() const { return offsets_; }
+    /// Of elements; null where there is no lens.
+    const nestgrid::SweptIndicator* sizes() const { return sizes_ ? &*sizes_ : nullptr; }
+    double least() const { return least_; }        ///< of all frames
+    double greatest() const { return greatest_; }  ///< of all frames
+    std::size_t memory_bytes() const;
+
+private:
+    ProjectionChoice choice_;
+    std::optional<LensRequest> lens_;
+    std::vector<nestgrid::HierarchicalIndicator> offsets_;
+    std::optional<nestgrid::SweptIndicator> sizes_;
+    double least_;
+    double greatest_;
+};
+
+/// The indicators of a field at one moment: that of offsets, which gives bounds, the chosen one,
+/// and the sizes of elements for a lens. The prerolls must outlive it.
 class ChosenIndicator {
 public:
-    /// \throw nestgrid::InvalidInput where the choice makes no sense for the hierarchy
-    template <class Real>
-    ChosenIndicator(const nestgrid::Hierarchy<Real>& hierarchy, const ProjectionChoice& choice,
-                    const std::optional<LensRequest>& lens, const nestgrid::Executor& executor);
+    /// \param hierarchy the field at that moment; an indicator other than offsets is made of it
+    /// \param weights of the frames; empty where there is one frame
+    /// \throw InvalidInput where the choice makes no sense for the hierarchy
+    ChosenIndicator(const FramePrerolls& prerolls, const SharedHierarchy& hierarchy,
+                    std::span<const float> weights);
 
-    const nestgrid::HierarchicalIndicator& offsets() const { return offsets_; }
-    const nestgrid::Indicator& chosen() const {
-        if (swept_) return *swept_;
-        return offsets_;
-    }
+    const nestgrid::Bounds& bounds() const;
+    const nestgrid::Indicator& chosen() const;
+    double least() const { return prerolls_->least(); }        ///< of all frames
+    double greatest() const { return prerolls_->greatest(); }  ///< of all frames
     std::size_t memory_bytes() const {
-        return offsets_.memory_bytes() + (swept_ ? swept_->memory_bytes() : 0) +
-               (size_ ? size_->memory_bytes() : 0);
+        return prerolls_->memory_bytes() + (swept_ ? swept_->memory_bytes() : 0);
     }
     /// \throw nestgrid::InvalidInput for percent of an indicator that has no units of the data
     double threshold(const ThresholdText& text) const;
@@ -68,29 +92,33 @@ public:
     template <class Function>
     void with_criteria(Function&& function) const {
         const nestgrid::Indicator* const indicator = &chosen();
-        if (choice_.blend == 1) {
+        const double blend = prerolls_->choice().blend;
+        if (blend == 1) {
             in_lens(function, [=](double t) { return nestgrid::Threshold(indicator, t); });
         } else {
-            in_lens(function, [=, blend = choice_.blend](double t) {
-                return nestgrid::Blended(indicator, t, blend);
-            });
+            in_lens(function, [=](double t) { return nestgrid::Blended(indicator, t, blend); });
         }
+    }
+    /// Calls function(offsets) with a nestgrid::HierarchicalIndicator or, between frames, with
+    /// nestgrid::KeyFrames.
+    template <class Function>
+    auto with_offsets(Function&& function) const {
+        return between_ ? function(*between_) : function(*alone_);
     }
 
 private:
     template <class Function, class CriterionAt>
     void in_lens(Function&& function, const CriterionAt& criterion_at) const {
-        if (!lens_) {
+        if (!prerolls_->lens()) {
             function(criterion_at);
             return;
         }
-        const nestgrid::Lens lens = lens_->criterion(*size_);
+        const nestgrid::Lens lens = prerolls_->lens()->criterion(*prerolls_->sizes());
         function([&](double t) { return criterion_at(t) && lens; });
     }
 
-    ProjectionChoice choice_;
-    std::optional<LensRequest> lens_;
-    nestgrid::HierarchicalIndicator offsets_;
-    std::optional<nestgrid::SweptIndicator> swept_;  // empty where offsets are chosen
-    std::optional<nestgrid::SweptIndicator> size_;   // of elements; empty where there is no lens
+    const FramePrerolls* prerolls_;
+    const nestgrid::HierarchicalIndicator* alone_ = nullptr;  // at a frame; else null
+    std::optional<nestgrid::KeyFrames> between_;              // between frames
+    std::optional<nestgrid::SweptIndicator> swept_;           // empty where offsets are chosen
 };

@@ -40,17 +40,7 @@ void run_slice(Options& o) {
                                .empty = "the slice does not meet the domain",
                                .lens = parse(o.lens),
                                .colour_tolerance = o.colour_tolerance};
-    check(o.time, o.surface);
-    if (o.time.in_use()) {
-        require_offsets_alone(o.surface.projection, what.lens);
-        if (o.isovalue) throw nestgrid::InvalidInput("--with-isosurface is for one input");
-        if (o.colour_tolerance > 0) {
-            throw nestgrid::InvalidInput("--colour-tolerance is for one input");
-        }
-        draw_coloured(o.input, o.surface, what, o.time);
-    } else {
-        draw_coloured(o.input, o.surface, what);
-    }
+    draw_coloured(o.input, o.surface, what, o.time);
 }
 
 }  // namespace

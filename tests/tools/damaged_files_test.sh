@@ -23,6 +23,9 @@ header=(NRRD0004 'type: uchar' 'dimension: 3' 'sizes: 20 24 18' 'spacings: 0.5 1
 printf '%s\n' 'NDims = 3' 'DimSize = 20 24 18' 'ElementType = MET_UCHAR' \
     'ElementDataFile = v.raw' >plain.mhd
 "$program" mesh t.off --family bisection --field x -o h.nestgrid >log
+"$program" mesh t.off --family bisection --field x+t --times 0,1 -o film.nestgrid >log
+"$program" pack film.nestgrid --encode -o exact.nestgrid >log
+"$program" pack film.nestgrid --encode-within 0.1 -o near.nestgrid >log
 
 isosurface=(isosurface IN --threshold 5% -o OUT.vtp)
 mesh=(mesh IN --read-limit 2 -o OUT.nestgrid)
@@ -42,6 +45,11 @@ ele) mutate c.ele c.node -- "${mesh[@]}" --family bisection ;;
 node) mutate c.node c.ele -- "${mesh[@]}" --family bisection ;;
 poly) mutate p.poly -- "${mesh[@]}" --family bisection ;;
 smesh) mutate s.smesh -- "${mesh[@]}" --family bisection ;;
-nestgrid) mutate h.nestgrid -- "${isosurface[@]}" --value 0.5 ;;
+nestgrid)
+    mutate h.nestgrid -- "${isosurface[@]}" --value 0.5 &&
+        mutate film.nestgrid -- "${isosurface[@]}" --value 0.5 --time 0.5 &&
+        mutate exact.nestgrid -- "${isosurface[@]}" --value 0.5 --time 0.5 &&
+        mutate near.nestgrid -- "${isosurface[@]}" --value 0.5 --time 0.5
+    ;;
 *) echo "unknown format $format" && exit 1 ;;
 esac

@@ -44,6 +44,9 @@ done
 run_closed slice v.vti --axis z --at 17 && all=$triangles
 run_closed slice v.vti --axis z --at 17 --lens ball:5,11,17,3 -o s.vtp
 [ "$triangles" -lt "$all" ] && [ -s s.vtp ] || fail "slice: $triangles of $all triangles"
+run_closed slice v.vti --axis z --at 17 --lens ball:5,11,17,3 --max-triangles 3250
+[ "$triangles" -le 3250 ] || fail "slice: $triangles triangles within a budget of 3250"
+awk -v threshold="$(value threshold)" 'BEGIN { exit !(threshold > 0) }' || fail "no threshold: $(cat out)"
 run_closed boundary v.vti && all=$triangles
 run_closed boundary v.vti --lens ball:0,0,0,3 --threshold 20
 [ "$triangles" -lt "$all" ] || fail "boundary: $triangles of $all triangles"
@@ -53,6 +56,9 @@ run_closed boundary v.vti --lens ball:0,0,0,3 --threshold 20
     printf 'P5\n33 33\n255\n'
     for ((i = 0; i < 33 * 33; ++i)); do printf "\\$(printf %o $((i % 33 * (i / 33) % 200 + 20)))"; done
 } >wave.pgm
+run isolines v.vti --axis z --at 17 --count 4 && all=$(value triangles)
+run isolines v.vti --axis z --at 17 --count 4 --lens ball:5,11,17,3
+[ "$(value triangles)" -lt "$all" ] || fail "isolines: $(value triangles) of $all triangles"
 run_closed height wave.pgm --scale 1 && all=$triangles
 run_closed height wave.pgm --scale 1 --lens ball:10,10,0,4
 [ "$triangles" -lt "$all" ] || fail "height: $triangles of $all triangles"
@@ -77,7 +83,7 @@ refused 1 'coarsest is below' $(surface) --lens=ball:1,2,3,4 --finest=2 --coarse
 refused 1 'slope is negative' $(surface) --lens=ball:1,2,3,4 --slope=-1
 refused 2 'lens' $(surface) --finest=1
 refused 2 'excludes' $(surface) --lens=ball:1,2,3,4 --box=0,1,0,1,0,1
-refused 1 'max-triangles with --lens' slice v.vti --axis z --at 17 --lens ball:1,2,3,4 --max-triangles 100
+refused 1 'even the coarsest surface' slice v.vti --axis z --at 17 --lens ball:1,2,3,4 --max-triangles 100
 
 [ $failures = 0 ] && echo "all as it should be"
 exit $((failures > 0))

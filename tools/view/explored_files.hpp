@@ -4,24 +4,16 @@
 // Files as fields to explore: volumes or hierarchies, frames where there are several.
 #pragma once
 
-#include "../command_line.hpp"
-#include "../frame_files.hpp"
+#include "../input_field.hpp"
 #include "explored_field.hpp"
 
 namespace nestgrid::view {
 
 /// Reads one or more files of one layout. To be called before there are threads.
-/// \param paths of volumes, or of hierarchies of dimension 3
-/// \param times one for each
-/// \throw IoError, InvalidInput as with_frames()
-ExploredField read_explored(Input& input, const Paths& paths, std::vector<double> times);
-
-/// The same for volumes.
-ExploredField read_explored_volumes(Input& input, const Paths& paths, std::vector<double> times);
-
-/// The same for hierarchies.
-/// \param array the name of the field; may be empty where there is only one
-ExploredField read_explored_hierarchies(const Paths& paths, const std::string& array,
-                                        std::vector<double> times);
+/// \param input of dimension 3
+/// \param more files with later frames
+/// \param times of all frames; empty for those of the file, or 0, 1, 2, ...
+/// \throw IoError, InvalidInput as read_field()
+ExploredField read_explored(Input& input, const Paths& more, const std::vector<double>& times);
 
 }  // namespace nestgrid::view

@@ -14,7 +14,6 @@
 #include <nestgrid/error.hpp>
 
 #include "../command_line.hpp"
-#include "../frame_files.hpp"
 #include "explored_files.hpp"
 #include "explorer.hpp"
 #include "page_server.hpp"
@@ -41,14 +40,13 @@ fs::path page_folder() {
     return fs::exists(built) ? built : program / NESTGRID_PAGE_FROM_PROGRAM;
 }
 
-std::vector<double> times_of(const Options& o) {
-    std::vector<double> times = times_of_frames(o.times, o.more.size() + 1);
+/// \throw InvalidInput where times do not ascend
+void check_times(const std::vector<double>& times) {
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (!std::isfinite(times[i]) || (i > 0 && !(times[i - 1] < times[i]))) {
             throw InvalidInput("--times are not finite numbers in ascending order");
         }
     }
-    return times;
 }
 
 /// Shows an address in the reader's browser, where there is a screen.
@@ -91,13 +89,11 @@ void serve(PageServer& server) {
 void run_view(Options& o) {
     if (o.port < 0 || o.port > 65535) throw InvalidInput("--port is not from 0 to 65535");
     if (o.threads < 0) throw InvalidInput("--threads is negative");
-    std::vector<double> times = times_of(o);
+    check_times(o.times);
     std::vector<PageFile> files = read_page(page_folder());
-    Paths paths{o.input.path};
-    paths.insert(paths.end(), o.more.begin(), o.more.end());
     std::optional<ProgressLine> progress(std::in_place);
     progress->show("reading");
-    ExploredField field = read_explored(o.input, paths, std::move(times));
+    ExploredField field = read_explored(o.input, o.more, o.times);
     progress->show("preroll");
 
     // The threads that follow leave these signals to the one that waits for them.
@@ -136,7 +132,8 @@ Command add_view(CLI::App& program) {
     add_input_options(*view, o->input);
     view->add_option("FRAMES", o->more,
                      "further files of the same layout: later frames of the same field");
-    view->add_option("--times", o->times, "the times of all frames, ascending; default: 0, 1, ...")
+    view->add_option("--times", o->times,
+                     "the times of all frames, ascending; default: those of the file, or 0, 1, ...")
         ->delimiter(',');
     view->add_option("--port", o->port, "of 127.0.0.1; default: any that is free");
     view->add_option("--threads", o->threads, "how many to use; default: all");

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "encoding_options.hpp"
+
+#include "command_line.hpp"
+
+void add_encoding_options(CLI::App& command, EncodingOptions& options) {
+    CLI::Option* exactly = command.add_flag(
+        "--encode", options.bit_for_bit,
+        "keep values as differences from their interpolants, which takes less space; they come "
+        "back bit for bit");
+    command
+        .add_option("--encode-within", options.within,
+                    "the same with values that may be off by this much, in units of the data")
+        ->check(positive_number)
+        ->excludes(exactly);
+}

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The field of an input, or the frames of one, on the hierarchy that the program gives it.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <nestgrid/algorithms/region.hpp>
+
+#include "command_line.hpp"
+#include "frame_field.hpp"
+#include "frame_files.hpp"
+
+struct InputField : FrameField {
+    using Inside = std::function<bool(const nestgrid::Point&)>;
+
+    std::size_t nodes = 0;          ///< or samples
+    std::size_t leaf_elements = 0;  ///< of the finest grid
+    std::function<nestgrid::Region(const Inside& inside)> region{};
+    /// The values of the first frame, in any order; some may be there more than once.
+    std::size_t value_count = 0;
+    std::function<double(std::size_t)> value{};
+    std::optional<nestgrid::LatticeGeometry<3>> geometry{};  ///< of volumes
+    std::shared_ptr<const std::vector<Volume>> volumes{};    ///< the files; null for others
+};
+
+/// Reads one or more files of one layout, whose frames must be as many as there are times. The
+/// samples of a volume or a picture are the corners of bisected boxes. To be called before there
+/// are threads.
+/// \param more files with later frames
+/// \param times of the frames; empty for those of the file, or 0, 1, 2, ...
+/// \throw nestgrid::IoError, nestgrid::InvalidInput as read_volume(), read_raster(),
+///        with_hierarchy(), field_named(), append_frames() and times_of_frames()
+InputField read_field(Input& input, const Paths& more = {}, const std::vector<double>& times = {});
+
+/// The same for hierarchies.
+InputField read_hierarchies(const Input& input, const Paths& paths,
+                            const std::vector<double>& times);

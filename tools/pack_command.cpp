@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/error.hpp>
+
+#include "command_line.hpp"
+#include "encoding_options.hpp"
+#include "frame_files.hpp"
+#include "print.hpp"
+
+namespace {
+
+struct Options {
+    Paths inputs;
+    std::vector<double> times;
+    EncodingOptions encoding;
+    std::filesystem::path output;
+};
+
+void run_pack(const Options& o) {
+    require_hierarchy_name(o.output);
+    require_hierarchy_name(o.inputs.front());
+    check_writable(o.output);
+    {
+        ProgressLine progress;
+        progress.show("reading");
+        with_hierarchy(o.inputs.front(), [&](auto& stored) {
+            append_frames(stored, o.inputs, "");
+            stored.times = times_of_frames(o.times, std::move(stored.times));
+            progress.show("writing");
+            nestgrid::write_hierarchy(
+                stored.grid, o.output, stored.fields,
+                {.times = stored.times, .compression = o.encoding.compression()});
+        });
+    }
+    print_info(hierarchy_info(o.output));
+}
+
+}  // namespace
+
+Command add_pack(CLI::App& program) {
+    auto o = std::make_shared<Options>();
+    CLI::App* pack = program.add_subcommand(
+        "pack", "write hierarchies with one grid into one file, as frames, or with other encoding");
+    pack->add_option("INPUTS", o->inputs, ".nestgrid files with one grid: the frames")->required();
+    pack->add_option("--times", o->times,
+                     "of the frames, ascending; default: 0, 1, 2, ..., or those of the only input")
+        ->delimiter(',');
+    add_encoding_options(*pack, o->encoding);
+    pack->add_option("-o,--output", o->output, ".nestgrid")->required();
+    return {pack, [o] { run_pack(*o); }};
+}
