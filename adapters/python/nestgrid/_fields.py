@@ -263,7 +263,9 @@ class Octree(Field):
 
 
 class Frames:
-    """Frames of one volume at several times; fields between them need no computation of their own.
+    """Frames of one field at several times; fields between them need no computation of their own.
+
+    Made of arrays here, and of .nestgrid files by load().
 
     arrays  of one shape, type and order, as for Volume; borrowed
     times   ascending, one for each; default: 0, 1, 2, ...
@@ -285,6 +287,12 @@ class Frames:
         place = _placed(arrays[0].ndim, spacing, origin)
         self._frames = _nestgrid.Frames(arrays, [float(t) for t in times], *place)
 
+    @classmethod
+    def _of(cls, frames: _nestgrid.Frames) -> Frames:
+        loaded = cls.__new__(cls)
+        loaded._frames = frames
+        return loaded
+
     @property
     def times(self) -> list[float]:
         """Those of the frames."""
@@ -295,7 +303,7 @@ class Frames:
 
         cubic  cubic polynomials (Catmull and Rom) in the place of lines
 
-        Thresholds are those of offsets, and max_triangles is refused: take a FrameBudget.
+        Other indicators than "offset" are computed anew at each time.
         """
         return Field(self._frames.at(t, cubic, threads))
 
@@ -304,15 +312,16 @@ class Frames:
         self._frames.clear()
 
 
-def load(path: str | os.PathLike, array: str = "") -> Field:
-    """The field of a .nestgrid file.
+def load(path: str | os.PathLike, array: str = "") -> Field | Frames:
+    """The field of a .nestgrid file, or its Frames where it has several.
 
     array  its name, where the file has several
 
     Raises IoError where the file cannot be read or is damaged, InvalidInput where there is no such
     field.
     """
-    return Field(_nestgrid.load(os.fspath(path), array))
+    loaded = _nestgrid.load(os.fspath(path), array)
+    return Frames._of(loaded) if isinstance(loaded, _nestgrid.Frames) else Field(loaded)
 
 
 def _placed(

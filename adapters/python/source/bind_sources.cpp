@@ -124,10 +124,6 @@ void bind_sources(py::module_& m) {
         },
         py::keep_alive<0, 1>());
     m.def("octree", &octree_of);
-    m.def("load", [](const std::string& path, const std::string& array) {
-        const py::gil_scoped_release unlocked;
-        return std::shared_ptr<Source>(load_hierarchy(path, array));
-    });
     py::class_<Frames, std::shared_ptr<Frames>>(m, "Frames")
         .def(py::init(&frames_of))
         .def_readonly("times", &Frames::times)
@@ -138,9 +134,21 @@ void bind_sources(py::module_& m) {
                 const auto weights =
                     cubic ? catmull_rom_weights(frames.times, t) : linear_weights(frames.times, t);
                 const py::gil_scoped_release unlocked;
-                return std::shared_ptr<Source>(frames.source->at(weights, ThreadExecutor(threads)));
+                auto source = std::shared_ptr<Source>(frames.source->at(weights));
+                source->choose("offset", 1, ThreadExecutor(threads));
+                return source;
             },
             py::keep_alive<0, 1>());
+    m.def("load", [](const std::string& path, const std::string& array) -> py::object {
+        LoadedField loaded;
+        {
+            const py::gil_scoped_release unlocked;
+            loaded = load_hierarchy(path, array);
+        }
+        if (loaded.alone) return py::cast(std::shared_ptr<Source>(std::move(loaded.alone)));
+        return py::cast(std::make_shared<Frames>(
+            Frames{{}, std::move(loaded.times), std::move(loaded.frames)}));
+    });
 }
 
 }  // namespace nestgrid::python

@@ -50,13 +50,10 @@ public:
         });
     }
 
-    /// The offsets of the field, which bound it.
-    /// \throw InvalidInput between frames
-    const HierarchicalIndicator& offsets() const {
-        if (chosen_.offsets != nullptr) return *chosen_.offsets;
-        throw InvalidInput(
-            "max_triangles is not for a time between frames: give a threshold, or keep frames at a "
-            "number of triangles by a FrameBudget");
+    /// Calls function(offsets) with the HierarchicalIndicator of the field, or with KeyFrames.
+    template <class Function>
+    auto with_offsets(const Function& function) const {
+        return std::visit([&](const auto* offsets) { return function(*offsets); }, chosen_.ranged);
     }
 
 private:
@@ -103,9 +100,11 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
         return criteria.with_criteria([&](const auto& criterion_at) {
             double threshold = criteria.threshold();
             if (projection.max_triangles > 0) {
-                threshold = find_threshold<3>(hierarchy, isovalue, criterion_at, criteria.offsets(),
-                                              projection.max_triangles, options, executor)
-                                .threshold;
+                threshold = criteria.with_offsets([&](const auto& offsets) {
+                    return find_threshold<3>(hierarchy, isovalue, criterion_at, offsets,
+                                             projection.max_triangles, options, executor)
+                        .threshold;
+                });
             }
             return drawn_of(isosurface<3>(hierarchy, isovalue, criterion_at(threshold),
                                           criteria.bounds(), options, executor),
@@ -117,27 +116,25 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
                  const Projection& projection, const Executor& executor, const Progress& progress) {
     return with(source.hierarchy(), [&](const auto& hierarchy) {
-        IsosurfaceOptions options = options_of(request, progress);
+        const IsosurfaceOptions options = options_of(request, progress);
         const bool everything =
             projection.threshold.value_or(0) == 0 && projection.max_triangles == 0;
         if (is_default(projection) && everything) {
             return drawn_of(slice(hierarchy, function, options, executor), 0);
         }
         const Criteria criteria(source, projection, executor);
-        if (projection.max_triangles > 0) {
-            if (!is_default(projection)) {
-                throw InvalidInput(
-                    "max_triangles of a slice is for offsets alone: leave out lens, indicator and "
-                    "blend, or use a FrameBudget");
-            }
-            options.max_triangles = projection.max_triangles;
-            const double nan = std::numeric_limits<double>::quiet_NaN();
-            return drawn_of(slice(hierarchy, function, criteria.offsets(), options, executor), nan);
-        }
         return criteria.with_criteria([&](const auto& criterion_at) {
-            return drawn_of(slice(hierarchy, function, criterion_at(criteria.threshold()),
-                                  criteria.bounds(), options, executor),
-                            criteria.threshold());
+            double threshold = criteria.threshold();
+            if (projection.max_triangles > 0) {
+                threshold = criteria.with_offsets([&](const auto& offsets) {
+                    return find_threshold(hierarchy, function, criterion_at, offsets,
+                                          projection.max_triangles, options, executor)
+                        .threshold;
+                });
+            }
+            return drawn_of(slice(hierarchy, function, criterion_at(threshold), criteria.bounds(),
+                                  options, executor),
+                            threshold);
         });
     });
 }

@@ -60,13 +60,11 @@ struct SurfaceRequest {
     bool at_nodes = false;
 };
 
-/// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), for a blend below 1, and
-///        for a triangle budget between frames
+/// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
                       const Projection& projection, const Executor& executor,
                       const Progress& progress);
-/// \throw InvalidInput, GridError as slices(), and for a triangle budget under another criterion
-///        than offsets alone
+/// \throw InvalidInput, GridError as slices() and find_threshold()
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
                  const Projection& projection, const Executor& executor, const Progress& progress);
 /// \throw InvalidInput, GridError as isolines()

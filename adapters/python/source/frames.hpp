@@ -1,35 +1,33 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Frames of samples in memory, and the field at a time between them.
+// Frames of a field on one grid, and the field at a time between them.
 #pragma once
 
 #include <nestgrid/algorithms/between.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 
-#include "volume.hpp"
+#include "source.hpp"
 
 namespace nestgrid::python {
 
-/// Frames of a lattice, each with a preroll of its own.
-template <int dim, class Sample>
-class VolumeFrames final : public FrameSource,
-                           public std::enable_shared_from_this<VolumeFrames<dim, Sample>> {
+/// Fields on a grid, each with prerolls of its own.
+template <class Grid, class Field>
+class GridFrames final : public FrameSource,
+                         public std::enable_shared_from_this<GridFrames<Grid, Field>> {
 public:
-    using Grid = LatticeBisection<dim>;
-    using Field = LatticeField<Grid, Sample>;
-
-    explicit VolumeFrames(const std::vector<Samples>& frames)
-        : grid_(lattice_geometry<dim>(frames.front())) {
-        for (const Samples& frame : frames) {
-            fields_.push_back(std::make_unique<Field>(lattice_field<Sample>(grid_, frame)));
-            erased_.push_back(std::make_unique<Erased>(grid_, *fields_.back()));
+    /// \param memory that the grid and the fields borrow from; may be null
+    GridFrames(std::shared_ptr<const Grid> grid, std::vector<Field> fields,
+               std::shared_ptr<const void> memory)
+        : memory_{std::move(memory)}, grid_{std::move(grid)}, fields_{std::move(fields)} {
+        for (const Field& field : fields_) {
+            erased_.push_back(std::make_unique<Erased>(*grid_, field));
             prerolls_.push_back(std::make_unique<Prerolls>(erased_.back().get()));
         }
     }
 
-    std::unique_ptr<Source> at(std::span<const float> weights, const Executor& executor) override {
-        return std::make_unique<At>(this->shared_from_this(), weights, executor);
+    std::unique_ptr<Source> at(std::span<const float> weights) override {
+        return std::make_unique<At>(this->shared_from_this(), weights);
     }
     void clear() override {
         for (const auto& each : prerolls_) each->clear();
@@ -41,62 +39,66 @@ private:
     /// The field between frames.
     class At final : public Source {
     public:
-        At(std::shared_ptr<const VolumeFrames> frames, std::span<const float> weights,
-           const Executor& executor)
+        At(std::shared_ptr<const GridFrames> frames, std::span<const float> weights)
             : frames_{std::move(frames)},
+              weights_(weights.begin(), weights.end()),
               between_(frames_->fields(), weights),
-              hierarchy_(frames_->grid_, between_),
-              prerolls_{frames_->offsets(executor)},
-              indicator_{std::make_shared<KeyFrames>(pointers(), weights)} {}
+              hierarchy_(*frames_->grid_, between_),
+              own_(&hierarchy_) {}
 
         AnyHierarchy hierarchy() const override { return &hierarchy_; }
-        /// \throw InvalidInput for anything but offsets without blending
+        /// Offsets and bounds are those of the frames; other indicators are made of this field.
         ChosenIndicator choose(const std::string& name, double blend,
-                               const Executor& /*executor*/) const override {
-            if (name != "offset" || blend != 1) {
-                throw InvalidInput(
-                    "between frames thresholds are those of offsets: leave out indicator and "
-                    "blend");
+                               const Executor& executor) const override {
+            if (name == "offset") {
+                const auto offsets = key_frames(blend, executor);
+                return {offsets, offsets, offsets.get()};
             }
-            return {indicator_, indicator_, nullptr};
+            const auto bounds = key_frames(1, executor);
+            return {own_.swept(name, blend, executor), bounds, bounds.get()};
         }
         std::shared_ptr<const SweptIndicator> sizes(double slope) const override {
             return frames_->prerolls_.front()->sizes(slope);
         }
-        std::array<double, 2> range(const Executor& /*executor*/) const override {
-            return {indicator_->least(), indicator_->greatest()};
+        std::array<double, 2> range(const Executor& executor) const override {
+            const auto offsets = key_frames(1, executor);
+            return {offsets->least(), offsets->greatest()};
         }
-        /// Prerolls are those of the frames.
-        void clear() override {}
+        void clear() override { own_.clear(); }
 
     private:
-        std::vector<const HierarchicalIndicator*> pointers() const {
-            std::vector<const HierarchicalIndicator*> result;
-            for (const auto& each : prerolls_) result.push_back(each.get());
-            return result;
+        /// The indicator of offsets, with the prerolls that it is made of.
+        std::shared_ptr<const KeyFrames> key_frames(double blend, const Executor& executor) const {
+            struct Kept {
+                std::vector<std::shared_ptr<const HierarchicalIndicator>> prerolls;
+                std::optional<KeyFrames> indicator;
+            };
+            const auto kept = std::make_shared<Kept>();
+            std::vector<const HierarchicalIndicator*> borrowed;
+            for (const auto& each : frames_->prerolls_) {
+                kept->prerolls.push_back(each->offsets(blend, executor));
+                borrowed.push_back(kept->prerolls.back().get());
+            }
+            kept->indicator.emplace(std::move(borrowed), weights_);
+            return {kept, &*kept->indicator};
         }
 
-        std::shared_ptr<const VolumeFrames> frames_;
+        std::shared_ptr<const GridFrames> frames_;
+        std::vector<float> weights_;
         Between<Field> between_;
         detail::ErasedHierarchy<Grid, Between<Field>> hierarchy_;
-        std::vector<std::shared_ptr<const HierarchicalIndicator>> prerolls_;
-        std::shared_ptr<const KeyFrames> indicator_;
+        mutable Prerolls own_;
     };
 
     std::vector<const Field*> fields() const {
         std::vector<const Field*> result;
-        for (const auto& each : fields_) result.push_back(each.get());
-        return result;
-    }
-    std::vector<std::shared_ptr<const HierarchicalIndicator>> offsets(
-        const Executor& executor) const {
-        std::vector<std::shared_ptr<const HierarchicalIndicator>> result;
-        for (const auto& each : prerolls_) result.push_back(each->offsets(1, executor));
+        for (const Field& each : fields_) result.push_back(&each);
         return result;
     }
 
-    Grid grid_;
-    std::vector<std::unique_ptr<Field>> fields_;
+    std::shared_ptr<const void> memory_;
+    std::shared_ptr<const Grid> grid_;
+    std::vector<Field> fields_;
     std::vector<std::unique_ptr<Erased>> erased_;
     std::vector<std::unique_ptr<Prerolls>> prerolls_;
 };

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "frames.hpp"
+#include "volume.hpp"
 
 namespace nestgrid::python {
 
 std::shared_ptr<FrameSource> make_frames_2(const std::vector<Samples>& frames) {
     return with_sample_type(frames.front().type, [&]<class Sample>(Sample) {
-        return std::shared_ptr<FrameSource>(std::make_shared<VolumeFrames<2, Sample>>(frames));
+        return lattice_frames<2, Sample>(frames);
     });
 }
 

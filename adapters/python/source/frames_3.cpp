@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "frames.hpp"
+#include "volume.hpp"
 
 namespace nestgrid::python {
 
 std::shared_ptr<FrameSource> make_frames_3(const std::vector<Samples>& frames) {
     return with_sample_type(frames.front().type, [&]<class Sample>(Sample) {
-        return std::shared_ptr<FrameSource>(std::make_shared<VolumeFrames<3, Sample>>(frames));
+        return lattice_frames<3, Sample>(frames);
     });
 }
 

@@ -6,7 +6,10 @@
 
 #include <filesystem>
 #include <span>
+#include <variant>
 #include <vector>
+
+#include <nestgrid/algorithms/key_frames.hpp>
 
 #include "prerolls.hpp"
 
@@ -16,9 +19,8 @@ namespace nestgrid::python {
 struct ChosenIndicator {
     std::shared_ptr<const Indicator> indicator;
     std::shared_ptr<const Bounds> bounds;
-    /// Points to the bounds where they are also the indicator and belong to this field alone;
-    /// else null.
-    const HierarchicalIndicator* offsets = nullptr;
+    /// The bounds, which know the range of the data: those of a field, or between frames.
+    std::variant<const HierarchicalIndicator*, const KeyFrames*> ranged;
 };
 
 /// A field on a hierarchy. Safe for several threads.
@@ -66,14 +68,13 @@ private:
     mutable std::unique_ptr<Prerolls> prerolls_;
 };
 
-/// Frames of one volume, at times.
+/// Frames of one field, at times.
 class FrameSource {
 public:
     virtual ~FrameSource() = default;
     /// The field at a time; keeps the frames alive.
     /// \throw InvalidInput where there is not one finite weight for each frame
-    virtual std::unique_ptr<Source> at(std::span<const float> weights,
-                                       const Executor& executor) = 0;
+    virtual std::unique_ptr<Source> at(std::span<const float> weights) = 0;
     virtual void clear() = 0;
 };
 
@@ -108,9 +109,16 @@ struct OctreeArrays {
 /// \throw InvalidInput where the leaves are no forest, or values at one node differ
 std::unique_ptr<Source> make_octree(const OctreeArrays& arrays);
 
+/// The field of a file, or its frames where it has several.
+struct LoadedField {
+    std::unique_ptr<Source> alone;        ///< null where there are frames
+    std::shared_ptr<FrameSource> frames;  ///< null where there is one
+    std::vector<double> times;            ///< of the frames
+};
+
 /// \param array name of the field; may be empty where there is only one
 /// \throw InvalidInput where there is no such field
 /// \throw IoError where the file cannot be read, is damaged, or holds no hierarchy
-std::unique_ptr<Source> load_hierarchy(const std::filesystem::path& path, const std::string& array);
+LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array);
 
 }  // namespace nestgrid::python

@@ -10,7 +10,7 @@
 #include <nestgrid/adapters/red_green.hpp>
 #include <nestgrid/adapters/stored_file.hpp>
 
-#include "source.hpp"
+#include "frames.hpp"
 
 namespace nestgrid::python {
 
@@ -49,30 +49,50 @@ private:
     detail::ErasedHierarchy<Grid, Field> hierarchy_;
 };
 
-/// Nothing where the file holds another family.
 template <class Family>
-std::unique_ptr<Source> load_family(const HierarchyHeader& header,
-                                    const std::filesystem::path& path, const std::string& array) {
+LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& array) {
+    LoadedField loaded;
+    loaded.times = stored.times;
+    if (stored.times.size() == 1) {
+        loaded.alone = std::make_unique<Stored<Family>>(std::move(stored), array);
+        return loaded;
+    }
+    using Grid = StoredGrid<Family>;
+    using Field = NodeField<Grid, double>;
+    const std::size_t index = index_of(stored.fields, array);
+    const auto kept = std::make_shared<const StoredHierarchy<Family>>(std::move(stored));
+    std::vector<Field> fields;
+    for (std::size_t i = 0; i < kept->times.size(); ++i) {
+        fields.emplace_back(kept->grid, kept->frame(kept->fields[index], i));
+    }
+    loaded.frames = std::make_shared<GridFrames<Grid, Field>>(
+        std::shared_ptr<const Grid>(kept, &kept->grid), std::move(fields), kept);
+    return loaded;
+}
+
+/// \return whether the file holds this family
+template <class Family>
+bool load_family(const HierarchyHeader& header, const std::filesystem::path& path,
+                 const std::string& array, LoadedField& loaded) {
     if (header.family != Family::name || header.dimension != Family::dimension ||
         header.corners != Family::max_corners) {
-        return nullptr;
+        return false;
     }
-    return std::make_unique<Stored<Family>>(read_hierarchy<Family>(path), array);
+    loaded = loaded_field(read_hierarchy<Family>(path), array);
+    return true;
 }
 
 template <class... Families>
-std::unique_ptr<Source> load_one_of(const std::filesystem::path& path, const std::string& array) {
+LoadedField load_one_of(const std::filesystem::path& path, const std::string& array) {
     const HierarchyHeader header = read_hierarchy_header(path);
-    std::unique_ptr<Source> source;
-    static_cast<void>(((source = load_family<Families>(header, path, array)) || ...));
-    if (source) return source;
+    LoadedField loaded;
+    if ((load_family<Families>(header, path, array, loaded) || ...)) return loaded;
     throw IoError("'" + path.string() + "' holds a family that is not known: " + header.family);
 }
 
 }  // namespace
 
-std::unique_ptr<Source> load_hierarchy(const std::filesystem::path& path,
-                                       const std::string& array) {
+LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array) {
     return load_one_of<Bisection<2>, Bisection<3>, RedGreen<2, 3>, RedGreen<2, 4>, RedGreen<3, 4>,
                        RedGreen<3, 8>, Octree<2>, Octree<3>, Prism>(path, array);
 }

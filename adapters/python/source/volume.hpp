@@ -9,6 +9,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 
+#include "frames.hpp"
 #include "source.hpp"
 
 namespace nestgrid::python {
@@ -54,6 +55,17 @@ private:
     decltype(erase(std::declval<const Grid&>(),
                    std::declval<const LatticeField<Grid, Sample>&>())) hierarchy_;
 };
+
+/// The samples of several arrays of one layout as frames.
+template <int dim, class Sample>
+std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) {
+    using Grid = LatticeBisection<dim>;
+    using Field = LatticeField<Grid, Sample>;
+    const auto grid = std::make_shared<const Grid>(lattice_geometry<dim>(frames.front()));
+    std::vector<Field> fields;
+    for (const Samples& frame : frames) fields.push_back(lattice_field<Sample>(*grid, frame));
+    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), nullptr);
+}
 
 /// Calls function(Sample{}) with the type of a name.
 /// \throw InvalidInput for a type that no field takes

@@ -157,9 +157,10 @@ void write_slices(const std::string& name, const Grid& grid, const Field& field,
     write_surface(name + "_sphere", slice(grid, field, sphere, s, offsets), 12);
     write_surface(name + "_cylinder", slice(grid, field, cylinder, s, offsets, {.normals = true}),
                   12);
-    const double unknown = std::numeric_limits<double>::quiet_NaN();
-    const auto budget = slice(grid, field, plane, offsets, {.max_triangles = 300});
-    write_surface(name + "_budget_slice", budget, unknown);
+    const auto at = [&](double threshold) { return Threshold(&offsets, threshold); };
+    const double found = find_threshold(erase(grid, field), plane, at, offsets, 300).threshold;
+    const auto budget = slice(grid, field, plane, at(found), offsets);
+    write_surface(name + "_budget_slice", budget, found);
     const std::vector<double> values{-50, 0, 50};
     write_lines(name + "_slice_lines", isolines(budget.surface, 0, values));
 }
@@ -305,6 +306,10 @@ void write_stored() {
     std::vector<double> later = values;
     for (double& value : later) value = 0.5 * value + 0.2;
     write_hierarchy(grid, folder / "later.nestgrid", {{"wave", later}});
+    NamedField both{"wave", values};
+    both.values.insert(both.values.end(), later.begin(), later.end());
+    write_hierarchy(grid, folder / "frames.nestgrid", {both},
+                    {.times = {1, 3}, .compression = CompressionOptions{}});
     const NodeField field(grid, values);
     write_surface("stored", isosurface(grid, field, 0.3, {.threshold = 0.05, .normals = true}),
                   0.05);

@@ -95,8 +95,8 @@ def test_wrong_arguments():
         volume.isosurface(3, lens=((0, 0, 0), -1))
     with refused("slope of the lens"):
         volume.isosurface(3, lens=nestgrid.Lens(nestgrid.ball((0, 0, 0), 1), slope=-1))
-    with refused("lens, indicator and blend"):
-        volume.slice(plane=((1, 1, 1), (1, 0, 0)), max_triangles=9, blend=2)
+    with refused("even the coarsest"):
+        volume.slice(plane=((1, 1, 1), (1, 0, 0)), max_triangles=1, blend=2)
     with pytest.raises(TypeError):
         volume.isosurface("3")
 
@@ -142,10 +142,10 @@ def test_wrong_frames():
     frames = nestgrid.Frames([CUBE, CUBE + 1])
     with refused("between|first and the last"):
         frames.at(1.5)
-    with refused("use a FrameBudget|by a FrameBudget"):
-        frames.at(0.5).isosurface(13, max_triangles=1000)
-    with refused("leave out indicator and blend"):
-        frames.at(0.5).isosurface(13, indicator="visual")
+    with refused("even the coarsest"):
+        frames.at(0.5).isosurface(13, max_triangles=1)
+    with refused("none of offset"):
+        frames.at(0.5).isosurface(13, indicator="sharpest")
 
 
 def test_errors_are_those_of_python(tmp_path):

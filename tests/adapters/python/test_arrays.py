@@ -164,6 +164,42 @@ def test_forest_and_mask():
     assert math.isclose(moved.isosurface(1.5).report()["area"], 8)
 
 
+def same_bits(ours, theirs):
+    assert len(ours.triangles) > 0
+    for part in ("vertices", "triangles", "normals"):
+        assert getattr(ours, part).tobytes() == getattr(theirs, part).tobytes(), part
+
+
+def test_stored_frames(reference):
+    """Encoded frames of one file are the files of the frames, and fields lie between them."""
+    stored, later, frames = [
+        nestgrid.load(os.path.join(reference.folder, name + ".nestgrid"), "wave")
+        for name in ("stored", "later", "frames")
+    ]
+    assert isinstance(frames, nestgrid.Frames) and frames.times == [1, 3]
+    for time, alone in ((1, stored), (3, later)):
+        same_bits(frames.at(time).isosurface(0.3, 0.05), alone.isosurface(0.3, 0.05))
+    point = [(0.3, 0.4, 0.45)]
+    mean = (stored.probe(point) + later.probe(point)) / 2
+    np.testing.assert_allclose(frames.at(2).probe(point), mean, rtol=1e-12)
+
+
+def test_between_frames(reference):
+    """Budgets, blending, lenses and all indicators are there between frames, too."""
+    frames = nestgrid.load(os.path.join(reference.folder, "frames.nestgrid"))
+    between = frames.at(1.7)
+    finest = len(between.isosurface(0.3).triangles)
+    surface = between.isosurface(0.3, max_triangles=finest // 2)
+    assert 0 < len(surface.triangles) <= finest // 2 and surface.threshold > 0
+    plane = ((0.5, 0.5, 0.4), (0, 0.1, 1))
+    cut = between.slice(plane=plane, max_triangles=400, lens=((0.2, 0.5, 0.5), 0.1))
+    assert 0 < len(cut.triangles) <= 400 and cut.threshold >= 0
+    chosen = ({"blend": 1.5}, {"indicator": "visual"}, {"indicator": "numerical", "blend": 1.2})
+    for options in chosen:
+        drawn = between.isosurface(0.3, 0.1, **options)
+        assert drawn.report()["open_edges"] == 0 and len(drawn.triangles) <= finest
+
+
 def test_stored(reference):
     path = os.path.join(reference.folder, "stored.nestgrid")
     reference.same_surface("stored", nestgrid.load(path, "wave").isosurface(0.3, 0.05))

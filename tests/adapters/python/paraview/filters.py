@@ -112,6 +112,19 @@ def check_times():
     assert counts[0] == counts[2] != counts[1], counts
 
 
+def check_frames():
+    """One file with frames: its times, and fields between them."""
+    path = os.path.join(folder, "frames.nestgrid")
+    reader = pv.NestgridReader(FileNames=[path])
+    reader.Isovalue, reader.Threshold = 0.3, 0.05
+    reader.UpdatePipelineInformation()
+    assert list(reader.TimestepValues) == [1, 3]
+    frames = nestgrid.load(path)
+    for time in (1, 1.6, 3):
+        reader.UpdatePipeline(time)
+        same(servermanager.Fetch(reader), frames.at(time).isosurface(0.3, 0.05))
+
+
 def check_what_is_refused():
     """A message, no crash, and the filter can be used afterwards."""
     wavelet = pv.Wavelet(WholeExtent=[-5, 5, -5, 5, -5, 5])
@@ -172,6 +185,7 @@ check_image_data()
 check_hyper_tree_grid()
 check_reader()
 check_times()
+check_frames()
 check_what_is_refused()
 check_state_and_picture()
 print("all checks passed")

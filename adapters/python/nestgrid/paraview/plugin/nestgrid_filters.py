@@ -310,7 +310,15 @@ class NestgridReader(Drawing):
         name="TimestepValues", information_only="1", si_class="vtkSITimeStepsProperty"
     )
     def GetTimestepValues(self):
-        return [float(i) for i in range(len(self._files))] if len(self._files) > 1 else None
+        if len(self._files) > 1:
+            return [float(i) for i in range(len(self._files))]
+        if not self._files:
+            return None
+        try:
+            loaded = self.loaded(self._files[0])
+        except (nestgrid.InvalidInput, nestgrid.GridError, nestgrid.IoError):
+            return None  # drawing tells why
+        return loaded.times if isinstance(loaded, nestgrid.Frames) else None
 
     def RequestInformation(self, request, inInfo, outInfo):
         info = outInfo.GetInformationObject(0)
@@ -325,22 +333,31 @@ class NestgridReader(Drawing):
             info.Append(executive.TIME_RANGE(), times[-1])
         return 1
 
-    def field(self, step):
-        key = (self._files[step], self._name)
+    def loaded(self, path):
+        key = (path, self._name)
         if self._loaded[0] != key:
             self._loaded = (key, nestgrid.load(*key))
         return self._loaded[1]
 
+    def field(self, time):
+        """The field at a time: of the file that is next to it, or between frames of the only one."""
+        if len(self._files) > 1:
+            step = min(max(round(time), 0), len(self._files) - 1)
+            return self.loaded(self._files[step])
+        loaded = self.loaded(self._files[0])
+        if not isinstance(loaded, nestgrid.Frames):
+            return loaded
+        return loaded.at(min(max(time, loaded.times[0]), loaded.times[-1]))
+
     def RequestData(self, request, inInfo, outInfo):
         info = outInfo.GetInformationObject(0)
-        step = 0
+        time = 0.0
         if info.Has(self.GetExecutive().UPDATE_TIME_STEP()):
             time = info.Get(self.GetExecutive().UPDATE_TIME_STEP())
-            step = min(max(round(time), 0), len(self._files) - 1)
         drawing = self.slice if self._slices else self.isosurface
-        self.draw(outInfo, lambda: self.field(step), drawing, self._name or "value")
-        if len(self._files) > 1:
+        self.draw(outInfo, lambda: self.field(time), drawing, self._name or "value")
+        if self.GetTimestepValues():
             vtkPolyData.GetData(outInfo).GetInformation().Set(
-                vtkDataObject.DATA_TIME_STEP(), float(step)
+                vtkDataObject.DATA_TIME_STEP(), float(time)
             )
         return 1
