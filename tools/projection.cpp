@@ -94,10 +94,11 @@ FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames,
         least_ = std::min(least_, offsets_.back().least());
         greatest_ = std::max(greatest_, offsets_.back().greatest());
     }
-    if (!lens) return;
+    if (!lens_) return;
+    lens_->options.blend = lens_->spread.factor = choice.blend;
     std::visit(
         [&](const auto& hierarchy) {
-            sizes_.emplace(nestgrid::mesh_size(*hierarchy, lens->spread));
+            sizes_.emplace(nestgrid::mesh_size(*hierarchy, lens_->spread));
         },
         frames.front());
 }

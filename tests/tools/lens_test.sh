@@ -33,6 +33,10 @@ run_closed isosurface v.vti --value 130 --lens ball:1000,0,0,1 --slope 10 --coar
 run_closed isosurface v.vti --value 130 --lens ball:5,11,8,3 --threshold 2
 awk -v bound="$(value error_bound)" 'BEGIN { exit !(bound < 20) }' ||
     fail "the threshold is not kept: $(value error_bound)"
+# A lens that blends: nodes that jump without it move, so the surface is another one, and closed.
+blended() { run_closed isosurface v.vti --value 130 --lens ball:5,11,8,3 --slope 0.5 --blend "$@"; }
+blended 1 -o jumps.vtp && blended 1.5 -o moves.vtp && cmp -s jumps.vtp moves.vtp && fail "the lens does not blend"
+[ "$triangles" -le "$finest" ] || fail "blended: $triangles of $finest triangles"
 
 # The other domains, and the other commands.
 printf '0 0\n9 0\n9 10\n0 10\n' >half.txt
