@@ -324,6 +324,27 @@ TYPED_TEST(StoredFiles, SurviveMaliceInFrames) {
     std::filesystem::remove(path);
 }
 
+TEST(StoredFile, GivesFramesDecodedOrEncoded) {
+    const auto path = temporary(std::to_string(::getpid()) + "_page.nestgrid");
+    OctreeGrid<3> grid(hexahedra(2));
+    refine_at_sphere(grid, 3);
+    const std::vector<double> values = moving_fields(grid, {0, 0.5})[0].values;
+    // [frames]
+    const StoredFileOptions options{.times = {0, 0.5},
+                                    .compression = CompressionOptions{.step = 0.001}};
+    write_hierarchy(grid, path, {{"u", values}}, options);
+
+    const auto stored = read_hierarchy<Octree<3>>(path);
+    const NodeField later(stored.grid, stored.frame(stored.fields[0], 1));  // decoded when read
+
+    const auto packed = read_hierarchy<Octree<3>>(path, Encoded::keep);
+    const CompressedField<OctreeGrid<3>, double> field(packed.grid, packed.fields[0].encoded[1]);
+    // [frames]
+    expect_same(isosurface(stored.grid, later, 0.4, {.threshold = 0.05}).surface,
+                isosurface(packed.grid, field, 0.4, {.threshold = 0.05}).surface);
+    std::filesystem::remove(path);
+}
+
 /// Numbers that coarsening has left unused do not disturb.
 TEST(StoredFile, KeepsNodeNumbersWithGaps) {
     const auto path = temporary(std::to_string(::getpid()) + "_gaps.nestgrid");
