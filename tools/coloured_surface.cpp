@@ -240,7 +240,6 @@ void print_table(const DrawnField& field) {
 
 /// Gives an isosurface that has no other field the values of an expression at its vertices.
 void colour_by(const Expression& f, nestgrid::Surface<3>& surface) {
-    if (!surface.attributes.empty()) return;
     for (const nestgrid::Point& x : surface.vertices) surface.attributes.push_back(f(x));
 }
 
@@ -387,7 +386,8 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
         moment.visit([&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy) {
             Drawing<Real> drawing(hierarchy, moment, options, what, moments.executor());
             drawing.draw_all([&](Drawn&& d) {
-                if (by_another && d.slice.surface.attributes.empty()) {
+                const nestgrid::Surface<3>& surface = d.slice.surface;
+                if (by_another && surface.attributes.empty() && !surface.vertices.empty()) {
                     if (!expression) expression.emplace(by);
                     colour_by(*expression, d.slice.surface);
                 }

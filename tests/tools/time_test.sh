@@ -121,6 +121,9 @@ run isolines "${film[@]}" --axis z --at 0.4 --count 3 --frames 3 -o lines.vtp
 grep -q 'NumberOfLines="[1-9]' lines_0001.vtp && grep -q 'NumberOfPolys="0"' lines_0001.vtp || fail "no film of lines"
 run slice "${film[@]}" --axis z --at 0.4 --with-isosurface 0.5 --time 0.3
 [ "$(value isosurface_open_edges)" = 0 ] || fail "slice and isosurface between frames: $(cat out)"
+# The surface vanishes before the last frame.
+run isolines "${film[@]}" --on-surface 0.5 --by x+t --values 0.6 --frames 3 -o vanishes.vtp
+[ "$(column 3 | tail -1)" = 0 ] && [ -s vanishes_0002.vtp ] || fail "a surface that vanishes: $(cat out)"
 refused 1 'needs --values' isolines "${film[@]}" --on-surface 0.5 --by x+t --count 3 --frames 2 -o f.vtp
 ramp() {
     printf 'P5\n9 7\n255\n'
