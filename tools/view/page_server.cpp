@@ -4,8 +4,6 @@
 
 #include <array>
 #include <atomic>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 
@@ -63,33 +61,10 @@ void answer(httplib::Response& response, int status, const std::string& sentence
 
 }  // namespace
 
-std::vector<PageFile> read_page(const std::filesystem::path& folder) {
-    static const std::map<std::string, std::string> types{
-        {".html", "text/html; charset=utf-8"},
-        {".css", "text/css; charset=utf-8"},
-        {".js", "text/javascript; charset=utf-8"}};
-    std::vector<PageFile> files;
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-        const auto type = types.find(entry.path().extension().string());
-        if (type == types.end()) continue;
-        std::ifstream file(entry.path(), std::ios::binary);
-        files.push_back({entry.path().filename().string(), type->second,
-                         std::string(std::istreambuf_iterator<char>(file), {})});
-        if (file.bad() || files.back().content.empty()) {
-            throw IoError("'" + entry.path().string() + "' cannot be read");
-        }
-    }
-    for (const PageFile& file : files) {
-        if (file.name == "index.html") return files;
-    }
-    throw IoError("the page is missing: it is not in '" + folder.lexically_normal().string() + "'");
-}
-
 class PageServer::Http final : public httplib::Server {
 public:
-    Http(std::vector<PageFile> files, PageAnswers answers) : answers_{std::move(answers)} {
-        for (PageFile& file : files) files_.emplace(file.name, std::move(file));
+    explicit Http(PageAnswers answers) : answers_{std::move(answers)} {
+        for (const PageFile& file : page_files()) files_.emplace(file.name, file);
         new_task_queue = [] { return new httplib::ThreadPool(threads); };
         // Without the default, SO_REUSEPORT, by which two servers share a port.
         set_socket_options([](socket_t socket) {
@@ -177,7 +152,9 @@ private:
                                      "application/octet-stream");
             } else if (const auto file = files_.find(name.empty() ? "index.html" : name);
                        file != files_.end()) {
-                response.set_content(file->second.content, file->second.type);
+                const PageFile& found = file->second;
+                response.set_content(found.content.data(), found.content.size(),
+                                     std::string(found.type));
             } else {
                 answer(response, 404, "There is no such file here.\n");
             }
@@ -191,13 +168,13 @@ private:
     }
 
     const std::string token_ = random_token();
-    std::map<std::string, PageFile, std::less<>> files_;
+    std::map<std::string_view, PageFile> files_;
     PageAnswers answers_;
     std::atomic<bool> stopping_ = false;
 };
 
-PageServer::PageServer(std::vector<PageFile> files, PageAnswers answers, int port)
-    : http_{std::make_unique<Http>(std::move(files), std::move(answers))} {
+PageServer::PageServer(PageAnswers answers, int port)
+    : http_{std::make_unique<Http>(std::move(answers))} {
     const std::string host = "127.0.0.1";
     if (port == 0) {
         port = http_->bind_to_any_port(host);

@@ -8,14 +8,14 @@
 //     know;
 //   - only requests to the hosts localhost and 127.0.0.1 are answered, at any port, so that no page
 //     of another site reaches the server by a name of its own, and a tunnel (ssh -L) does;
-//   - files are in memory and have fixed names: no path from a request reaches the file system;
+//   - files are part of the program and have fixed names: no path from a request reaches the file
+//   system;
 //   - a request is a GET without a body, with a head of 16 KiB at most.
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,14 +24,13 @@ namespace nestgrid::view {
 
 /// A file of the page.
 struct PageFile {
-    std::string name;
-    std::string type;  ///< of MIME
-    std::string content;
+    std::string_view name;
+    std::string_view type;  ///< of MIME
+    std::string_view content;
 };
 
-/// Reads the files of the page, which are index.html, *.css, *.js and nothing else.
-/// \throw IoError where the folder is not that of a page
-std::vector<PageFile> read_page(const std::filesystem::path& folder);
+/// The files of the page, which the library holds (page_files.cmake).
+std::vector<PageFile> page_files();
 
 /// What answers the page. Both may be called by several threads at once. Exceptions that are
 /// InvalidInput or GridError are sentences for the reader.
@@ -45,7 +44,7 @@ public:
     /// Takes a port of 127.0.0.1.
     /// \param port 0: any
     /// \throw IoError where the port is not free
-    PageServer(std::vector<PageFile> files, PageAnswers answers, int port);
+    PageServer(PageAnswers answers, int port);
     ~PageServer();
     PageServer(const PageServer&) = delete;
     PageServer& operator=(const PageServer&) = delete;

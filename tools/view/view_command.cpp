@@ -33,13 +33,6 @@ struct Options {
     bool no_browser = false;
 };
 
-/// The folder of the page: beside the program where it was built, in share where it is installed.
-fs::path page_folder() {
-    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-    const fs::path built = program / "page";
-    return fs::exists(built) ? built : program / NESTGRID_PAGE_FROM_PROGRAM;
-}
-
 /// \throw InvalidInput where times do not ascend
 void check_times(const std::vector<double>& times) {
     for (std::size_t i = 0; i < times.size(); ++i) {
@@ -90,7 +83,6 @@ void run_view(Options& o) {
     if (o.port < 0 || o.port > 65535) throw InvalidInput("--port is not from 0 to 65535");
     if (o.threads < 0) throw InvalidInput("--threads is negative");
     check_times(o.times);
-    std::vector<PageFile> files = read_page(page_folder());
     std::optional<ProgressLine> progress(std::in_place);
     progress->show("reading");
     ExploredField field = read_explored(o.input, o.more, o.times);
@@ -108,8 +100,7 @@ void run_view(Options& o) {
     Explorer explorer(std::move(field), executor);
     progress.reset();
     std::mutex mutex;
-    PageServer server(std::move(files),
-                      {.info = [&] { return explorer.info(); },
+    PageServer server({.info = [&] { return explorer.info(); },
                        .frame =
                            [&](std::string_view request) {
                                const std::scoped_lock lock(mutex);
