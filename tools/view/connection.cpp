@@ -3,6 +3,7 @@
 #include "connection.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 
 #include <netinet/in.h>
@@ -21,11 +22,13 @@ constexpr milliseconds idle_time{10000};
 constexpr milliseconds head_time{5000};
 constexpr milliseconds send_time{20000};
 constexpr milliseconds goodbye_time{300};
+constexpr milliseconds stopping_time{1000};
 constexpr milliseconds slice{100};
 
 }  // namespace
 
-Connection::Connection(socket_t socket) : socket_{socket} {
+Connection::Connection(socket_t socket, const std::atomic<bool>& stopping)
+    : socket_{socket}, stopping_{&stopping} {
     const int on = 1;
     setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
 }
@@ -46,24 +49,39 @@ bool Connection::poll_for(short events, milliseconds time) const {
     return poll(&one, 1, static_cast<int>(time.count())) > 0;
 }
 
-bool Connection::wait(const std::atomic<bool>& stopping) {
-    const auto end = Clock::now() + idle_time;
+bool Connection::must_end() const {
+    if (!*stopping_) return false;
+    if (!end_at_) end_at_ = Clock::now() + stopping_time;
+    return Clock::now() > *end_at_;
+}
+
+bool Connection::wait() {
+    const auto start = Clock::now();
     while (begin_ == end_ && !poll_for(POLLIN, slice)) {
-        if (stopping || Clock::now() > end) return false;
+        if (Clock::now() > start + (*stopping_ ? goodbye_time : idle_time)) return false;
     }
     left_ = longest_head;
     deadline_ = Clock::now() + head_time;
-    return !stopping;
+    return !must_end();
+}
+
+bool Connection::wait_for(short events, milliseconds time) const {
+    const auto end = Clock::now() + time;
+    while (!must_end()) {
+        if (poll_for(events, slice)) return true;
+        if (Clock::now() > end) return false;
+    }
+    return false;
 }
 
 bool Connection::is_readable() const { return begin_ < end_ || poll_for(POLLIN, milliseconds{0}); }
-bool Connection::is_writable() const { return poll_for(POLLOUT, send_time); }
+bool Connection::is_writable() const { return wait_for(POLLOUT, send_time); }
 
 ssize_t Connection::read(char* to, std::size_t size) {
     if (left_ == 0) return -1;
     if (begin_ == end_) {
         const auto time = std::chrono::duration_cast<milliseconds>(deadline_ - Clock::now());
-        if (time.count() <= 0 || !poll_for(POLLIN, time)) return -1;
+        if (time.count() <= 0 || !wait_for(POLLIN, time)) return -1;
         const ssize_t got = recv(socket_, buffer_.data(), buffer_.size(), 0);
         if (got <= 0) return got;
         begin_ = 0;
@@ -77,8 +95,14 @@ ssize_t Connection::read(char* to, std::size_t size) {
 }
 
 ssize_t Connection::write(const char* from, std::size_t size) {
-    if (!poll_for(POLLOUT, send_time)) return -1;
-    return send(socket_, from, size, MSG_NOSIGNAL);
+    std::size_t sent = 0;
+    while (sent < size) {
+        if (!wait_for(POLLOUT, send_time)) return -1;
+        const ssize_t now = send(socket_, from + sent, size - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (now < 0 && errno != EAGAIN && errno != EINTR) return -1;
+        sent += static_cast<std::size_t>(std::max<ssize_t>(now, 0));
+    }
+    return static_cast<ssize_t>(size);
 }
 
 void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {

@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <optional>
 
 #include <httplib.h>
 
@@ -18,21 +19,22 @@ public:
     static constexpr std::size_t longest_head = 16384;  ///< bytes of the head of a request
 
     /// \param socket is closed with the connection
-    explicit Connection(socket_t socket);
+    /// \param stopping borrowed; once it is set, the connection ends within a second
+    Connection(socket_t socket, const std::atomic<bool>& stopping);
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
     /// Tells the other side that nothing more comes, and waits a moment for it to understand.
     ~Connection() override;
 
     /// Waits for the next request.
-    /// \return whether there is one within 10 seconds, before `stopping` is set
-    bool wait(const std::atomic<bool>& stopping);
+    /// \return whether there is one within 10 seconds; while stopping, within 0.3 seconds
+    bool wait();
 
     bool is_readable() const override;
     bool is_writable() const override;
     /// Ends with an error where a head is too long or takes more than 5 seconds.
     ssize_t read(char* to, std::size_t size) override;
-    /// Ends with an error where nothing can be sent for 20 seconds.
+    /// Sends everything. Ends with an error where nothing can be sent for 20 seconds.
     ssize_t write(const char* from, std::size_t size) override;
     void get_remote_ip_and_port(std::string& ip, int& port) const override;
     void get_local_ip_and_port(std::string& ip, int& port) const override;
@@ -42,8 +44,14 @@ private:
     using Clock = std::chrono::steady_clock;
 
     bool poll_for(short events, std::chrono::milliseconds time) const;
+    /// The same, but in vain once the connection must end.
+    bool wait_for(short events, std::chrono::milliseconds time) const;
+    /// Whether the server has been stopping for a second.
+    bool must_end() const;
 
     socket_t socket_;
+    const std::atomic<bool>* stopping_;
+    mutable std::optional<Clock::time_point> end_at_;  // set when the connection sees it stop
     std::array<char, 4096> buffer_{};
     std::size_t begin_ = 0;  // of what is in the buffer and not yet read
     std::size_t end_ = 0;

@@ -2,126 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame_request.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <map>
-#include <string>
-#include <vector>
 
 #include <nestgrid/error.hpp>
+
+#include "request_entries.hpp"
 
 namespace nestgrid::view {
 
 namespace {
 
-constexpr std::size_t longest_request = 2000;
 constexpr const char* known_keys =
     "isovalue, axis, at, plane, threshold, triangles, motion, indicator, lens, finest, coarsest, "
     "slope, time, normals and outlines";
-
-/// A text of the request in quotes, cut short, without characters that a terminal obeys.
-std::string quoted(std::string_view text) {
-    std::string result = "'";
-    for (const char c : text.substr(0, 40)) result += c >= ' ' && c <= '~' ? c : '?';
-    return result + (text.size() > 40 ? "...'" : "'");
-}
-
-[[noreturn]] void refuse(std::string_view key, const std::string& what, std::string_view text) {
-    throw InvalidInput(std::string(key) + " is " + what + ": " + quoted(text));
-}
-
-/// Finite numbers between commas.
-std::vector<double> numbers_of(std::string_view key, std::string_view text, std::size_t count) {
-    const std::string what =
-        count == 1 ? "no finite number" : "not " + std::to_string(count) + " finite numbers";
-    if (text.find_first_not_of("+-.,0123456789eE") != std::string_view::npos) {
-        refuse(key, what, text);
-    }
-    const std::string copy(text);
-    const char* at = copy.c_str();
-    std::vector<double> numbers;
-    while (numbers.size() < count) {
-        char* end = nullptr;
-        numbers.push_back(std::strtod(at, &end));
-        const char expected = numbers.size() == count ? '\0' : ',';
-        if (end == at || !std::isfinite(numbers.back()) || *end != expected) {
-            refuse(key, what, text);
-        }
-        at = end + 1;
-    }
-    return numbers;
-}
-
-double number_of(std::string_view key, std::string_view text) {
-    return numbers_of(key, text, 1).front();
-}
-
-double number_at_least_0(std::string_view key, std::string_view text) {
-    const double number = number_of(key, text);
-    if (number < 0) refuse(key, "negative", text);
-    return number;
-}
-
-template <class Value>
-struct Choice {
-    const char* name;
-    Value value;
-};
-
-template <class Value, std::size_t count>
-Value choice_of(std::string_view key, std::string_view text,
-                const std::array<Choice<Value>, count>& choices) {
-    std::string names;
-    for (const Choice<Value>& choice : choices) {
-        if (text == choice.name) return choice.value;
-        names += (names.empty() ? "" : ", ") + std::string(choice.name);
-    }
-    refuse(key, "none of " + names, text);
-}
-
-/// The keys and values of a request; each is asked for once.
-class Entries {
-public:
-    explicit Entries(std::string_view text) {
-        if (text.size() > longest_request) {
-            throw InvalidInput("the request is longer than " + std::to_string(longest_request) +
-                               " characters");
-        }
-        while (!text.empty()) {
-            const std::size_t end = std::min(text.find('&'), text.size());
-            const std::string_view entry = text.substr(0, end);
-            const std::size_t equals = entry.find('=');
-            if (equals == std::string_view::npos) {
-                throw InvalidInput("the request has " + quoted(entry) +
-                                   " where key=value is expected");
-            }
-            const std::string_view key = entry.substr(0, equals);
-            if (!values_.emplace(key, entry.substr(equals + 1)).second) {
-                throw InvalidInput("the request has " + quoted(key) + " twice");
-            }
-            text.remove_prefix(std::min(end + 1, text.size()));
-        }
-    }
-
-    /// Calls take(key, text) with the value of a key, where there is one.
-    template <class Take>
-    bool take(const char* key, Take&& take) {
-        const auto found = values_.find(key);
-        if (found == values_.end()) return false;
-        take(std::string_view(key), found->second);
-        values_.erase(found);
-        return true;
-    }
-    void require_empty() const {
-        if (values_.empty()) return;
-        throw InvalidInput("the request has " + quoted(values_.begin()->first) +
-                           ", but knows only " + known_keys);
-    }
-
-private:
-    std::map<std::string_view, std::string_view> values_;
-};
 
 Point point_at(const std::vector<double>& numbers, std::size_t first) {
     return {numbers[first], numbers[first + 1], numbers[first + 2]};
@@ -215,7 +108,7 @@ FrameRequest parse_request(std::string_view text) {
     entries.take("outlines", [&](auto key, auto value) {
         request.outlines = choice_of<bool, 2>(key, value, {{{"on", true}, {"off", false}}});
     });
-    entries.require_empty();
+    entries.require_empty(known_keys);
     if (!request.isovalue && !request.plane) {
         throw InvalidInput("nothing is to be drawn: give isovalue, plane, or axis and at");
     }

@@ -4,8 +4,11 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <csignal>
 #include <map>
 #include <random>
+#include <thread>
 
 #include <nestgrid/error.hpp>
 
@@ -14,8 +17,6 @@
 namespace nestgrid::view {
 
 namespace {
-
-constexpr std::size_t threads = 16;  // a browser keeps six connections open
 
 /// 128 random bits as 32 digits.
 std::string random_token() {
@@ -59,13 +60,26 @@ void answer(httplib::Response& response, int status, const std::string& sentence
     response.set_content(sentence, "text/plain; charset=utf-8");
 }
 
+/// Leaves what a signal does as it is.
+class KeptSignal {
+public:
+    explicit KeptSignal(int signal) : signal_{signal} { sigaction(signal, nullptr, &action_); }
+    KeptSignal(const KeptSignal&) = delete;
+    KeptSignal& operator=(const KeptSignal&) = delete;
+    ~KeptSignal() { sigaction(signal_, &action_, nullptr); }
+
+private:
+    int signal_;
+    struct sigaction action_ {};
+};
+
 }  // namespace
 
 class PageServer::Http final : public httplib::Server {
 public:
-    explicit Http(PageAnswers answers) : answers_{std::move(answers)} {
+    explicit Http(FrameSource& source) : source_{&source} {
         for (const PageFile& file : page_files()) files_.emplace(file.name, file);
-        new_task_queue = [] { return new httplib::ThreadPool(threads); };
+        new_task_queue = [] { return new httplib::ThreadPool(connections); };
         // Without the default, SO_REUSEPORT, by which two servers share a port.
         set_socket_options([](socket_t socket) {
             const int on = 1;
@@ -87,8 +101,16 @@ public:
     }
 
     const std::string& token() const { return token_; }
+    void run() {
+        listen_after_bind();
+        has_run_ = true;
+    }
     void stop_all() {
         stopping_ = true;
+        source_->stop();
+        // The base does nothing where it does not listen yet.
+        while (!is_running() && !has_run_)
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
         stop();
     }
 
@@ -96,9 +118,9 @@ private:
     /// Answers the requests of one connection. Closes it behind a request with a body, which is not
     /// read.
     bool process_and_close_socket(socket_t socket) override {
-        Connection connection(socket);
+        Connection connection(socket, stopping_);
         bool last = false;
-        while (!last && connection.wait(stopping_)) {
+        while (!last && connection.wait()) {
             const auto look = [&last](httplib::Request& request) {
                 last = has_body(request) || request.has_header("Expect");
                 request.headers.erase("Expect");
@@ -126,8 +148,7 @@ private:
         if (!is_local(request.get_header_value("Host"))) {
             answer(response, 403, "This server answers to localhost and 127.0.0.1 alone.\n");
         } else if (!same_token(rest.substr(0, slash), token_)) {
-            answer(response, 403,
-                   "The address has not the token that nestgrid view has printed with it.\n");
+            answer(response, 403, "The address has not the token that was printed with it.\n");
         } else if (has_body(request)) {
             answer(response, 413, "A request has no body here.\n");
         } else if (request.method != "GET") {
@@ -145,10 +166,10 @@ private:
     void serve(std::string_view name, std::string_view query, httplib::Response& response) const {
         try {
             if (name == "info") {
-                response.set_content(answers_.info(), "application/json");
+                response.set_content(source_->info(), "application/json");
             } else if (name == "frame") {
-                const std::vector<std::byte> frame = answers_.frame(query);
-                response.set_content(reinterpret_cast<const char*>(frame.data()), frame.size(),
+                const FrameSource::Bytes frame = source_->frame(query);
+                response.set_content(reinterpret_cast<const char*>(frame->data()), frame->size(),
                                      "application/octet-stream");
             } else if (const auto file = files_.find(name.empty() ? "index.html" : name);
                        file != files_.end()) {
@@ -169,24 +190,24 @@ private:
 
     const std::string token_ = random_token();
     std::map<std::string_view, PageFile> files_;
-    PageAnswers answers_;
+    FrameSource* source_;
     std::atomic<bool> stopping_ = false;
+    std::atomic<bool> has_run_ = false;
 };
 
-PageServer::PageServer(PageAnswers answers, int port)
-    : http_{std::make_unique<Http>(std::move(answers))} {
+PageServer::PageServer(FrameSource& source, int port) {
+    const KeptSignal pipe(SIGPIPE);  // which cpp-httplib changes, and Connection does not raise
+    http_ = std::make_unique<Http>(source);
     const std::string host = "127.0.0.1";
-    if (port == 0) {
-        port = http_->bind_to_any_port(host);
-    } else if (!http_->bind_to_port(host, port)) {
-        port = -1;
-    }
-    if (port < 0) throw IoError("the port is not free: choose another one by --port");
-    address_ = "http://" + host + ":" + std::to_string(port) + "/" + http_->token() + "/";
+    const int bound = port == 0                         ? http_->bind_to_any_port(host)
+                      : http_->bind_to_port(host, port) ? port
+                                                        : -1;
+    if (bound < 0) throw IoError("port " + std::to_string(port) + " of " + host + " is not free");
+    address_ = "http://" + host + ":" + std::to_string(bound) + "/" + http_->token() + "/";
 }
 
 PageServer::~PageServer() = default;
-void PageServer::run() { http_->listen_after_bind(); }
+void PageServer::run() { http_->run(); }
 void PageServer::stop() { http_->stop_all(); }
 
 }  // namespace nestgrid::view

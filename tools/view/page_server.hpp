@@ -14,11 +14,12 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "frame_source.hpp"
 
 namespace nestgrid::view {
 
@@ -32,19 +33,17 @@ struct PageFile {
 /// The files of the page, which the library holds (page_files.cmake).
 std::vector<PageFile> page_files();
 
-/// What answers the page. Both may be called by several threads at once. Exceptions that are
-/// InvalidInput or GridError are sentences for the reader.
-struct PageAnswers {
-    std::function<std::string()> info;                                      ///< JSON
-    std::function<std::vector<std::byte>(std::string_view request)> frame;  ///< frame_reply.hpp
-};
-
 class PageServer {
 public:
+    /// Connections that are served at a time. A browser opens up to six to begin with, and keeps
+    /// one.
+    static constexpr std::size_t connections = 32;
+
     /// Takes a port of 127.0.0.1.
+    /// \param source borrowed
     /// \param port 0: any
     /// \throw IoError where the port is not free
-    PageServer(PageAnswers answers, int port);
+    PageServer(FrameSource& source, int port);
     ~PageServer();
     PageServer(const PageServer&) = delete;
     PageServer& operator=(const PageServer&) = delete;
@@ -52,9 +51,10 @@ public:
     /// http://127.0.0.1:PORT/TOKEN/
     const std::string& address() const { return address_; }
 
-    /// Serves until stop() is called.
+    /// Serves until stop() is called, and then for a moment more the readers who are connected, so
+    /// that they learn of the end.
     void run();
-    /// May be called by any thread.
+    /// May be called by any thread. Waits for run() to begin, and not for it to end.
     void stop();
 
 private:

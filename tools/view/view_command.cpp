@@ -64,6 +64,21 @@ void open_browser(const std::string& address) {
     posix_spawn_file_actions_destroy(&quiet);
 }
 
+/// Draws one frame at a time.
+class ExploredFrames final : public FrameSource {
+public:
+    explicit ExploredFrames(Explorer& explorer) : explorer_{&explorer} {}
+    std::string info() override { return explorer_->info(); }
+    Bytes frame(std::string_view request) override {
+        const std::scoped_lock lock(mutex_);
+        return std::make_shared<const std::vector<std::byte>>(explorer_->frame(request));
+    }
+
+private:
+    Explorer* explorer_;
+    std::mutex mutex_;
+};
+
 /// Serves until the program is interrupted or asked to end.
 void serve(PageServer& server) {
     sigset_t ends;
@@ -99,14 +114,8 @@ void run_view(Options& o) {
     const nestgrid::TbbExecutor executor(o.threads);
     Explorer explorer(std::move(field), executor);
     progress.reset();
-    std::mutex mutex;
-    PageServer server({.info = [&] { return explorer.info(); },
-                       .frame =
-                           [&](std::string_view request) {
-                               const std::scoped_lock lock(mutex);
-                               return explorer.frame(request);
-                           }},
-                      o.port);
+    ExploredFrames frames(explorer);
+    PageServer server(frames, o.port);
     std::printf("%s\n", server.address().c_str());
     std::fflush(stdout);
     if (isatty(STDOUT_FILENO) == 1) std::printf("Open this address in a browser; Ctrl+C ends.\n");

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the frames of a page come from: an Explorer, which draws what a page asks for, or a solver,
+// which pushes what it has.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nestgrid::view {
+
+/// Answers the requests of pages. All functions may be called by several threads at once.
+/// Exceptions that are InvalidInput or GridError are sentences for the reader.
+class FrameSource {
+public:
+    using Bytes = std::shared_ptr<const std::vector<std::byte>>;
+
+    FrameSource() = default;
+    FrameSource(const FrameSource&) = delete;
+    FrameSource& operator=(const FrameSource&) = delete;
+    virtual ~FrameSource() = default;
+
+    /// What a page needs to begin with, as JSON. Where "pushed" is true, the source is a solver.
+    virtual std::string info() = 0;
+    /// \return the layout of frame_reply.hpp
+    virtual Bytes frame(std::string_view request) = 0;
+    /// Lets those who wait in frame() return. The server calls it when it stops.
+    virtual void stop() {}
+};
+
+}  // namespace nestgrid::view
