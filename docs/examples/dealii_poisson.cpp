@@ -4,9 +4,12 @@
 // deal.II: Laplace's equation around an edge that reenters, by adaptive geometric multigrid. In
 // every cycle the isosurface u = 0.5 is extracted straight from the solver's vector: nothing is
 // copied, and nothing is open where the size of cells changes.
-//     dealii_poisson [cycles] [folder for surfaces]
+//     dealii_poisson [cycles] [folder for surfaces] [--view]
+// With --view a page for browsers shows the surface, coloured by the exact solution, which is 0.5
+// where the solver is right.
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string>
 
 #include <vtkNew.h>
@@ -18,8 +21,19 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 
 #include "dealii_poisson.hpp"
+#include "solver_page.hpp"
 
-int main(int argc, char** argv) {
+namespace {
+
+/// The surface with the exact solution as attributes.
+nestgrid::Surface<3> coloured(nestgrid::Surface<3> surface, const dealii_poisson::Exact& exact) {
+    for (const auto& [x, y, z] : surface.vertices) {
+        surface.attributes.push_back(exact.value({x, y, z}));
+    }
+    return surface;
+}
+
+int run(int argc, char** argv, const ShowSurface& show) {
     const int cycles = argc > 1 ? std::atoi(argv[1]) : 5;
     const std::string folder = argc > 2 ? argv[2] : "";
     const dealii_poisson::Exact exact;
@@ -43,6 +57,11 @@ int main(int argc, char** argv) {
                     problem.error(), result.surface.simplices.size(),
                     static_cast<std::size_t>(report.open_edges), indicator.hanging_violation());
         if (report.open_edges > 0) return 1;
+        if (show) {
+            show({.surface = coloured(result.surface, exact),
+                  .field = "exact solution",
+                  .step = static_cast<std::uint64_t>(cycle)});
+        }
         if (!folder.empty()) {
             const vtkNew<vtkXMLPolyDataWriter> writer;
             writer->SetInputData(nestgrid::make_poly_data(result.surface));
@@ -55,4 +74,20 @@ int main(int argc, char** argv) {
         }
     }
     return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        ShowSurface show;
+        const bool views = take_view_option(argc, argv);
+        if (views) show = show_in_page("Around a reentrant edge", {{{-1, -1, 0}, {1, 1, 1}}});
+        const int status = run(argc, argv, show);
+        if (views) wait_for_enter();
+        return status;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "dealii_poisson: %s\n", e.what());
+        return 1;
+    }
 }

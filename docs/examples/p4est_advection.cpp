@@ -5,8 +5,10 @@
 // octrees that follows it. Every so often the isosurface u = 0.5 is extracted straight from the
 // forest: the means of cells stay where the solver keeps them, in the user data of quadrants, and
 // nothing is open where the size of cells changes.
-//     p4est_advection [steps] [folder for surfaces]
-// ParaView plays surface.pvd in that folder, also while the solver runs.
+//     p4est_advection [steps] [folder for surfaces] [--view]
+// ParaView plays surface.pvd in that folder, also while the solver runs. With --view a page for
+// browsers shows the surface, coloured by the exact solution, which is 0.5 where the solver is
+// right.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -27,6 +29,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 
 #include "p4est_advection.hpp"
+#include "solver_page.hpp"
 
 namespace {
 
@@ -67,8 +70,14 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(now - start).count();
 }
 
+/// The surface with the exact solution as attributes.
+nestgrid::Surface<3> coloured(nestgrid::Surface<3> surface, double time) {
+    for (const nestgrid::Point& x : surface.vertices) surface.attributes.push_back(exact(x, time));
+    return surface;
+}
+
 /// \return exit status: 1 where mass is lost, the surface is open, or the time step too long
-int run(long steps, const std::string& folder) {
+int run(long steps, const std::string& folder, const ShowSurface& show) {
     Advection solver;
     const double mass = Totals(solver).mass;
     std::string list;
@@ -89,6 +98,12 @@ int run(long steps, const std::string& folder) {
             grid, [&](const auto& leaf) { return cell_of(grid.quadrant(leaf)).u; });
         const auto surface = nestgrid::isosurface(grid, field, 0.5, {.threshold = 0.01}).surface;
         const double extracting = milliseconds_since(start);
+        if (show) {
+            show({.surface = coloured(surface, solver.time()),
+                  .field = "exact solution",
+                  .step = static_cast<std::uint64_t>(step),
+                  .time = solver.time()});
+        }
 
         const Totals now(solver);
         const double drift = now.mass / mass - 1;
@@ -117,6 +132,7 @@ int main(int argc, char** argv) {
     p4est_init(nullptr, SC_LP_ERROR);
     int status = 1;
     try {
+        const bool views = take_view_option(argc, argv);
         int processes = 0;
         sc_MPI_Comm_size(sc_MPI_COMM_WORLD, &processes);
         char* end = nullptr;
@@ -125,14 +141,17 @@ int main(int argc, char** argv) {
         const std::string folder = argc > 2 ? argv[2] : "";
         using nestgrid::InvalidInput;
         if (processes > 1) throw InvalidInput("this example runs in one process");
-        if (argc > 3) throw InvalidInput("there are more arguments than [steps] [folder]");
+        if (argc > 3) throw InvalidInput("there are more arguments than [steps] [folder] [--view]");
         if (steps < 1 || (end != nullptr && *end != '\0')) {
             throw InvalidInput(std::string("this is not a number of steps: ") + argv[1]);
         }
         if (argc > 2 && !std::filesystem::is_directory(folder)) {
             throw InvalidInput("there is no folder " + folder);
         }
-        status = run(steps, folder);
+        ShowSurface show;
+        if (views) show = show_in_page("A blob in a vortex", {{{0, 0, 0}, {2, 2, 1}}});
+        status = run(steps, folder, show);
+        if (views) wait_for_enter();
     } catch (const std::exception& e) {
         if (sc_is_root()) std::fprintf(stderr, "p4est_advection: %s\n", e.what());
     }

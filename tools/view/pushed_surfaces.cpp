@@ -65,16 +65,15 @@ void extend(std::array<Point, 2>& box, const Surface<3>& surface) {
     }
 }
 
-void extend(std::optional<std::array<double, 2>>& range, const Surface<3>& surface,
-            std::size_t component) {
+/// Extends the range by the finite values of a component.
+void extend(std::array<double, 2>& range, const Surface<3>& surface, std::size_t component) {
     if (surface.attributes.empty()) return;
     const std::size_t components = surface.attributes.size() / surface.vertices.size();
     for (std::size_t i = component; i < surface.attributes.size(); i += components) {
         const double value = surface.attributes[i];
         if (!std::isfinite(value)) continue;
-        if (!range) range = {value, value};
-        (*range)[0] = std::min((*range)[0], value);
-        (*range)[1] = std::max((*range)[1], value);
+        range[0] = std::min(range[0], value);
+        range[1] = std::max(range[1], value);
     }
 }
 
@@ -167,8 +166,7 @@ private:
     void write_caption(JsonText& text) const {
         text.key("number").number(static_cast<double>(number_)).key("ended").boolean(false);
         text.key("field").string(options_.field);
-        const auto range = options_.range.value_or(std::array{infinity, infinity});
-        text.key("least").number(range[0]).key("greatest").number(range[1]);
+        text.key("least").number(options_.range[0]).key("greatest").number(options_.range[1]);
         text.key("isovalue").number(number_or_null(options_.isovalue));
         text.key("box").open('[').numbers(box_[0]).numbers(box_[1]).close(']');
         text.key("time").number(number_or_null(options_.time));
@@ -192,9 +190,12 @@ private:
 PushedSurfaces::PushedSurfaces(const PageOptions& options, std::size_t most_waiting)
     : title_{options.title},
       most_waiting_{most_waiting},
-      box_{options.box.value_or(
-          std::array{Point{infinity, infinity, infinity}, Point{-infinity, -infinity, -infinity}})},
-      box_grows_{!options.box} {}
+      box_{options.box},
+      box_grows_{options.box[0] == options.box[1]},
+      range_{infinity, -infinity} {
+    if (box_grows_)
+        box_ = {Point{infinity, infinity, infinity}, Point{-infinity, -infinity, -infinity}};
+}
 
 PushedSurfaces::~PushedSurfaces() = default;
 
@@ -205,7 +206,7 @@ void PushedSurfaces::push(Surface<3> surface, PushOptions options) {
     {
         const std::scoped_lock lock(mutex_);
         extend(range_, surface, options.component);
-        if (!options.range) options.range = range_;
+        if (options.range[0] == options.range[1]) options.range = range_;
         if (box_grows_) extend(box_, surface);
         last = std::exchange(newest_, std::make_shared<Frame>(++pushed_, std::move(surface),
                                                               std::move(options), box_));

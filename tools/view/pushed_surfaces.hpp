@@ -53,7 +53,7 @@ private:
     bool ended_ = false;
     std::array<Point, 2> box_;
     bool box_grows_;
-    std::optional<std::array<double, 2>> range_;  // of the attributes so far
+    std::array<double, 2> range_;  // of the attributes so far
 };
 
 }  // namespace nestgrid::view

@@ -194,7 +194,7 @@ TEST(Pushed, ColoursAndBoxCoverAllSurfacesUnlessTheSolverSays) {
     EXPECT_EQ(grown.number("least"), -9);
     EXPECT_EQ(grown.number("greatest"), 1);
     EXPECT_NE(grown.text().find("\"box\":[[0,0,0],[1,3,9]]"), std::string::npos) << grown.text();
-    page.push(strip(4, 2), {.range = {{-1, 1}}});
+    page.push(strip(4, 2), {.range = {-1, 1}});
     const Frame told = Reader(page).ask_after(2).value();
     EXPECT_EQ(told.number("least"), -1);
     EXPECT_EQ(told.number("greatest"), 1);

@@ -36,7 +36,8 @@ export function coloursOf(values, least, greatest) {
   const colours = new Float32Array(3 * values.length);
   const scale = greatest > least ? (steps - 1) / (greatest - least) : 0;
   for (let i = 0; i < values.length; ++i) {
-    const step = Math.min(Math.max(Math.round((values[i] - least) * scale), 0), steps - 1);
+    // A value that is no number has the first colour.
+    const step = Math.min(Math.max(Math.round((values[i] - least) * scale) || 0, 0), steps - 1);
     colours[3 * i] = table[3 * step];
     colours[3 * i + 1] = table[3 * step + 1];
     colours[3 * i + 2] = table[3 * step + 2];

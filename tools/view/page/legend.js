@@ -67,7 +67,7 @@ export function pictureWithLegend(stage, caption) {
   stage.drawNow();
   context.drawImage(source, 0, 0);
   context.scale(scale, scale);
-  const style = getComputedStyle(byId('legend'));
+  const style = getComputedStyle(byId('stage'));
   context.fillStyle = style.color;
   context.font = `12px ${style.fontFamily}`;
   context.textBaseline = 'middle';
@@ -76,12 +76,14 @@ export function pictureWithLegend(stage, caption) {
     const r = element.getBoundingClientRect();
     return { x: r.left - origin.left, y: r.top - origin.top, width: r.width, height: r.height };
   };
-  const bar = place(byId('legend-bar'));
-  context.drawImage(byId('legend-bar'), bar.x, bar.y, bar.width, bar.height);
-  for (const text of [byId('legend-title'), ...byId('legend-ticks').children]) {
-    const at = place(text);
-    const mark = text.className === 'mark' ? '◂ ' : '';
-    context.fillText(mark + text.textContent, at.x, at.y + at.height / 2);
+  if (!byId('legend').hidden) {
+    const bar = place(byId('legend-bar'));
+    context.drawImage(byId('legend-bar'), bar.x, bar.y, bar.width, bar.height);
+    for (const text of [byId('legend-title'), ...byId('legend-ticks').children]) {
+      const at = place(text);
+      const mark = text.className === 'mark' ? '◂ ' : '';
+      context.fillText(mark + text.textContent, at.x, at.y + at.height / 2);
+    }
   }
   context.textAlign = 'right';
   context.fillText(caption, source.clientWidth - 16, source.clientHeight - 18);

@@ -3,12 +3,15 @@
 //
 // Asks the program that served this page.
 
-async function get(path) {
+async function get(path, signal) {
   let response;
   try {
-    response = await fetch(path, { cache: 'no-store' });
-  } catch {
-    throw new Error('nestgrid view does not answer: is it still running?');
+    response = await fetch(path, { cache: 'no-store', signal });
+  } catch (error) {
+    if (error.name === 'AbortError') throw error;
+    const lost = new Error('The program of this page does not answer: is it still running?');
+    lost.isLost = true;
+    throw lost;
   }
   if (!response.ok) throw new Error((await response.text()) || `error ${response.status}`);
   return response;
@@ -21,7 +24,8 @@ export class ServerEngine {
     return (await get('info')).json();
   }
 
-  async frame(request) {
-    return (await get(`frame?${request}`)).arrayBuffer();
+  async frame(request, signal) {
+    const response = await get(`frame?${request}`, signal);
+    return response.arrayBuffer();
   }
 }

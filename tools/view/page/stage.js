@@ -59,6 +59,10 @@ export class Stage {
   /** The domain: drawn as the edges of a box, with letters at its axes. */
   setBox(box) {
     this.#box = box;
+    const diagonal = diagonalOf(box);
+    this.#camera.near = diagonal / 1000;
+    this.#camera.far = diagonal * 100;
+    this.#camera.updateProjectionMatrix();
     this.#frame.clear();
     const size = new THREE.Vector3(...box[1]).sub(new THREE.Vector3(...box[0]));
     const edges = new THREE.LineSegments(
@@ -82,9 +86,6 @@ export class Stage {
 
   /** Looks at the whole box, or takes [position, target, up] of the address. */
   look(camera) {
-    const diagonal = diagonalOf(this.#box);
-    this.#camera.near = diagonal / 1000;
-    this.#camera.far = diagonal * 100;
     if (camera) {
       this.#camera.position.set(...camera.slice(0, 3));
       this.#controls.target.set(...camera.slice(3, 6));
@@ -95,7 +96,7 @@ export class Stage {
       this.#camera.up.set(0, 0, 1);
       const narrow = Math.min(1, this.#camera.aspect);
       this.#camera.position.set(...centre)
-        .addScaledVector(new THREE.Vector3(0.55, -0.75, 0.4).normalize(), 1.75 * diagonal / narrow);
+        .addScaledVector(new THREE.Vector3(0.55, -0.75, 0.4).normalize(), 1.75 * diagonalOf(this.#box) / narrow);
     }
     this.#camera.updateProjectionMatrix();
     this.#controls.update();
@@ -115,7 +116,7 @@ export class Stage {
     this.#controls.enabled = on;
   }
 
-  /** Replaces the surfaces by those of a frame. */
+  /** Replaces the surfaces by those of a frame. The ends of the colours, and the isovalue, may be null. */
   show(frame, isovalue, least, greatest) {
     for (const part of this.#parts.children) {
       part.geometry.dispose();
@@ -142,19 +143,22 @@ export class Stage {
       return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({
         color: cssColour('--text'), transparent: true, opacity: 0.45 }));
     }
-    const offset = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
-    if (part.kind === 'slice') {
+    const look = {
+      side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+    if (part.values) {
       const colours = coloursOf(part.values, least, greatest);
       geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
       geometry.setAttribute('value', new THREE.BufferAttribute(part.values, 1));
-      return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({
-        vertexColors: true, side: THREE.DoubleSide, ...offset }));
+      look.vertexColors = true;
+    } else {
+      const place = greatest > least && isovalue !== null ? (isovalue - least) / (greatest - least) : 0.5;
+      const [r, g, b] = colourAt(place).map((c) => c / 255);
+      look.color = new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace);
     }
+    // A slice has no normals: its colours are those of the legend, without light.
+    if (!part.normals) return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(look));
     geometry.setAttribute('normal', new THREE.BufferAttribute(part.normals, 4, true));
-    const [r, g, b] = colourAt((isovalue - least) / (greatest - least)).map((c) => c / 255);
-    return new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
-      color: new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), roughness: 0.65,
-      side: THREE.DoubleSide, ...offset }));
+    return new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({ ...look, roughness: 0.65 }));
   }
 
   /** What lies under a place of the window: its point, kind and value, or null. */

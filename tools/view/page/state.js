@@ -7,7 +7,7 @@ export function diagonalOf(box) {
   return Math.hypot(...box[1].map((x, d) => x - box[0][d]));
 }
 
-/** Where a page begins. */
+/** Where the page of a field begins. */
 export function defaultState(info) {
   const [low, high] = info.box;
   return {
@@ -39,8 +39,8 @@ const lists = { normal: 3, centre: 3, camera: 9 };
 
 /** The state in an address, #key=value&..., on top of where a page begins; what is malformed does not
     count. */
-export function stateFromAddress(hash, info) {
-  const state = defaultState(info);
+export function stateFromAddress(hash, start) {
+  const state = { ...start };
   for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ''))) {
     if (!(key in state)) continue;
     if (choices[key]) {
@@ -54,7 +54,6 @@ export function stateFromAddress(hash, info) {
       state[key] = Number(text);
     }
   }
-  const start = defaultState(info);
   if (state.triangles < 1) state.triangles = start.triangles;
   if (state.threshold < 0) state.threshold = start.threshold;
   if (state.radius < 0) state.radius = start.radius;
@@ -62,8 +61,7 @@ export function stateFromAddress(hash, info) {
 }
 
 /** The address of a state: what differs from where a page begins. */
-export function addressOf(state, info) {
-  const start = defaultState(info);
+export function addressOf(state, start) {
   const short = (x) => String(Number(x.toPrecision(9)));
   const entries = [];
   for (const [key, value] of Object.entries(state)) {

@@ -25,8 +25,9 @@ namespace nestgrid::view {
 
 struct PageOptions {
     std::string title = "solver";  ///< of the page
-    /// The least and the greatest coordinates of the domain; default: of all surfaces so far.
-    std::optional<std::array<Point, 2>> box{};
+    /// The least and the greatest coordinates of the domain; where they are equal: of all surfaces
+    /// so far.
+    std::array<Point, 2> box{};
     int port = 0;  ///< of 127.0.0.1; 0: any that is free
 };
 
@@ -37,8 +38,8 @@ struct PushOptions {
     std::string field = "value";       ///< name of what colours the surface
     std::optional<double> isovalue{};  ///< of the field, where the surface has one
     std::size_t component = 0;         ///< of the attributes, which colours the surface
-    /// Values at the ends of the colours; default: of all surfaces so far.
-    std::optional<std::array<double, 2>> range{};
+    /// Values at the ends of the colours; where they are equal: of all surfaces so far.
+    std::array<double, 2> range{};
     std::vector<std::pair<std::string, double>> numbers{};  ///< more to tell: names and values
 };
 
