@@ -187,9 +187,10 @@ CompressedValues<Real>::CompressedValues(std::size_t count, std::size_t componen
     const bool complete = components > 0 && count % components == 0 &&
                           block.size() == (count + block_size - 1) / block_size + 1 &&
                           block.front() == 0 && block.back() == packed_.words.size();
-    const bool narrow = std::ranges::adjacent_find(block, [](std::uint32_t a, std::uint32_t b) {
-                            return a > b || b - a > block_size;
-                        }) == block.end();
+    const bool narrow =
+        std::adjacent_find(block.begin(), block.end(), [](std::uint32_t a, std::uint32_t b) {
+            return a > b || b - a > block_size;
+        }) == block.end();
     if (!complete || !narrow) {
         throw InvalidInput("the blocks of compressed values are not those of " +
                            std::to_string(count) + " values");

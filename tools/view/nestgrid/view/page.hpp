@@ -60,10 +60,10 @@ public:
     /// Shows a surface in the place of the last one. May be called by any thread.
     /// Attributes, where there are some, colour the surface; normals, where there are none, are
     /// made of triangles; a surface that keeps its elements has outlines. Takes time proportional
-    /// to the size of the surface, for checks and, unless the surface is moved, a copy. \throw
-    /// InvalidInput with one sentence where a triangle names a vertex that does not exist, a
-    ///        vertex is not finite, normals or attributes are not as many as vertices, or there is
-    ///        no such component. The page keeps the surface it has
+    /// to the size of the surface, for checks and, unless the surface is moved, a copy.
+    /// \throw InvalidInput where a triangle names a vertex that does not exist, a vertex is not
+    ///        finite, normals or attributes are not as many as vertices, or there is no such
+    ///        component. The page keeps the surface it has.
     void push(Surface<3> surface, PushOptions options = {});
 
 private:
