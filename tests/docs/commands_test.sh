@@ -73,8 +73,8 @@ served() {
     grep -qxF -e "$*" known && return
     echo "$*" >>known
     "$@" --no-browser >out 2>&1 &
-    local server=$! tries=0
-    until grep -q . out || [ $((tries += 1)) -gt 100 ]; do sleep 0.1; done
+    local server=$!
+    until grep -q . out || ! kill -0 $server 2>/dev/null; do sleep 0.1; done
     # Not every build has the page.
     grep -q "NESTGRID_VIEW=ON" out && return
     ran=$((ran + 1))
