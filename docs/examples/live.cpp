@@ -32,8 +32,8 @@ std::vector<float> drops(double time) {
         for (int y = 0; y < samples; ++y) {
             for (int x = 0; x < samples; ++x) {
                 const nestgrid::Point at{double(x), double(y), double(z)};
-                values.push_back(float(std::exp(-square_from(at, 32 - 16 * time) / 100) +
-                                       std::exp(-square_from(at, 32 + 16 * time) / 100)));
+                values.push_back(float(std::exp(-square_from(at, 32 - 18 * time) / 160) +
+                                       std::exp(-square_from(at, 32 + 18 * time) / 160)));
             }
         }
     }
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     const nestgrid::LatticeBisection<3> grid({.samples = {samples, samples, samples}});
 
     // [serve]
-    nestgrid::view::Page page({.title = "Two drops", .box = {{{0, 0, 0}, {64, 64, 64}}}});
+    nestgrid::view::Page page({.title = "A drop parts", .box = {{{0, 0, 0}, {64, 64, 64}}}});
     std::printf("%s\n", page.address().c_str());
     // [serve]
     std::fflush(stdout);

@@ -6,59 +6,26 @@
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import puppeteer from 'puppeteer-core';
+
+import { addressOf, check, finish } from './checks.mjs';
+import { Browser, count } from './chromium.mjs';
 
 const [program, browserPath, folder, ...volumes] = process.argv.slice(2);
 const pictures = resolve(folder);
-let failures = 0;
-function check(holds, what) {
-  if (holds) return;
-  ++failures;
-  console.log(`FAILED: ${what}`);
-}
-
-mkdirSync(pictures, { recursive: true });
 const server = spawn(program, ['view', ...volumes, '--no-browser'], { stdio: ['ignore', 'pipe', 'inherit'] });
-const address = await new Promise((resolve, reject) => {
-  server.stdout.once('data', (data) => resolve(data.toString().trim()));
-  server.once('exit', () => reject(new Error('nestgrid view has ended')));
-});
-const browser = await puppeteer.launch({
-  executablePath: browserPath,
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-});
-const page = await browser.newPage();
-await page.setViewport({ width: 1280, height: 800 });
-const complaints = [];
-page.on('pageerror', (error) => complaints.push(error.message));
-page.on('console', (message) => message.type() === 'error' && complaints.push(message.text()));
+const address = await addressOf(server);
+const browser = await Browser.open(browserPath, pictures);
+const { page, complaints } = browser;
 
-const text = (id) => page.$eval(`#${id}`, (e) => e.textContent.trim());
+const text = (id) => browser.text(id);
+const look = () => browser.look();
+const picture = (name) => browser.picture(name);
 const settled = () => page.waitForFunction(
   () => window.nestgrid.shown?.motion === 'settled' && window.nestgrid.idle, { timeout: 60000 });
-const count = (t) => Number(t.replace(/\D/g, ''));
-const picture = (name) => page.screenshot({ path: join(pictures, `${name}.png`) });
 const select = async (id, value) => {
   await page.select(`#${id}`, value);
   await settled();
 };
-
-/** How many colours the picture has, and how much of it is not ground. */
-const look = () => page.evaluate(() => {
-  const source = document.getElementById('canvas');
-  window.nestgrid.stage.drawNow();
-  const copy = document.createElement('canvas');
-  copy.width = copy.height = 100;
-  const context = copy.getContext('2d');
-  context.drawImage(source, 0, 0, 100, 100);
-  const { data } = context.getImageData(0, 0, 100, 100);
-  const seen = new Map();
-  for (let i = 0; i < data.length; i += 4) {
-    const colour = data.slice(i, i + 3).join();
-    seen.set(colour, (seen.get(colour) ?? 0) + 1);
-  }
-  return { colours: seen.size, drawn: 10000 - Math.max(...seen.values()) };
-});
 
 /**
  * Drags a slider over so many positions: the hand waits for the frame of each.
@@ -160,23 +127,20 @@ try {
   await settled();
   const numbers = await text('numbers');
   check(count(await text('number-triangles')) <= 50000, 'a settled frame has too many triangles');
-  await page.mouse.move(480, 400);
-  await page.mouse.down();
-  await page.mouse.move(560, 440, { steps: 4 });
-  await page.mouse.up();
-  const camera = await page.evaluate(() => window.nestgrid.stage.camera);
+  await browser.drag([480, 400], [560, 440]);
+  const camera = await browser.camera();
   const link = page.url();
   check(link.includes('isovalue=') && link.includes('camera='), `the address tells nothing: ${link}`);
   await page.goto('about:blank');
   await page.goto(link);
   await settled();
-  const again = await page.evaluate(() => window.nestgrid.stage.camera);
+  const again = await browser.camera();
   check(again.every((x, i) => Math.abs(x - camera[i]) < 1e-6 * (1 + Math.abs(x))), 'the camera is lost');
   const steady = (t) => t.replace(/extraction.*$/s, '');
   check(steady(await text('numbers')) === steady(numbers), `${await text('numbers')}, not ${numbers}`);
 
   // What is saved.
-  const session = await browser.target().createCDPSession();
+  const session = await browser.browser.target().createCDPSession();
   const saved = join(pictures, 'saved');
   rmSync(saved, { recursive: true, force: true });
   mkdirSync(saved);
@@ -217,5 +181,4 @@ try {
   await browser.close();
   server.kill('SIGKILL');
 }
-if (failures === 0) console.log('all is as it should be');
-process.exit(failures > 0 ? 1 : 0);
+finish();

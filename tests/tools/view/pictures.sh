@@ -2,19 +2,31 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Makes the pictures of docs/browser.md, by the test of the page on a bucky ball of 129^3 samples, from
-# a release build. Arguments: the pictures, docs/figures/view.png and docs/figures/view_slice.png.
+# Makes the pictures of docs/browser.md, by the tests of the page, from a release build: of a bucky ball
+# of 129^3 samples, and of docs/examples/live. Arguments: the pictures, of docs/figures/view.png,
+# docs/figures/view_slice.png and docs/figures/view_live.png.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 build=$root/build/release
 folder=$build/tests/tools/view
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$folder/make_bucky_balls" "$work" 129
-mv "$work/first.nrrd" "$work/bucky.nrrd"
-node "$folder/page_test.mjs" "$build/tools/nestgrid" "$(command -v chromium)" "$work" "$work/bucky.nrrd"
+chromium=$(command -v chromium)
+
+explored() {
+    [ -e "$work/view.png" ] && return
+    "$folder/make_bucky_balls" "$work" 129
+    mv "$work/first.nrrd" "$work/bucky.nrrd"
+    node "$folder/page_test.mjs" "$build/tools/nestgrid" "$chromium" "$work" "$work/bucky.nrrd"
+}
+
+pushed() {
+    node "$folder/pushed_page_test.mjs" "$build/docs/examples/live" "$chromium" "$work"
+}
+
 for file in "$@"; do
     name=$(basename "$file" .png)
     [ "$name" = view ] || name=${name#view_}
+    if [ "$name" = live ]; then pushed; else explored; fi
     cp "$work/$name.png" "$file"
 done

@@ -6,14 +6,9 @@ import { spawn } from 'node:child_process';
 import http from 'node:http';
 import net from 'node:net';
 
-const [program, volume] = process.argv.slice(2);
-let failures = 0;
+import { check, finish } from './checks.mjs';
 
-function check(holds, what) {
-  if (holds) return;
-  ++failures;
-  console.log(`FAILED: ${what}`);
-}
+const [program, volume] = process.argv.slice(2);
 
 /** Starts the program. \return the process and its lines of output */
 function start(...options) {
@@ -176,5 +171,4 @@ check((await third.line).includes(`:${portText}/`) && (await third.line) !== add
 third.child.kill('SIGTERM');
 check((await third.ended) === 0, 'the end is not clean');
 
-if (failures === 0) console.log('all is as it should be');
-process.exit(failures > 0 ? 1 : 0);
+finish();

@@ -121,7 +121,7 @@ export class PushedPage {
       ...(frame.step === null ? [] : [['step', 'step', readableCount(frame.step)]]),
       ...frame.numbers.map(({ name, value }, i) => [`solver-${i}`, name, number(value)]),
       ['triangles', 'triangles', readableCount(frame.triangles)],
-      ['surface', 'surface', readableCount(frame.number), 'How many surfaces the solver has pushed'],
+      ['surfaces', 'surfaces so far', readableCount(frame.number), 'How many the solver has pushed'],
     ]);
     this.#shown = { frame };
   }
