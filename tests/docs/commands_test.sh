@@ -72,7 +72,8 @@ picture() {
 served() {
     grep -qxF -e "$*" known && return
     echo "$*" >>known
-    "$@" --no-browser >out 2>&1 &
+    : >out  # so that nothing here is another command's
+    "$@" --no-browser >>out 2>&1 &
     local server=$!
     until grep -q . out || ! kill -0 $server 2>/dev/null; do sleep 0.1; done
     # Not every build has the page.
