@@ -297,6 +297,7 @@ class NestgridReader(Drawing):
         self.Modified()
 
     def SetFieldName(self, name):
+        name = name or ""  # ParaView hands over None for an empty one
         if name != self._name:
             self._name = name
             self.Modified()
