@@ -226,7 +226,7 @@ refused 1 "expression 'sin\('" mesh tetra.off "${mesh[@]}" --field 'sin('
 refused 1 'no finite number at' mesh tetra.off "${mesh[@]}" --field 'log(x)'
 refused 1 'needs a --field' mesh tetra.off "${mesh[@]}" --tolerance 1
 refused 1 'no rule for a tetrahedron' mesh cube.smesh --family octree -o x.nestgrid
-refused 1 'more than 20000000 elements' mesh tetra.off "${mesh[@]}" --refine 1000
+refused 1 'more than 5000 elements' mesh tetra.off "${mesh[@]}" --refine 1000 --max-elements 5000
 refused 1 'more than 5000 elements' mesh tetra.off "${mesh[@]}" --field x^2 --tolerance 1e-300 --max-elements 5000
 refused 1 'tolerance is negative' mesh tetra.off "${mesh[@]}" --field x --tolerance nan
 refused 1 'refine is negative' mesh tetra.off "${mesh[@]}" --refine -1
