@@ -184,10 +184,11 @@ TYPED_TEST(Discontinuous, StopsWithinTheThreshold) {
                 for (std::size_t e = 0; e < corners.size(); ++e) {
                     const Shape shape = result.surface.shape_of[e];
                     const auto& values = below.values(elements[e], shape);
-                    for (const auto& [x, value] : corners[e]) {
-                        const auto [first, last] = values.equal_range(x);
-                        EXPECT_TRUE(std::any_of(
-                            first, last, [&](const auto& one) { return one.second == value; }));
+                    for (const auto& drawn : corners[e]) {
+                        const auto [first, last] = values.equal_range(drawn.first);
+                        EXPECT_TRUE(std::any_of(first, last, [&](const auto& one) {
+                            return one.second == drawn.second;
+                        }));
                     }
                     std::vector<double> at;
                     for (const NodeKey key : field.keys(elements[e], topology(shape).corners)) {
