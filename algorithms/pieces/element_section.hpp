@@ -3,8 +3,7 @@
 #pragma once
 
 #include <contours/contour_filling.hpp>
-#include <surfaces/surface_builder.hpp>
-#include <walk/walk.hpp>
+#include <levels/element_cuts.hpp>
 
 namespace nestgrid::engine {
 
@@ -16,18 +15,14 @@ public:
     using View = ElementView<double>;
     using Number = std::uint32_t;
 
-    /// \param components of the elements' values: the function, and the data behind it
-    explicit ElementSection(std::size_t components)
-        : components_{components}, attributes_(components - 1) {}
+    /// \param walk whose elements have the function for component 0, and the data behind it;
+    ///        borrowed
+    explicit ElementSection(const Walk<double>& walk) : cuts_(walk, 1) {}
 
-    /// Draws the section of an element.
-    /// \param x of its corners
-    /// \param boundary faces on the boundary of the domain: where the function is 0 on such a face
-    ///        and positive inside, the face is drawn
-    void draw(const View& view, std::span<const Point> x, unsigned boundary,
-              SurfaceBuilder<3>& builder);
-    /// Whether the last element was drawn.
-    bool drew() const { return drew_; }
+    /// Draws the section of an element. Where the function is 0 on a face on the boundary of the
+    /// domain, and positive inside, draws the face.
+    /// \return whether anything was drawn
+    bool draw(const View& view, SurfaceBuilder<3>& builder);
 
     // ContourFilling calls these.
     Number vertex(std::uint8_t edge);
@@ -46,18 +41,17 @@ private:
     };
     static constexpr Number none = ~Number{0};
 
-    double u(std::size_t corner) const { return view_->value[corner * components_]; }
+    const View& view() const { return cuts_.view(); }
+    double u(std::size_t corner) const { return cuts_.u()[corner]; }
     unsigned joins(const ContourTable& table, unsigned inside) const;
     void draw_contour(unsigned inside);
-    void draw_faces(unsigned boundary);
+    void draw_faces();
     Number corner_vertex(std::size_t corner);
     Number add(const Point& x, const Point& reference);
     Number surface_vertex(Vertex& vertex);
 
-    std::size_t components_;
-    std::vector<double> attributes_;
-    const View* view_ = nullptr;
-    std::span<const Point> x_;
+    Level<double> level_{0, 0, 0};  // vertices may lie at corners
+    ElementCuts<double> cuts_;
     SurfaceBuilder<3>* builder_ = nullptr;
     bool drew_ = false;
     std::vector<Vertex> vertices_;

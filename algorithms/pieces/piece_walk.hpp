@@ -4,17 +4,19 @@
 // Walks the elements at which discontinuous data stop.
 #pragma once
 
+#include <optional>
+
 #include <nestgrid/algorithms/discontinuous.hpp>
 #include <pieces/corner_values.hpp>
+#include <surfaces/surface_builder.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {
 
-/// How many components a WidenedHierarchy puts in front of the zero field of discontinuous data, so
-/// that a walk's elements have room for the data, behind others.
-/// \param in_front how many others
-inline std::size_t widening(const DiscontinuousData& data, std::size_t in_front) {
-    return in_front + static_cast<std::size_t>(data.components()) - 1;
+/// The grid of discontinuous data, with room for these in a walk's elements.
+/// \param in_front how many components are in front of the data
+inline WidenedHierarchy<float> widened(const DiscontinuousData& data, std::size_t in_front) {
+    return {data.grid(), in_front + static_cast<std::size_t>(data.components()) - 1};
 }
 
 /// Draws elements one by one. The walk carries no values: what is drawn gets them here.
@@ -23,7 +25,7 @@ public:
     using View = ElementView<double>;
     static constexpr Needs needs{.values = false, .keys = true, .positions = true};
 
-    /// \param walk of the WidenedHierarchy of the data's grid, see widening()
+    /// \param walk of the hierarchy that widened() makes of the data
     /// \param deviations null: only leaves are drawn
     /// \param in_front how many components are in front of the data
     /// All arguments are borrowed.
@@ -66,5 +68,22 @@ private:
 /// \throw InvalidInput, GridError as the functions of discontinuous.hpp say
 void require_drawable(const DiscontinuousData& data, int dimension,
                       const ElementDeviations* deviations, const DiscontinuousOptions& options);
+
+/// Draws a surface. Measures deviations where the threshold needs them and none are given.
+/// \param make make(walk, deviations, part) returns a PieceWalk that draws into a part
+template <class Make>
+DiscontinuousSurface draw_pieces(const WidenedHierarchy<float>& hierarchy,
+                                 const DiscontinuousData& data, const ElementDeviations* deviations,
+                                 const DiscontinuousOptions& options, const Make& make) {
+    std::optional<ElementDeviations> own;
+    if (deviations == nullptr && options.threshold > 0) deviations = &own.emplace(data);
+    const Walk<double> walk(hierarchy, PieceWalk::needs);
+    SurfacePart<3> part;
+    part.surface.elements = hierarchy.make_elements();
+    DiscontinuousSurface result;
+    make(walk, deviations, part).run(result);
+    result.surface = std::move(part.surface);
+    return result;
+}
 
 }  // namespace nestgrid::engine

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <optional>
 
 #include <graphs/element_polygon.hpp>
 #include <nestgrid/error.hpp>
@@ -39,16 +38,10 @@ DiscontinuousSurface triangulate(const DiscontinuousData& data, double scale,
     if (!std::isfinite(scale)) {
         throw InvalidInput("the scale of the heights is not a finite number");
     }
-    std::optional<ElementDeviations> own;
-    if (deviations == nullptr && options.threshold > 0) deviations = &own.emplace(data);
-    const engine::WidenedHierarchy<float> hierarchy(data.grid(), engine::widening(data, 0));
-    const engine::Walk<double> walk(hierarchy, PieceShading::needs);
-    engine::SurfacePart<3> part;
-    part.surface.elements = hierarchy.make_elements();
-    DiscontinuousSurface result;
-    PieceShading(walk, data, deviations, options, scale, part).run(result);
-    result.surface = std::move(part.surface);
-    return result;
+    return engine::draw_pieces(engine::widened(data, 0), data, deviations, options,
+                               [&](const auto& walk, const auto* d, auto& part) {
+                                   return PieceShading(walk, data, d, options, scale, part);
+                               });
 }
 
 }  // namespace

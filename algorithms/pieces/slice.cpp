@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <optional>
 
 #include <contours/cell_contour.hpp>
 #include <pieces/element_section.hpp>
@@ -19,31 +18,28 @@ public:
                const DiscontinuousOptions& options, engine::SurfacePart<3>& part)
         : PieceWalk(walk, data, deviations, options, 1),
           function_{&function},
-          section_(walk.components()),
+          section_(walk),
           builder_(part, false, options.elements) {}
 
 private:
     bool of_interest(const View& view, const engine::Split& split) override;
     double draw(const View& view, std::span<double> values) override;
-    std::span<const Point> load(const View& view);
+    std::span<const Point> corners(const View& view) const {
+        return std::span(x_).first(view.corner_count());
+    }
 
     const engine::PositionFunctions* function_;
     engine::ElementSection section_;
     engine::SurfaceBuilder<3> builder_;
+    // The corners of the element that of_interest() was asked about last, and the function there.
     std::array<Point, max_corners> x_{};
-    std::array<double, max_corners> f_{};  // the function at the corners
+    std::array<double, max_corners> f_{};
 };
 
-/// Loads the corners of an element, and the function there.
-std::span<const Point> PieceSlice::load(const View& view) {
-    walk().corners(view, nullptr, x_.data());
-    const std::span<const Point> x = std::span(x_).first(view.corner_count());
-    for (std::size_t k = 0; k < x.size(); ++k) f_[k] = function_->at<double>(0, x[k]);
-    return x;
-}
-
 bool PieceSlice::of_interest(const View& view, const engine::Split& split) {
-    const std::span<const Point> x = load(view);
+    walk().corners(view, nullptr, x_.data());
+    const std::span<const Point> x = corners(view);
+    for (std::size_t k = 0; k < x.size(); ++k) f_[k] = function_->at<double>(0, x[k]);
     const auto [least, greatest] = std::ranges::minmax(std::span(f_).first(x.size()));
     if (least <= 0 && greatest >= 0) return true;
     if (view.is_leaf() || function_->affine(0)) return false;
@@ -53,11 +49,10 @@ bool PieceSlice::of_interest(const View& view, const engine::Split& split) {
 }
 
 double PieceSlice::draw(const View& view, std::span<double> values) {
-    const std::span<const Point> x = load(view);
+    const std::span<const Point> x = corners(view);
     const std::size_t stride = walk().components();
     for (std::size_t k = 0; k < x.size(); ++k) values[k * stride] = f_[k];
-    section_.draw(view, x, walk().boundary(view), builder_);
-    if (!section_.drew() || x.size() == 4) return 0;
+    if (!section_.draw(view, builder_) || x.size() == 4) return 0;
     std::array<double, max_corners> data;
     for (std::size_t k = 0; k < x.size(); ++k) data[k] = values[k * stride + 1];
     return 2 * affine_residual(x, std::span<const double>(data).first(x.size()));
@@ -66,18 +61,13 @@ double PieceSlice::draw(const View& view, std::span<double> values) {
 DiscontinuousSurface cut(const DiscontinuousData& data, const LevelFunction& function,
                          const ElementDeviations* deviations, const DiscontinuousOptions& options) {
     engine::require_drawable(data, 3, deviations, options);
-    std::optional<ElementDeviations> own;
-    if (deviations == nullptr && options.threshold > 0) deviations = &own.emplace(data);
-    const engine::WidenedHierarchy<float> hierarchy(data.grid(), engine::widening(data, 1));
     const LevelFunction* const functions[] = {&function};
+    const engine::WidenedHierarchy<float> hierarchy = engine::widened(data, 1);
     const engine::PositionFunctions placed(functions, hierarchy, options.position_bounds);
-    const engine::Walk<double> walk(hierarchy, PieceSlice::needs);
-    engine::SurfacePart<3> part;
-    part.surface.elements = hierarchy.make_elements();
-    DiscontinuousSurface result;
-    PieceSlice(walk, placed, data, deviations, options, part).run(result);
-    result.surface = std::move(part.surface);
-    return result;
+    return engine::draw_pieces(hierarchy, data, deviations, options,
+                               [&](const auto& walk, const auto* d, auto& part) {
+                                   return PieceSlice(walk, placed, data, d, options, part);
+                               });
 }
 
 }  // namespace
