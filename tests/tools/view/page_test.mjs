@@ -20,8 +20,9 @@ const { page, complaints } = browser;
 const text = (id) => browser.text(id);
 const look = () => browser.look();
 const picture = (name) => browser.picture(name);
+// window.nestgrid appears some time after the page is loaded. A function that throws is not asked again.
 const settled = () => page.waitForFunction(
-  () => window.nestgrid.shown?.motion === 'settled' && window.nestgrid.idle, { timeout: 60000 });
+  () => window.nestgrid?.shown?.motion === 'settled' && window.nestgrid.idle, { timeout: 60000 });
 const select = async (id, value) => {
   await page.select(`#${id}`, value);
   await settled();
