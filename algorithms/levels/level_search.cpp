@@ -30,7 +30,8 @@ LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::span<const Level<Rea
       own_bounds_{dynamic_cast<const HierarchicalIndicator*>(&bounds)},
       entries_{own_bounds_ == nullptr ? nullptr : &own_bounds_->entries()},
       saturated_{criterion.saturated()},
-      asks_for_masks_{!criterion.wants_positions() && !criterion.blends()} {
+      asks_for_masks_{!criterion.wants_positions() && !criterion.blends()},
+      never_stops_{dynamic_cast<const Exact*>(&criterion) != nullptr} {
     for (const Level<Real>& level : levels_) {
         last_component_ = std::max(last_component_, level.component);
     }
@@ -196,7 +197,9 @@ auto LevelSearch<Real>::glance(Real lo, Real hi, const Rule& rule, NodeKey node,
                                bool outside) const -> Glance {
     const std::span<const NodeKey> keys(&node, 1);
     const Real bound = bound_of(rule, keys);
-    if (!of_interest(lo, hi, bound, 0, false)) return {Visit::skip, bound};
+    if (!of_interest(lo, hi, functions_ > 0 ? Real(0) : bound, 0, false)) {
+        return {Visit::skip, bound};
+    }
     const NodeMask mask = holds({rule, keys, level + 1, outside ? NodeMask{1} : NodeMask{0}});
     return {mask != 0 ? Visit::stop : Visit::descend, bound};
 }

@@ -66,7 +66,8 @@ public:
                                       : bounds_->offset_bound(node);
     }
 
-    // Questions of the walk in patches.
+    // Questions of the walk in patches, where component 0 is that of all levels: the field's, or an
+    // affine function's.
     struct Glance {
         Visit visit;
         Real bound;
@@ -115,6 +116,7 @@ private:
     std::size_t last_component_ = 0;
     bool saturated_;
     bool asks_for_masks_;
+    bool never_stops_;  // S holds nowhere
 };
 
 template <class Real>
@@ -142,16 +144,25 @@ NESTGRID_INLINE PackedGlance<Real, around> LevelSearch<Real>::glance(
     using Mask = typename Reals::Mask;
     PackedGlance<Real, around> result;
     Mask holds;
-    bool is_known = false;
-    if constexpr (std::is_same_v<Real, float>) {
-        is_known = own_threshold_ != nullptr;
-        if (is_known) {
-            const PackedEntries known = engine::look_up(*entries_, e.node);
+    if (own_threshold_ != nullptr) {
+        const PackedEntries known = engine::look_up(*entries_, e.node);
+        const auto stops = at_most(known.stop(), packed_threshold_);
+        if constexpr (std::is_same_v<Real, float>) {
             result.bound = known.bound();
-            holds = at_most(known.stop(), packed_threshold_);
+            holds = stops;
+        } else {
+            const auto bounds = known.bound().numbers();
+            const auto all = stops.numbers();
+            result.bound = Reals::make(
+                [&](auto i) NESTGRID_INLINE_LAMBDA { return static_cast<Real>(bounds[i]); });
+            holds = Mask::make([&](auto i) NESTGRID_INLINE_LAMBDA {
+                return all[i] != 0 ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
+            });
         }
-    }
-    if (!is_known) {
+    } else if (never_stops_ && functions_ > 0) {
+        result.bound = Reals::all(0);
+        holds = Mask::all(0);
+    } else {
         const auto key = [&](auto i) NESTGRID_INLINE_LAMBDA {
             return std::span<const NodeKey>(e.node + i, 1);
         };
@@ -162,13 +173,15 @@ NESTGRID_INLINE PackedGlance<Real, around> LevelSearch<Real>::glance(
             return mask != 0 ? ~MaskOf<Real>{0} : MaskOf<Real>{0};
         });
     }
+    // Where a function of position is drawn, it does not leave the range of its corner values.
+    const Reals beyond = functions_ > 0 ? Reals::all(0) : result.bound;
     unrolled<around>([&](auto i) NESTGRID_INLINE_LAMBDA {
         const Reals& lo = e.range[i].first;
         const Reals& hi = e.range[i].second;
         const auto passes = [&](const Level<Real>& level) NESTGRID_INLINE_LAMBDA {
             return at_most(
                 max(Reals::all(level.least_inside) - hi, lo - Reals::all(level.greatest_outside)),
-                result.bound);
+                beyond);
         };
         Mask interest = passes(levels_[0]);
         for (const Level<Real>& level : levels_.subspan(1)) interest = interest | passes(level);

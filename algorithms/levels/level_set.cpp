@@ -53,8 +53,10 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     walks_.begin(records ? Pass::record : Pass::only,
                  records ? search.bounds().finest_level() : -1);
     at_hand_.plainly = draws_plainly();
-    bisects_ = at_hand_.plainly && search.fits_patches() && !records && !surfaces_.empty() &&
-               walk_->hierarchy().facts().knows_patches;
+    const bool suits = walk_->function_count() > 0
+                           ? bisects_slices()
+                           : at_hand_.plainly && walk_->hierarchy().facts().knows_patches;
+    bisects_ = suits && search.fits_patches() && !records && !surfaces_.empty();
     at_hand_.loads_keys = options_->normals || options_->cap || options_->at_nodes ||
                           (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
@@ -84,6 +86,17 @@ template <int dimension, class Real>
 bool LevelSet<dimension, Real>::draws_plainly() const {
     return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->normals &&
            !options_->reference && !options_->at_nodes && options_->position_bounds == nullptr;
+}
+
+/// Whether slices by one affine function, and nothing else, are drawn, of a grid that bisects the
+/// function itself.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::bisects_slices() const {
+    if (!walk_->hierarchy().facts().bisects_means || !walk_->functions()->affine()) return false;
+    const bool slices_only = std::ranges::all_of(
+        search_->levels(), [&](const Level<Real>& level) { return search_->is_slice(level); });
+    return slices_only && !options_->cap && !options_->normals && !options_->reference &&
+           options_->position_bounds == nullptr;
 }
 
 template <int dimension, class Real>
@@ -186,13 +199,35 @@ void LevelSet<dimension, Real>::report_progress(std::uint64_t calls, std::uint64
 }
 
 /// Walks the bisections below an element in patches, where elements that stop conform and the
-/// options ask for vertices and triangles alone.
+/// options ask for vertices and triangles alone, or for a slice.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::takes(const View& view) {
-    if (!bisects_) return false;
-    const PatchTarget<dimension, Real> target{search_->levels(), surfaces_, &tally_, &deepest_};
+    if (!bisects_ || (walk_->function_count() > 0 && is_near_boundary(view))) return false;
+    const PatchTarget<dimension, Real> target{
+        search_->levels(), surfaces_, &tally_, &deepest_, at_hand_.cuts.attribute_count() > 0,
+        options_->at_nodes};
     draw_in_patches(*walk_, view, *search_, target, *this);
     return true;
+}
+
+/// Whether a face on the boundary lies so near to the slice by an affine function that faces below
+/// it may lie in the slice (boundary_in_slice), which walks in patches do not draw. On a face that
+/// is 2^-20 times as large and lies in the slice up to rounding, the function is less than 4 times
+/// its tolerance from 0, and on the whole face less than 2^22 times.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::is_near_boundary(const View& view) const {
+    const double near = 0x1p28 * walk_->functions()->tolerance(0);
+    const Topology& t = view.topology();
+    unsigned close = 0;
+    for (std::size_t k = 0; k < view.corner_count(); ++k) {
+        const auto value = static_cast<double>(view.value[k * walk_->components()]);
+        close |= unsigned{std::abs(value) <= near} << k;
+    }
+    unsigned faces = 0;
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        faces |= unsigned{signs_of(t.face[f], ~close) == 0} << f;
+    }
+    return faces != 0 && (faces & walk_->boundary(view)) != 0;
 }
 
 template <int dimension, class Real>

@@ -74,6 +74,8 @@ private:
     void load(const View& view, bool draws);
     unsigned boundary_in_slice(const View& view, const Level<Real>& level) const;
     bool draws_plainly() const;
+    bool bisects_slices() const;
+    bool is_near_boundary(const View& view) const;
     void report_progress(std::uint64_t calls, std::uint64_t visited) const;
     void tick(std::uint64_t calls, std::uint64_t visited) override {
         report_progress(calls, visited);

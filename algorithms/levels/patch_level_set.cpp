@@ -62,8 +62,19 @@ void draw_in_patches(const Walk<Real>& walk, const ElementView<Real>& view,
                      PatchCounts& counts) {
     PatchLevelSet<dimension, Real> visitor(search, target, counts);
     detail::ErasedBisectionVisitor<dimension, Real>& seam = visitor;
-    bisect(walk.hierarchy(), view.stack->task.get(), view.element(), view.value, view.level,
-           view.orientation, seam);
+    Task* const task = view.stack->task.get();
+    if (walk.function_count() == 0) {
+        return bisect(walk.hierarchy(), task, view.element(), view.value, view.level,
+                      view.orientation, seam);
+    }
+    if constexpr (dimension == 3 && std::is_same_v<Real, double>) {
+        std::array<double, 4> values{};
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            values[k] = view.value[k * walk.components()];
+        }
+        bisect_means(walk.hierarchy(), task, view.element(), values.data(),
+                     walk.functions()->tolerance(0), view.level, view.orientation, seam);
+    }
 }
 
 template void draw_in_patches(const Walk<float>&, const ElementView<float>&,

@@ -25,7 +25,8 @@ protected:
 };
 
 /// Draws level sets in the bisections below an element, which it walks in patches. Each bit is that
-/// of the general walk. Requires LevelSearch::fits_patches() and facts().knows_patches.
+/// of the general walk. Requires LevelSearch::fits_patches() and facts().knows_patches or, for
+/// slices by one affine function, facts().bisects_means.
 template <int dimension, class Real>
 void draw_in_patches(const Walk<Real>& walk, const ElementView<Real>& view,
                      const LevelSearch<Real>& search, const PatchTarget<dimension, Real>& target,

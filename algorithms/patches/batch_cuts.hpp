@@ -16,6 +16,12 @@
 
 namespace nestgrid {
 
+/// Where a level set cuts edges.
+struct CutLevel {
+    double value;
+    double least_fraction;  ///< the least distance from both ends, in lengths of the edge
+};
+
 /// An edge between two places of a batch.
 struct BatchEdge {
     std::uint16_t low;   ///< the place where U < isovalue
@@ -28,12 +34,14 @@ namespace detail {
 /// \param low, high positions of its ends
 template <class Batch>
 NESTGRID_INLINE WidePoint cut_between(const Batch& batch, const BatchEdge& edge, const Point& low,
-                                      const Point& high, double isovalue) {
+                                      const Point& high, const CutLevel& cut) {
     const auto value = [&](std::size_t place) {
         return static_cast<double>(batch.values.all[place]);
     };
     const WidePoint a(low);
-    return a + cut_fraction(isovalue, value(edge.low), value(edge.high)) * (WidePoint(high) - a);
+    const double fraction = cut_fraction(cut.value, value(edge.low), value(edge.high),
+                                         cut.least_fraction, 1 - cut.least_fraction);
+    return a + fraction * (WidePoint(high) - a);
 }
 
 /// Cuts edges in packs.
@@ -41,13 +49,13 @@ NESTGRID_INLINE WidePoint cut_between(const Batch& batch, const BatchEdge& edge,
 /// \param edges their number is a multiple of doubles_at_once
 template <class Batch, class Positions>
 NESTGRID_INLINE void cut_in_packs(const Batch& batch, const Positions& positions,
-                                  std::span<const BatchEdge> edges, double isovalue,
+                                  std::span<const BatchEdge> edges, const CutLevel& cut,
                                   WidePoint* to) {
     using Numbers = Pack<double, doubles_at_once>;
     using Nodes = Pack<typename Batch::Node, doubles_at_once>;
-    const auto value = Numbers::all(isovalue);
-    const auto least = Numbers::all(least_cut_fraction);
-    const auto most = Numbers::all(1 - least_cut_fraction);
+    const auto value = Numbers::all(cut.value);
+    const auto least = Numbers::all(cut.least_fraction);
+    const auto most = Numbers::all(1 - cut.least_fraction);
     for (const BatchEdge* edge = edges.data(); edge != edges.data() + edges.size();
          edge += doubles_at_once, to += doubles_at_once) {
         const auto values = [&](auto end) NESTGRID_INLINE_LAMBDA {
@@ -74,7 +82,7 @@ NESTGRID_INLINE void cut_in_packs(const Batch& batch, const Positions& positions
 
 /// Cuts edges, and asks the grid for rows of positions.
 template <class Batch>
-void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, double isovalue,
+void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, const CutLevel& cut,
                  WidePoint* to) {
     constexpr std::size_t at_once = 128;
     std::array<typename Batch::Node, 2 * at_once> of{};
@@ -87,7 +95,7 @@ void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, double is
         }
         batch.grid->positions(std::span(of).first(2 * count), std::span(x).first(2 * count));
         for (std::size_t i = 0; i < count; ++i) {
-            *to++ = cut_between(batch, edges[i], x[2 * i], x[2 * i + 1], isovalue);
+            *to++ = cut_between(batch, edges[i], x[2 * i], x[2 * i + 1], cut);
         }
         edges = edges.subspan(count);
     }
@@ -99,7 +107,7 @@ void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, double is
 /// whether the grid gives positions one by one, in packs or in rows.
 /// \param to has room for edges.size() points
 template <class Batch>
-void cut_edges(const Batch& batch, std::span<const BatchEdge> edges, double isovalue,
+void cut_edges(const Batch& batch, std::span<const BatchEdge> edges, const CutLevel& cut,
                WidePoint* to) {
     using Grid = std::remove_cvref_t<decltype(*batch.grid)>;
     if constexpr (PacksPositions<Grid>) {
@@ -109,18 +117,18 @@ void cut_edges(const Batch& batch, std::span<const BatchEdge> edges, double isov
         std::array<WidePoint, doubles_at_once> x;
         for (std::size_t i = 0; i < rest; ++i) last[i] = edges[whole.size() + i];
         batch.grid->template with_packed_positions<doubles_at_once>([&](const auto& positions) {
-            detail::cut_in_packs(batch, positions, whole, isovalue, to);
+            detail::cut_in_packs(batch, positions, whole, cut, to);
             if (rest == 0) return;
             std::fill(last.begin() + rest, last.end(), last[0]);
-            detail::cut_in_packs(batch, positions, last, isovalue, x.data());
+            detail::cut_in_packs(batch, positions, last, cut, x.data());
             std::copy_n(x.begin(), rest, to + whole.size());
         });
     } else if constexpr (AnswersInRows<Grid>) {
-        detail::cut_in_rows(batch, edges, isovalue, to);
+        detail::cut_in_rows(batch, edges, cut, to);
     } else {
         for (const BatchEdge& edge : edges) {
             *to++ = detail::cut_between(batch, edge, batch.position(edge.low),
-                                        batch.position(edge.high), isovalue);
+                                        batch.position(edge.high), cut);
         }
     }
 }

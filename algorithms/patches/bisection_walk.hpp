@@ -149,7 +149,13 @@ void BisectionWalk<Grid, Field, Visitor, whole>::bisect(Node n0, Node n1, Node n
         if (visit == Visit::skip) return;
         if (visit == Visit::stop) return extract<number>(n, u, path, bound);
         count_.bisect(1, *visitor_);
-        const Real uz = field_->template value_at<whole>(z, key);
+        const Real uz = [&]() NESTGRID_INLINE_LAMBDA -> Real {
+            if constexpr (GivesMeans<Field>) {
+                return field_->mean(u[rule.parent[0]], u[rule.parent[1]]);
+            } else {
+                return field_->template value_at<whole>(z, key);
+            }
+        }();
         unrolled<2>([&](auto c) NESTGRID_INLINE_LAMBDA {
             constexpr KnownBisection::Half half = rule.child[c];
             const auto node = [&](std::size_t i) {

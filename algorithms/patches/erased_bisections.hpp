@@ -11,6 +11,7 @@
 #include <nestgrid/detail/operations.hpp>
 #include <nestgrid/hierarchy.hpp>
 #include <patches/bisection_walk.hpp>
+#include <patches/mean_values.hpp>
 
 namespace nestgrid::detail {
 
@@ -22,7 +23,10 @@ public:
     static constexpr const auto& pattern = maubach_patch<dim>;
 
     virtual Point position(std::size_t place) const = 0;
-    virtual void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const = 0;
+    virtual void cuts(std::span<const BatchEdge> edges, const CutLevel& cut,
+                      WidePoint* to) const = 0;
+    /// Sets to[i] to what a vertex at places[i] carries, in a walk over MeanValues.
+    virtual void carried(std::span<const std::uint16_t> places, double* to) const = 0;
     virtual Handle element(std::size_t id, std::size_t part) const = 0;
     virtual unsigned boundary(std::size_t id, std::size_t part) const = 0;
 
@@ -97,13 +101,14 @@ protected:
 };
 
 /// A visitor for BisectionWalk that forwards all calls to an ErasedBisectionVisitor.
-template <HasMaubachPatches Grid, class Real>
+template <HasMaubachPatches Grid, class Field>
 class BisectionForwarder {
     static constexpr int dim = Grid::dimension;
+    using Real = typename Field::value_type;
 
 public:
-    BisectionForwarder(const Grid& grid, ErasedBisectionVisitor<dim, Real>& to)
-        : grid_{&grid}, to_{&to} {}
+    BisectionForwarder(const Field& field, ErasedBisectionVisitor<dim, Real>& to)
+        : field_{&field}, to_{&to} {}
 
     auto glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) {
         return to_->glance(lo, hi, rule, node, level, outside);
@@ -119,17 +124,36 @@ public:
     void expect(const NodeKey* nodes, std::size_t rows) const { to_->expect(nodes, rows); }
     template <class Batch>
     unsigned extract(const Batch& batch, const BatchSelection& selection) {
-        return to_->extract(Patches<Batch>(batch), selection);
+        return to_->extract(Patches<Batch>(batch, *field_), selection);
     }
 
 private:
     template <class Batch>
     struct Patches final : ErasedPatches<dim, Real> {
-        explicit Patches(const Batch& batch) : ErasedPatches<dim, Real>(batch), of{&batch} {}
+        Patches(const Batch& batch, const Field& on)
+            : ErasedPatches<dim, Real>(batch), of{&batch}, field{&on} {}
 
         Point position(std::size_t place) const override { return of->position(place); }
-        void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const override {
-            of->cuts(edges, isovalue, to);
+        void cuts(std::span<const BatchEdge> edges, const CutLevel& cut,
+                  WidePoint* to) const override {
+            of->cuts(edges, cut, to);
+        }
+        void carried(std::span<const std::uint16_t> places, double* to) const override {
+            if constexpr (GivesMeans<Field>) {
+                constexpr std::size_t at_once = 128;
+                std::array<typename Grid::Node, at_once> some;
+                std::array<NodeKey, at_once> names;
+                for (; !places.empty(); places = places.subspan(std::min(places.size(), at_once))) {
+                    const std::size_t count = std::min(places.size(), at_once);
+                    for (std::size_t i = 0; i < count; ++i) {
+                        some[i] = of->nodes.all[places[i]];
+                        names[i] = of->keys.all[places[i]];
+                    }
+                    field->carried().values_at(std::span(some).first(count),
+                                               std::span(names).first(count), {to, count});
+                    to += count;
+                }
+            }
         }
         Handle element(std::size_t id, std::size_t part) const override {
             Handle handle;
@@ -141,9 +165,10 @@ private:
         }
 
         const Batch* of;
+        const Field* field;
     };
 
-    const Grid* grid_;
+    const Field* field_;
     ErasedBisectionVisitor<dim, Real>* to_;
 };
 
@@ -152,7 +177,7 @@ template <class Grid, class Field, class Real>
 void walk_for(ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid& grid,
               const Field& field, const ElementOf<Grid>& e, const Real* values, int level,
               int orientation) {
-    BisectionForwarder<Grid, Real> forward(grid, visitor);
+    BisectionForwarder<Grid, Field> forward(field, visitor);
     walk_bisections(grid, field, forward, e, values, level, orientation,
                     [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
 }

@@ -31,6 +31,8 @@
 //     template <bool whole> value_type value_at(Node, NodeKey)
 //                                                   the value at a node; `whole` is true only
 //                                                   where whole() is
+// or, where values at new nodes are means of those at their parents,
+//     value_type mean(value_type a, value_type b)   of Packs of values, too (mean_values.hpp)
 //
 // The grid may also offer patches (bisection_patch.hpp), which the engine walks side by side
 // (patch_walk.hpp):

@@ -208,8 +208,8 @@ struct PatchBatch {
     NESTGRID_INLINE bool mirrored(std::size_t id) const { return orientations[id] != 0; }
     /// Sets to[i] to the point at which a level set cuts edges[i].
     /// \param to has room for edges.size() points
-    void cuts(std::span<const BatchEdge> edges, double isovalue, WidePoint* to) const {
-        cut_edges(*this, edges, isovalue, to);
+    void cuts(std::span<const BatchEdge> edges, const CutLevel& cut, WidePoint* to) const {
+        cut_edges(*this, edges, cut, to);
     }
     Point position(std::size_t place) const { return grid->position(nodes.all[place]); }
     /// A part of the patch with this id, or the single element with it, whatever `part` is.

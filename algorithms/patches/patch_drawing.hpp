@@ -25,7 +25,9 @@ struct PatchTarget {
     std::span<const Level<Real>> levels;
     std::span<LevelSurface<dimension>> surfaces;
     SimplexTally* tally;
-    int* deepest;  ///< depth of the deepest element drawn so far
+    int* deepest;           ///< depth of the deepest element drawn so far
+    bool carries = false;   ///< whether vertices carry a value (mean_values.hpp)
+    bool at_nodes = false;  ///< whether to tell the surfaces which vertices lie at nodes
 };
 
 /// Draws one selection from a batch.
@@ -169,6 +171,7 @@ private:
                                           std::span<const Number>(v).first(run.cut_count),
                                           run.simplices());
         if (surface_->names_vertices()) put_boundaries(run.cuts(), v.data());
+        if (target_->at_nodes) put_at_nodes(run.cuts(), v.data());
         surface_->builder().flush_if_full();
     }
 
@@ -278,6 +281,9 @@ private:
     void find_vertices(std::span<const BatchEdge> cuts, Number* v);
     void make_vertices(std::span<const BatchEdge> cuts, Number* v);
     void add_vertices(std::span<const BatchEdge> cuts);
+    void carry(std::span<const BatchEdge> cuts, double* to) const;
+    void put_at_nodes(std::span<const BatchEdge> cuts, const Number* v);
+    CutLevel cut_level() const { return {level_->value, level_->least_fraction}; }
     void verify_vertices(std::span<const BatchEdge> cuts, const Number* v);
 
     const Target* target_;

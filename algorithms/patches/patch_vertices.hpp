@@ -84,10 +84,17 @@ template <int dimension, class Real, class Patches>
 NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
     std::span<const BatchEdge> cuts) {
     std::array<WidePoint, Run::most_cuts> x;
-    patches_->cuts(cuts, level_->value, x.data());
+    patches_->cuts(cuts, cut_level(), x.data());
+    std::array<double, Run::most_cuts> carried;
+    if (target_->carries) carry(cuts, carried.data());
+    const auto attributes = [&](std::size_t i) -> std::span<const double> {
+        return {carried.data() + i, target_->carries ? 1U : 0U};
+    };
     auto& builder = surface_->builder();
     if (!builder.lists_shared()) {
-        for (std::size_t i = 0; i < cuts.size(); ++i) builder.add_vertex(Point(x[i]), {});
+        for (std::size_t i = 0; i < cuts.size(); ++i) {
+            builder.add_vertex(Point(x[i]), attributes(i));
+        }
         return;
     }
     const NodeKey* const key = patches_->keys[0];
@@ -96,10 +103,46 @@ NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const auto& [low, high] = cuts[i];
         if (is_within_root(in_subtree[low], in_subtree[high])) {
-            builder.add_vertex(Point(x[i]), {});
+            builder.add_vertex(Point(x[i]), attributes(i));
         } else {
-            builder.add_shared({key[low], key[high]}, not_asked_for, Point(x[i]), {});
+            builder.add_shared({key[low], key[high]}, not_asked_for, Point(x[i]), attributes(i));
         }
+    }
+}
+
+/// Sets to[i] to the value that the vertex on cuts[i] carries.
+template <int dimension, class Real, class Patches>
+NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::carry(
+    std::span<const BatchEdge> cuts, double* to) const {
+    std::array<std::uint16_t, 2 * Run::most_cuts> places;
+    std::array<double, 2 * Run::most_cuts> at;
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        places[2 * i] = cuts[i].low;
+        places[2 * i + 1] = cuts[i].high;
+    }
+    patches_->carried(std::span(places).first(2 * cuts.size()), at.data());
+    const Real* const value = patches_->values[0];
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        const double fraction = level_->fraction(static_cast<double>(value[cuts[i].low]),
+                                                 static_cast<double>(value[cuts[i].high]));
+        to[i] = at[2 * i] + fraction * (at[2 * i + 1] - at[2 * i]);
+    }
+}
+
+/// Tells the surface which of the cuts' vertices lie at nodes.
+template <int dimension, class Real, class Patches>
+NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::put_at_nodes(
+    std::span<const BatchEdge> cuts, const Number* v) {
+    const Real* const value = patches_->values[0];
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        const std::uint16_t node = cuts[i].high;
+        if (static_cast<double>(value[node]) != level_->value || surface_->is_at_node(v[i])) {
+            continue;
+        }
+        double carried = 0;
+        if (target_->carries) patches_->carried(std::span(&node, 1), &carried);
+        surface_->put_at_node(v[i], {patches_->keys[0][node], patches_->position(node)},
+                              {&carried, target_->carries ? 1U : 0U});
     }
 }
 
@@ -108,7 +151,7 @@ template <int dimension, class Real, class Patches>
 NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::verify_vertices(
     std::span<const BatchEdge> cuts, const Number* v) {
     std::array<WidePoint, Run::most_cuts> x;
-    patches_->cuts(cuts, level_->value, x.data());
+    patches_->cuts(cuts, cut_level(), x.data());
     for (std::size_t i = 0; i < cuts.size(); ++i) surface_->verify(v[i], Point(x[i]));
 }
 

@@ -13,6 +13,7 @@
 
 #include <cstring>
 
+#include <patches/mean_values.hpp>
 #include <patches/patch_batch.hpp>
 
 namespace nestgrid {
@@ -145,6 +146,7 @@ private:
                       const Middle& middle);
     void halve_keys(const Batch& batch, std::size_t node, std::size_t first, std::size_t end,
                     NodeKey* middles) const;
+    void halve_values(Batch& batch, std::size_t node, std::size_t first, std::size_t end) const;
     void make_nodes(Batch& batch) const;
     void ask_for_nodes(Batch& batch) const;
     NESTGRID_INLINE void expect(const NodeKey* keys, std::size_t rows = 1) const {

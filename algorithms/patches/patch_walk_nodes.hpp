@@ -58,6 +58,18 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve_keys(const Batch& ba
               });
 }
 
+/// Sets the value at `node` of patches first ... end - 1 to the mean of those at its parents.
+template <class Grid, class Field, class Visitor>
+NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::halve_values(Batch& batch, std::size_t node,
+                                                                   std::size_t first,
+                                                                   std::size_t end) const {
+    const auto& [from, to] = pattern_.parent[node];
+    halve(batch.values[from], batch.values[to], batch.values[node], first, end,
+          [&](const auto& a, const auto& b) NESTGRID_INLINE_LAMBDA -> decltype(field_->mean(a, b)) {
+              return field_->mean(a, b);
+          });
+}
+
 /// Makes the new nodes of all patches but those of the ends, with keys and values, eight patches
 /// at once.
 template <class Grid, class Field, class Visitor>
@@ -83,10 +95,14 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
         expect(batch.keys[unseen] + first, pattern_.nodes - unseen);
     }
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
-        Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
-            return field_->template value_at<!TellsWhereWhole<Grid>>(batch.nodes[at][first + b],
-                                                                     batch.keys[at][first + b]);
-        }).store(batch.values[at] + first);
+        if constexpr (GivesMeans<Field>) {
+            halve_values(batch, at, first, first + pack);
+        } else {
+            Pack<Real>::make([&](auto b) NESTGRID_INLINE_LAMBDA {
+                return field_->template value_at<!TellsWhereWhole<Grid>>(batch.nodes[at][first + b],
+                                                                         batch.keys[at][first + b]);
+            }).store(batch.values[at] + first);
+        }
     });
 }
 
@@ -103,7 +119,11 @@ void PatchWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
         }
     }
     for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
-        field_->values_at(row(batch.nodes[at]), row(batch.keys[at]), row(batch.values[at]));
+        if constexpr (GivesMeans<Field>) {
+            halve_values(batch, at, 0, packed(batch.count));
+        } else {
+            field_->values_at(row(batch.nodes[at]), row(batch.keys[at]), row(batch.values[at]));
+        }
     }
 }
 

@@ -13,6 +13,7 @@
 #include <nestgrid/standard_rules.hpp>
 #include <patches/erased_bisections.hpp>
 #include <patches/known_bisection.hpp>
+#include <patches/mean_values.hpp>
 
 namespace nestgrid::engine {
 
@@ -137,11 +138,30 @@ private:
     const detail::BisectionRows<Real>* rows_;
 };
 
+/// Values that the hierarchy tells, as those that vertices carry.
+template <class Grid>
+class ToldCarriedValues final : public CarriedValues<Grid> {
+public:
+    explicit ToldCarriedValues(const detail::BisectionRows<double>& rows) : rows_{&rows} {}
+
+    void values_at(std::span<const typename Grid::Node> nodes, std::span<const NodeKey> keys,
+                   std::span<double> out) const override {
+        rows_->values(nodes, keys, out);
+    }
+
+private:
+    const detail::BisectionRows<double>* rows_;
+};
+
 /// Walks the bisections below an element in patches: by the rows that the hierarchy tells or, where
 /// it tells none, by its own bisect(). Requires facts().knows_patches.
 /// \throw GridError where the element has a tag that does not exist
 template <int dim, class Real>
 void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element, const Real* values,
             int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
+/// Does so for a function of position (Hierarchy::bisect_means). Requires facts().bisects_means.
+void bisect_means(const Hierarchy<double>& hierarchy, Task* task, const Handle& element,
+                  const double* values, double tolerance, int level, int orientation,
+                  detail::ErasedBisectionVisitor<3, double>& visitor);
 
 }  // namespace nestgrid::engine

@@ -86,10 +86,14 @@ public:
     /// their numbers.
     void add_part(const SurfacePart<dimension>& part, const VerticesAtNodes& at_nodes = {});
 
+    /// Whether it was noted that a vertex lies at a node.
+    bool is_at_node(Number vertex) const {
+        return vertex < is_at_node_.size() && is_at_node_[vertex];
+    }
     /// Notes that a vertex lies at a node, unless this is known.
     void put_at_node(Number vertex, const NodePlace& node, std::span<const double> attributes) {
+        if (is_at_node(vertex)) return;
         if (is_at_node_.size() <= vertex) is_at_node_.resize(vertex + std::size_t{1}, false);
-        if (is_at_node_[vertex]) return;
         is_at_node_[vertex] = true;
         at_nodes_.vertex.push_back(vertex);
         at_nodes_.node.push_back(node);

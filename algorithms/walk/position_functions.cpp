@@ -86,6 +86,7 @@ struct WidenedHierarchy<Real>::WidenedTask final : Task {
 namespace {
 
 HierarchyFacts widened(HierarchyFacts facts, std::size_t front) {
+    facts.bisects_means = facts.bisects_means && front == 1 && facts.components == 1;
     facts.components += static_cast<int>(front);
     facts.features &= ~static_cast<unsigned>(Feature::gradients);
     facts.knows_stars = facts.knows_star_positions = facts.knows_patches = false;
@@ -100,7 +101,35 @@ WidenedHierarchy<Real>::WidenedHierarchy(const Hierarchy<Real>& inner,
     : Hierarchy<double>(widened(inner.facts(), components_in_front)),
       inner_{&inner},
       front_{components_in_front},
-      inner_components_{static_cast<std::size_t>(inner.facts().components)} {}
+      inner_components_{static_cast<std::size_t>(inner.facts().components)} {
+    const auto* const rows = inner.bisection_rows();
+    if (this->facts().bisects_means && rows != nullptr) rows_.emplace(*rows);
+}
+
+template <class Real>
+void WidenedHierarchy<Real>::Rows::values(std::span<const Node> nodes,
+                                          std::span<const NodeKey> keys,
+                                          std::span<double> out) const {
+    if constexpr (std::is_same_v<Real, double>) {
+        inner_->values(nodes, keys, out);
+    } else {
+        std::array<Real, 64> some;
+        for (std::size_t first = 0; first < out.size(); first += some.size()) {
+            const std::size_t count = std::min(some.size(), out.size() - first);
+            inner_->values(nodes.subspan(first, count), keys.subspan(first, count),
+                           std::span(some).first(count));
+            std::copy_n(some.begin(), count, out.begin() + static_cast<std::ptrdiff_t>(first));
+        }
+    }
+}
+
+template <class Real>
+void WidenedHierarchy<Real>::bisect_means(
+    Task* task, const Handle& element, const double* values, double tolerance, int level,
+    int orientation, detail::ErasedBisectionVisitor<3, double>& visitor) const {
+    inner_->bisect_means(own(task).inner.get(), element, values, tolerance, level, orientation,
+                         visitor);
+}
 
 template <class Real>
 auto WidenedHierarchy<Real>::own(Task* task) -> WidenedTask& {

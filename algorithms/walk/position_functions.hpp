@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,7 @@ public:
     double rounded(std::size_t component, double value) const {
         return std::abs(value) <= tolerance_[component] ? 0 : value;
     }
+    double tolerance(std::size_t component) const { return tolerance_[component]; }
     /// Puts the values at a position, component by component.
     /// \throw InvalidInput where one is not a finite number
     template <class Real>
@@ -103,9 +105,36 @@ public:
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         return inner_->hanging_parents(node);
     }
+    const detail::BisectionRows<double>* bisection_rows() const override {
+        return rows_ ? &*rows_ : nullptr;
+    }
+    void bisect_means(Task* task, const Handle& element, const double* values, double tolerance,
+                      int level, int orientation,
+                      detail::ErasedBisectionVisitor<3, double>& visitor) const override;
 
 private:
     struct WidenedTask;
+    /// The rows of the inner hierarchy, with the field's values alone.
+    class Rows final : public detail::BisectionRows<double> {
+    public:
+        explicit Rows(const detail::BisectionRows<Real>& inner) : inner_{&inner} {}
+
+        void middles(std::span<const Node> a, std::span<const Node> b,
+                     std::span<Node> out) const override {
+            inner_->middles(a, b, out);
+        }
+        void keys(std::span<const Node> nodes, std::span<NodeKey> out) const override {
+            inner_->keys(nodes, out);
+        }
+        void positions(std::span<const Node> nodes, std::span<Point> out) const override {
+            inner_->positions(nodes, out);
+        }
+        void values(std::span<const Node> nodes, std::span<const NodeKey> keys,
+                    std::span<double> out) const override;
+
+    private:
+        const detail::BisectionRows<Real>* inner_;
+    };
 
     static WidenedTask& own(Task* task);
     void give_corners(const Rule& rule, const double* from, Real* to) const;
@@ -113,6 +142,7 @@ private:
     void copy(const Real* from, std::size_t nodes, double* to) const;
 
     const Hierarchy<Real>* inner_;
+    std::optional<Rows> rows_;
     std::size_t front_;
     std::size_t inner_components_;
 };

@@ -86,6 +86,7 @@ struct HierarchyFacts {
     bool knows_stars = false;           ///< star_rows() and row_values() work
     bool knows_star_positions = false;  ///< star_rows() and node_position() work
     bool knows_patches = false;         ///< bisection_rows() or bisect() work
+    bool bisects_means = false;         ///< bisection_rows() or bisect_means() work
     bool fills_rows = false;            ///< every node is in a star row
     bool decodes = false;               ///< values at new nodes need those at the corners
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
@@ -193,6 +194,12 @@ public:
                         int orientation, detail::ErasedBisectionVisitor<2, Real>& visitor) const;
     virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
                         int orientation, detail::ErasedBisectionVisitor<3, Real>& visitor) const;
+    /// Does so for a function of position in the place of the field, where facts().bisects_means.
+    /// \param values of the function at the corners. At a new node it is the mean of its values at
+    ///        the parents, or 0 where the mean is within `tolerance` of 0
+    virtual void bisect_means(Task* task, const Handle& element, const double* values,
+                              double tolerance, int level, int orientation,
+                              detail::ErasedBisectionVisitor<3, double>& visitor) const;
 
 protected:
     explicit Hierarchy(const HierarchyFacts& facts) : facts_{facts} { detail::require_same_keys(); }
@@ -218,5 +225,8 @@ void Hierarchy<Real>::bisect(Task*, const Handle&, const Real*, int, int,
 template <class Real>
 void Hierarchy<Real>::bisect(Task*, const Handle&, const Real*, int, int,
                              detail::ErasedBisectionVisitor<3, Real>&) const {}
+template <class Real>
+void Hierarchy<Real>::bisect_means(Task*, const Handle&, const double*, double, int, int,
+                                   detail::ErasedBisectionVisitor<3, double>&) const {}
 
 }  // namespace nestgrid

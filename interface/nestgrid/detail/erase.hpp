@@ -224,6 +224,14 @@ public:
         }
     }
     using Hierarchy<Real>::bisect;
+    void bisect_means(Task* /*task*/, const Handle& element, const double* values, double tolerance,
+                      int level, int orientation,
+                      ErasedBisectionVisitor<3, double>& visitor) const override {
+        if constexpr (bisects_means_) {
+            bisect_patches_of_means(*grid_, *field_, element_of<Element>(element), values,
+                                    tolerance, level, orientation, visitor);
+        }
+    }
 
 private:
     static constexpr auto components_ = static_cast<std::size_t>(components_of<Field>());
@@ -239,6 +247,12 @@ private:
         const Real* values, ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) {
         { knows_patches(grid, field, HierarchyFacts{}) } -> std::same_as<bool>;
         bisect_patches(grid, field, context, e, values, 0, 1, visitor);
+    };
+
+    static constexpr bool bisects_means_ =
+        requires(const Grid& grid, const Field& field, const Element& e, const double* values,
+                 ErasedBisectionVisitor<3, double>& visitor) {
+        bisect_patches_of_means(grid, field, e, values, 0.0, 0, 1, visitor);
     };
 
     struct OpenTask final : Task {
@@ -273,6 +287,7 @@ private:
             facts.knows_star_positions = nestgrid::knows_stars(grid);
         }
         if constexpr (may_know_patches_) facts.knows_patches = knows_patches(grid, field, facts);
+        facts.bisects_means = bisects_means_;
         return facts;
     }
 

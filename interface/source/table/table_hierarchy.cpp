@@ -33,6 +33,7 @@ public:
         if (facts.offers(Feature::dense_keys)) facts.node_count = grid_.node_count();
         facts.conforming = grid_.conforming();
         facts.knows_patches = tells_rows();
+        facts.bisects_means = tells_rows() && facts.dimension == 3;
     }
 
     std::size_t coarse_count() const override { return grid_.coarse_count(); }

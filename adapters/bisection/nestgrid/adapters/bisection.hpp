@@ -203,6 +203,13 @@ void bisect_patches(const LatticeBisection<dim>& grid,
                     const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext& context,
                     const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
                     int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
+/// Hierarchy::bisect_means() of a lattice, likewise.
+template <WalkedInPatches Sample>
+void bisect_patches_of_means(const LatticeBisection<3>& grid,
+                             const LatticeField<LatticeBisection<3>, Sample>& field,
+                             const LatticeBisection<3>::Element& e, const double* values,
+                             double tolerance, int level, int orientation,
+                             detail::ErasedBisectionVisitor<3, double>& visitor);
 
 }  // namespace nestgrid
 
