@@ -8,6 +8,7 @@
 #include <nestgrid/algorithms/isosurface.h>
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/table.hpp>
 
 #include "refusal.hpp"
@@ -143,6 +144,28 @@ TEST_F(ToldBisections, GiveTheSurfaceOfThePlainTraversal) {
             expect_same(told, draw(values.isovalue, options));
             expect_same(told, isosurface(lattice, lattice_field, values.isovalue, options));
             show(values);
+        }
+    }
+}
+
+TEST_F(ToldBisections, GiveTheSlicesOfThePlainTraversal) {
+    for (const SampledField& values : data) {
+        show(values);
+        for (const Plane& plane : {Plane({8, 8, 8}, {0, 0, 1}), Plane({7, 8, 8}, {0.3, 0.5, 0.8}),
+                                   Plane({8, 8, 8}, {1, 1, 1}), Plane({16, 0, 0}, {-1, 0, 0})}) {
+            for (const double threshold : {0.0, 0.05}) {
+                const IsosurfaceOptions options{.threshold = threshold * values.range};
+                const auto draw_slice = [&] {
+                    return slice(*open_table<float>(grid, field), plane, options);
+                };
+                const Slice told = draw_slice();
+                EXPECT_GT(told.surface.simplices.size(), 0U);
+                grid.middles = nullptr;
+                const Slice plain = draw_slice();
+                expect_same(told.surface, plain.surface);
+                EXPECT_EQ(told.error_bound, plain.error_bound);
+                show(values);
+            }
         }
     }
 }
