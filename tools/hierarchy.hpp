@@ -16,6 +16,25 @@
 #include <nestgrid/adapters/red_green.hpp>
 #include <nestgrid/adapters/stored_file.hpp>
 
+// What is compiled once for all families, in stored_families.cpp.
+#define NESTGRID_STORED_FAMILY(prefix, ...)                                          \
+    prefix template nestgrid::StoredHierarchy<__VA_ARGS__> nestgrid::read_hierarchy( \
+        const std::filesystem::path&, nestgrid::Encoded);                            \
+    prefix template void nestgrid::write_hierarchy(                                  \
+        const nestgrid::StoredGrid<__VA_ARGS__>&, const std::filesystem::path&,      \
+        const std::vector<nestgrid::NamedField>&, const nestgrid::StoredFileOptions&);
+#define NESTGRID_STORED_FAMILIES(prefix)                     \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::Bisection<2>)   \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::Bisection<3>)   \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::RedGreen<2, 3>) \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::RedGreen<2, 4>) \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::RedGreen<3, 4>) \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::RedGreen<3, 8>) \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::Octree<2>)      \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::Octree<3>)      \
+    NESTGRID_STORED_FAMILY(prefix, nestgrid::Prism)
+NESTGRID_STORED_FAMILIES(extern)
+
 /// Whether a file is called like a hierarchy.
 inline bool is_hierarchy(const std::filesystem::path& path) {
     return path.extension() == ".nestgrid";
