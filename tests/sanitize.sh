@@ -2,13 +2,14 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Builds everything, the program and the solvers' adapters included, with each of the presets asan,
-# tsan and tidy, and runs the tests of the first two. Ends with one line a preset: what it did and
+# Builds everything, the program, the solvers' adapters, Python and the page included, with each of
+# the presets asan, tsan and tidy, and runs the tests of the first two. Ends with one line a preset: what it did and
 # how long it took. Arguments name presets; without any, all three run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/packages.sh
-need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}" clang-tidy
+need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}" \
+    "${python_packages[@]}" "${python_test_packages[@]}" "${view_packages[@]}" clang-tidy
 
 # OpenMPI keeps memory in plugins that it unloads, so that nobody can name who leaks.
 # What cannot be allocated throws std::bad_alloc, as it does without the sanitizers.

@@ -187,7 +187,7 @@ SampleLayout raw_layout(const fs::path& path, const RawFormat& raw) {
     layout.geometry.samples = raw.dims;
     std::copy(raw.spacing.begin(), raw.spacing.end(), layout.geometry.spacing.begin());
     layout.big_endian = raw.big_endian;
-    double expected = static_cast<double>(size);
+    auto expected = static_cast<double>(size);
     for (const int n : raw.dims) expected *= n;
     const std::uintmax_t found = fs::file_size(path);
     if (static_cast<double>(found) != expected) {

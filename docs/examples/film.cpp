@@ -38,7 +38,7 @@ CoarseGrid cube() {
     CoarseGrid grid;
     std::vector<Point> corners;
     for (unsigned k = 0; k < 8; ++k)
-        corners.push_back({1.0 * (k & 1U), k / 2 % 2 * 1.0, k / 4 * 1.0});
+        corners.push_back({1.0 * (k & 1U), 1.0 * (k >> 1U & 1U), 1.0 * (k >> 2U)});
     grid.nodes = Coordinates(std::move(corners));
     grid.add(Shape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7});
     return grid;

@@ -160,7 +160,7 @@ std::string complaint(const Run& run, const std::string& output) {
 /// Files that the program leaves behind.
 std::string litter(const std::vector<std::string>& expected) {
     for (const auto& entry : fs::directory_iterator(".")) {
-        const std::string name = entry.path().filename().string();
+        std::string name = entry.path().filename().string();
         if (std::find(expected.begin(), expected.end(), name) == expected.end()) return name;
     }
     return "";

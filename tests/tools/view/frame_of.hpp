@@ -29,7 +29,7 @@ public:
         return std::stod(text_.substr(behind("\"" + name + "\":", part(kind))));
     }
     bool has(const std::string& kind) const {
-        return text_.find("\"kind\":\"" + kind + "\"") != std::string::npos;
+        return text_.find(R"("kind":")" + kind + "\"") != std::string::npos;
     }
     template <class Number>
     std::vector<Number> array(const std::string& kind, const std::string& name) const {
@@ -48,7 +48,7 @@ public:
 
 private:
     std::size_t part(const std::string& kind) const {
-        return kind.empty() ? 0 : behind("\"kind\":\"" + kind + "\"", 0);
+        return kind.empty() ? 0 : behind(R"("kind":")" + kind + "\"", 0);
     }
     std::size_t behind(const std::string& what, std::size_t from) const {
         const std::size_t found = text_.find(what, from);

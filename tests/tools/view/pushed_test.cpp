@@ -346,7 +346,7 @@ TEST(Pushed, OthersAreRefusedAndThePageLivesOn) {
 TEST(Pushed, WrongSurfacesAreRefusedWithASentence) {
     Page page;
     page.push(strip(5, 1));
-    const auto push = [&](const auto& spoil, view::PushOptions options = {}) {
+    const auto push = [&](const auto& spoil, const view::PushOptions& options = {}) {
         return [&page, spoil, options] {
             Surface<3> surface = strip(5, 2);
             spoil(surface);

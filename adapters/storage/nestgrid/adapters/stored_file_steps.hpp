@@ -10,9 +10,7 @@
 
 #include <boost/crc.hpp>
 
-namespace nestgrid {
-
-namespace detail {
+namespace nestgrid::detail {
 
 static_assert(std::endian::native == std::endian::little, "the file format is little-endian");
 
@@ -267,9 +265,7 @@ private:
     std::vector<bool> used_;
 };
 
-}  // namespace detail
-
-}  // namespace nestgrid
+}  // namespace nestgrid::detail
 
 #include <nestgrid/adapters/stored_values_steps.hpp>
 

@@ -19,6 +19,9 @@
 
 namespace nestgrid {
 
+// Functions are called as those of VTK.
+// NOLINTBEGIN(readability-identifier-naming)
+
 /// A source without input. Its indicator is computed on the first update that needs one, and again
 /// when the grid says by its epoch that it has changed; where values change on the same grid, call
 /// InvalidateField(). Failures are reported as errors of the algorithm, with an empty output.
@@ -101,5 +104,7 @@ private:
     std::uint64_t drawn_epoch_ = 0;
     double threshold_ = 0;
 };
+
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace nestgrid

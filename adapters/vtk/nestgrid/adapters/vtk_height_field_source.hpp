@@ -9,6 +9,9 @@
 
 namespace nestgrid {
 
+// Functions are called as those of VTK.
+// NOLINTBEGIN(readability-identifier-naming)
+
 /// The grid as a conforming triangulation, lifted along z by a scale times component 0.
 class HeightFieldSource : public GridSource {
 public:
@@ -38,5 +41,7 @@ protected:
 private:
     double scale_ = 1;
 };
+
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace nestgrid

@@ -10,6 +10,9 @@
 
 namespace nestgrid {
 
+// Functions are called as those of VTK.
+// NOLINTBEGIN(readability-identifier-naming)
+
 /// The isosurface of component 0. The threshold is not used beside a maximum number of triangles.
 class IsosurfaceSource : public GridSource {
 public:
@@ -20,15 +23,14 @@ public:
     /// \param attributes names of components 1 ... of the field
     template <class Grid, class Field>
     void SetGrid(const Grid& grid, const Field& field, std::vector<std::string> attributes = {}) {
-        constexpr int dimension = Grid::dimension;
         set_grid(grid, field, [this, attributes](const auto& hierarchy, const auto& indicator) {
             IsosurfaceOptions options = options_;
             options.threshold = GetThreshold();
-            PolyDataSink<dimension> sink(attributes);
-            extract_isosurfaces<dimension>(
+            PolyDataSink<Grid::dimension> sink(attributes);
+            extract_isosurfaces<Grid::dimension>(
                 hierarchy, std::span<const double>(&isovalue_, 1), std::vector{sink},
-                criterion_for<dimension>(hierarchy, isovalue_, indicator(), options), indicator(),
-                options);
+                criterion_for<Grid::dimension>(hierarchy, isovalue_, indicator(), options),
+                indicator(), options);
             return vtkSmartPointer<vtkPolyData>(sink.data());
         });
     }
@@ -52,5 +54,7 @@ private:
     double isovalue_ = 0;
     IsosurfaceOptions options_;
 };
+
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace nestgrid

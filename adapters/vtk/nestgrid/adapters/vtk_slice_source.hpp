@@ -25,6 +25,9 @@ private:
     vtkImplicitFunction* function_;
 };
 
+// Functions are called as those of VTK.
+// NOLINTBEGIN(readability-identifier-naming)
+
 /// The slice along the plane through an origin across a normal, or where a function of VTK is 0;
 /// oriented towards where the function is negative. At threshold 0 it needs no indicator.
 /// The threshold is not used beside a maximum number of triangles.
@@ -100,5 +103,7 @@ private:
     vtkSmartPointer<vtkImplicitFunction> function_;
     IsosurfaceOptions options_;
 };
+
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace nestgrid
