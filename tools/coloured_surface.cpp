@@ -67,13 +67,27 @@ void check(const ColouredSurface& what, const SurfaceOptions& options,
             "the field is one in space: give a slice, for isolines, or use 'isosurface'");
     }
     facts.require_dimension(in_space ? 3 : 2);
-    if (!in_space && !options.budgets.empty()) {
-        throw nestgrid::InvalidInput("--max-triangles is for grids of dimension 3");
-    }
     if (what.colour_tolerance > 0 && !options.budgets.empty()) {
         throw nestgrid::InvalidInput("--max-triangles excludes --colour-tolerance");
     }
 }
+
+/// Counts triangles, and keeps none.
+class TriangleCounter final : public nestgrid::SimplexSink<3> {
+public:
+    struct Exceeded {};
+
+    /// \param most take() throws Exceeded where there are more
+    TriangleCounter(std::uint64_t& count, std::uint64_t most) : count_{&count}, most_{most} {}
+    void take(const nestgrid::Surface<3>& part) override {
+        *count_ += part.simplices.size();
+        if (*count_ > most_) throw Exceeded{};
+    }
+
+private:
+    std::uint64_t* count_;
+    std::uint64_t most_;
+};
 
 /// Draws the surfaces at one moment.
 template <class Real>
@@ -144,21 +158,45 @@ private:
             refine_colours(surface, hierarchy_, what_.colour_tolerance, with...);
         }
     }
-    /// The least threshold at which the slice, or the isosurface, keeps within a number of
-    /// triangles.
+    /// The least threshold at which the surface keeps within a number of triangles.
     template <class CriterionAt>
     double threshold_for(std::uint64_t budget, const CriterionAt& criterion_at) const {
         const nestgrid::IsosurfaceOptions options{.cap = what_.cap};
         return moment_.indicators().with_offsets([&](const auto& offsets) {
+            if (what_.isovalue && what_.function != nullptr) {
+                return nestgrid::least_threshold(
+                           [&](double threshold, std::uint64_t most) {
+                               return count_both(criterion_at(threshold), most);
+                           },
+                           offsets.greatest() - offsets.least(), budget)
+                    .threshold;
+            }
             if (what_.function != nullptr) {
                 return find_threshold(hierarchy_, *what_.function, criterion_at, offsets, budget,
                                       options, executor_)
                     .threshold;
             }
-            return nestgrid::find_threshold<3>(hierarchy_, *what_.isovalue, criterion_at, offsets,
-                                               budget, options, executor_)
+            if (what_.isovalue) {
+                return nestgrid::find_threshold<3>(hierarchy_, *what_.isovalue, criterion_at,
+                                                   offsets, budget, options, executor_)
+                    .threshold;
+            }
+            return find_shading_threshold(hierarchy_, criterion_at, offsets, budget, {}, executor_)
                 .threshold;
         });
+    }
+    /// Counts the triangles of the slice and of the isosurface beside it.
+    std::optional<std::uint64_t> count_both(const nestgrid::Criterion& criterion,
+                                            std::uint64_t most) const {
+        std::uint64_t count = 0;
+        const std::vector<TriangleCounter> counters(2, {count, most});
+        try {
+            extract_slices(hierarchy_, {{what_.function}, {*what_.isovalue}}, counters, criterion,
+                           moment_.indicators().bounds(), {}, executor_);
+        } catch (const TriangleCounter::Exceeded&) {
+            return std::nullopt;
+        }
+        return count;
     }
     void draw_with(const nestgrid::Criterion& criterion, Drawn& drawn) const {
         const nestgrid::Bounds& bounds = moment_.indicators().bounds();

@@ -61,9 +61,11 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
                     "of the range of the data (2%); give it again for several")
         ->take_all();
     command
-        .add_option("--max-triangles", options.budgets,
-                    "in the place of a threshold: the least one that gives no more triangles; give "
-                    "it again for several")
+        .add_option(
+            "--max-triangles", options.budgets,
+            "in the place of a threshold: the least one, in units of --indicator, that gives "
+            "no more triangles, or segments of lines in the plane; give it again for "
+            "several")
         ->take_all()
         ->excludes("--threshold");
     add_projection_options(command, options.projection);
@@ -78,10 +80,6 @@ void check(const SurfaceOptions& options) {
         if (budget <= 0) throw nestgrid::InvalidInput("--max-triangles is not positive");
     }
     check(options.projection);
-    if (!options.budgets.empty() && !options.projection.is_default()) {
-        throw nestgrid::InvalidInput(
-            "--max-triangles searches thresholds of offsets: leave out --indicator and --blend");
-    }
     if (options.threads < 0) throw nestgrid::InvalidInput("--threads is negative");
     if (!options.output.empty()) check_output(options.output);
     if (options.image.empty()) return;

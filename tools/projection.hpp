@@ -36,8 +36,6 @@ void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_len
 struct ProjectionChoice {
     std::string indicator = "offset";
     double blend = 1;
-
-    bool is_default() const { return indicator == "offset" && blend == 1; }
 };
 void add_projection_options(CLI::App& command, ProjectionChoice& choice);
 /// \throw nestgrid::InvalidInput where the factor is out of range

@@ -28,9 +28,6 @@ void run_slice(Options& o) {
     if (o.isovalue && !std::isfinite(*o.isovalue)) {
         throw nestgrid::InvalidInput("--with-isosurface is not a finite number");
     }
-    if (o.isovalue && !o.surface.budgets.empty()) {
-        throw nestgrid::InvalidInput("--max-triangles is for a slice without an isosurface");
-    }
     const ColouredSurface what{.function = f.function.get(),
                                .isovalue = o.isovalue,
                                .cap = o.cap,

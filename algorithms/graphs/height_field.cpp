@@ -33,29 +33,44 @@ void require_drawable(const Hierarchy<Real>& hierarchy, double scale, const Crit
     engine::require_saturated(criterion, bounds, hierarchy.facts().decodes);
 }
 
-template <class Real>
-Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
-                    const Bounds& bounds, const ShadingOptions& options, const Executor& executor) {
-    using engine::Triangulation;
+/// Calls draw(graph) with what a triangulation borrows.
+/// \param elements whether to keep the elements
+template <class Real, class Draw>
+auto with_graph(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                const Bounds& bounds, const ShadingOptions& options, bool elements, Draw&& draw) {
     require_drawable(hierarchy, scale, criterion, bounds, options);
-    const engine::Walk<Real> walk(hierarchy, Triangulation<Real>::needs, bounds.hanging());
-    const engine::Graph<Real> graph{&walk,
+    const engine::Walk<Real> walk(hierarchy, engine::Triangulation<Real>::needs, bounds.hanging());
+    return draw(engine::Graph<Real>{&walk,
                                     &criterion,
                                     &bounds,
                                     {scale, options.flatness},
-                                    options.elements,
-                                    engine::may_stop_apart(hierarchy, criterion, bounds)};
+                                    elements,
+                                    engine::may_stop_apart(hierarchy, criterion, bounds)});
+}
+
+template <class Real>
+Shading triangulate(const engine::Graph<Real>& graph, const Hierarchy<Real>& hierarchy,
+                    const ShadingOptions& options, const Executor& executor) {
     Shading result;
     result.surface.elements = hierarchy.make_elements();
-    Triangulation<Real> drawing(graph, {result.surface, options.elements});
+    engine::Triangulation<Real> drawing(graph, {result.surface, options.elements});
     try {
         drawing.run(executor, options.progress);
     } catch (const engine::Cancelled&) {
         result.cancelled = true;
     }
     drawing.report(result);
-    if (criterion.insists()) result.error_bound = std::numeric_limits<double>::infinity();
+    if (graph.criterion->insists()) result.error_bound = std::numeric_limits<double>::infinity();
     return result;
+}
+
+template <class Real>
+Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                    const Bounds& bounds, const ShadingOptions& options, const Executor& executor) {
+    return with_graph(hierarchy, scale, criterion, bounds, options, options.elements,
+                      [&](const engine::Graph<Real>& graph) {
+                          return triangulate(graph, hierarchy, options, executor);
+                      });
 }
 
 /// Makes the preroll first.
@@ -105,6 +120,25 @@ Shading height_field(const Hierarchy<Real>& hierarchy, double scale, const Shadi
     return triangulate(hierarchy, scale, options, executor);
 }
 
+template <class Real>
+std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
+                                             const Criterion& criterion, const Bounds& bounds,
+                                             std::uint64_t most, const ShadingOptions& options,
+                                             const Executor& executor) {
+    const auto count = [&](const engine::Graph<Real>& graph) -> std::optional<std::uint64_t> {
+        Surface<3> element;
+        engine::Triangulation<Real> drawing(graph, {element, false});
+        drawing.count_only(most);
+        try {
+            drawing.run(executor, options.progress);
+        } catch (const engine::OverLimit&) {
+            return std::nullopt;
+        }
+        return drawing.triangles();
+    };
+    return with_graph(hierarchy, 0, criterion, bounds, options, false, count);
+}
+
 #define NESTGRID_INSTANTIATE(Real)                                                                 \
     template Shading shading(const Hierarchy<Real>&, const Criterion&, const Bounds&,              \
                              const ShadingOptions&, const Executor&);                              \
@@ -116,7 +150,10 @@ Shading height_field(const Hierarchy<Real>& hierarchy, double scale, const Shadi
     template Shading height_field(const Hierarchy<Real>&, double, const HierarchicalIndicator&,    \
                                   const ShadingOptions&, const Executor&);                         \
     template Shading height_field(const Hierarchy<Real>&, double, const ShadingOptions&,           \
-                                  const Executor&);
+                                  const Executor&);                                                \
+    template std::optional<std::uint64_t> count_triangles(                                         \
+        const Hierarchy<Real>&, const Criterion&, const Bounds&, std::uint64_t,                    \
+        const ShadingOptions&, const Executor&);
 NESTGRID_INSTANTIATE(float)
 NESTGRID_INSTANTIATE(double)
 #undef NESTGRID_INSTANTIATE

@@ -19,6 +19,12 @@ Triangulation<Real>::Triangulation(const Graph<Real>& graph, const SurfaceBuilde
 }
 
 template <class Real>
+void Triangulation<Real>::count_only(std::uint64_t most) {
+    tally_ = SimplexTally(most);
+    surface_.count_only();
+}
+
+template <class Real>
 void Triangulation<Real>::run(const Executor& executor,
                               const std::function<bool(const TraversalCounts&)>& progress) {
     if (progress) progress_ = &progress;
@@ -27,6 +33,7 @@ void Triangulation<Real>::run(const Executor& executor,
         walk(executor);
         records_ = false;
         restart();
+        tally_.begin_later();
         own_nodes_.finish();
         if (!own_nodes_.empty()) nodes_ = &own_nodes_;
     }
@@ -68,6 +75,7 @@ auto Triangulation<Real>::begin_task() const -> std::unique_ptr<Task> {
         graph_, SurfaceBuilder<3>(task->part, true, graph_.elements));
     task->draws->records_ = records_;
     task->draws->nodes_ = nodes_;
+    if (surface_.counts_only()) task->draws->count_only(tally_.limit());
     return task;
 }
 
@@ -77,6 +85,8 @@ void Triangulation<Real>::add(const Task& task) {
     surface_.add_extracted(task.draws->surface_.extracted());
     surface_.raise_error_bound(task.draws->surface_.error_bound());
     if (records_) own_nodes_.append(task.draws->own_nodes_);
+    tally_.add(task.draws->tally_);
+    if (surface_.counts_only()) return;
     surface_.add_part(task.part);
 }
 
@@ -110,21 +120,35 @@ Decision Triangulation<Real>::look(const View& view, const Split& split) {
     return decision;
 }
 
-/// Extracts all leaves; in the first walk only those around which something may be closed.
+/// Extracts all leaves; in the first walk only those around which something may be closed, unless
+/// all are counted.
 template <class Real>
 Leaves Triangulation<Real>::leaves(const Rule&, const Real*, NodeMask which, bool closed) {
     count(static_cast<std::uint64_t>(std::popcount(which)));
-    if (records_ && !closed) return {};
+    if (records_ && !closed && !tally_.limited()) return {};
     return {which, 0};
+}
+
+/// Records the nodes on closed edges of an element, of which the second walk will draw one triangle
+/// at least.
+template <class Real>
+void Triangulation<Real>::record(const View& view) {
+    if (tally_.limited() && view.member->hidden != Hidden::wholly) tally_.add_later(1);
+    if (!view.closed.any) return;
+    polygon_.load(view);
+    polygon_.record(own_nodes_);
 }
 
 template <class Real>
 void Triangulation<Real>::extract(const View& view) {
-    if (records_ && !view.closed.any) return;
+    if (records_) return record(view);
     polygon_.load(view);
-    if (records_) return polygon_.record(own_nodes_);
     const bool finest = view.level == graph_.bounds->finest_level();
     polygon_.draw(finest ? nullptr : nodes_, surface_);
+    if (surface_.counts_only()) {
+        tally_.add(surface_.builder().target()->simplices.size());
+        return surface_.forget_element();
+    }
     surface_.add_extracted(1);
     raise_error_bound(view);
 }

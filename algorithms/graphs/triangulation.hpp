@@ -14,6 +14,7 @@
 
 #include <graphs/element_polygon.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
+#include <surfaces/simplex_tally.hpp>
 #include <walk/criterion_question.hpp>
 #include <walk/frontier.hpp>
 
@@ -38,12 +39,17 @@ public:
 
     Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder);
 
+    /// Only counts triangles, to be called before run().
+    /// \param most run() throws OverLimit where there are more
+    void count_only(std::uint64_t most);
     /// Records and draws everything.
     /// \param progress as in ShadingOptions
-    /// \throw Cancelled where progress says so
+    /// \throw Cancelled where progress says so; OverLimit
     void run(const Executor& executor, const std::function<bool(const TraversalCounts&)>& progress);
     /// Puts everything but the surface into a result.
     void report(Shading& result) const;
+    /// The number of triangles that were counted.
+    std::uint64_t triangles() const { return tally_.drawn(); }
 
     bool sees_hidden() const override { return records_; }
     Decision inspect(const View& view, const Split& split) override;
@@ -66,6 +72,7 @@ private:
     std::unique_ptr<Task> begin_task() const;
     void add(const Task& task);
     void count(std::uint64_t elements);
+    void record(const View& view);
     void raise_error_bound(const View& view);
 
     Graph<Real> graph_;
@@ -77,6 +84,7 @@ private:
     bool records_ = false;              // in the first walk
     double below_ = 0;                  // how far U may leave the corner values in an element
     TraversalCounts counts_;
+    SimplexTally tally_;  // of triangles, where these are counted only
     const std::function<bool(const TraversalCounts&)>* progress_ = nullptr;
 };
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/discontinuous.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/check_grid.hpp>
@@ -82,6 +83,23 @@ TEST(Hidden, ElementsDoNotChangeWhatIsDrawnBesideThem) {
     expect_the_rest_unchanged(kuhn<3>(0), 150);
     expect_the_rest_unchanged(boxes<2>(random, 3), 200);
     expect_the_rest_unchanged(kuhn<2>(2), 500);
+}
+
+/// Also where there are more hidden elements than triangles.
+TEST(Hidden, ElementsAreNotCounted) {
+    std::mt19937 random(9);
+    Forest<2> forest = boxes<2>(random, 3);
+    refine_randomly(forest, random, 200);
+    const HidingForest<2> grid(std::move(forest), random, 3);
+    const ForestField<2> field(grid, [](const Point& x) { return std::sin(5 * x[0] * x[1]); });
+    const HierarchicalIndicator indicator(grid, field);
+    for (const double threshold : six_thresholds) {
+        const Threshold criterion(&indicator, threshold);
+        const std::uint64_t drawn =
+            shading(grid, field, criterion, indicator).surface.simplices.size();
+        EXPECT_GT(drawn, 0U);
+        EXPECT_EQ(count_triangles(grid, field, criterion, indicator, drawn), drawn);
+    }
 }
 
 /// Elements that are drawn alone stop where nothing below them is hidden.

@@ -23,6 +23,13 @@ expect area 782
 run boundary v.vti --threshold 5 -o b.vtp --outlines
 expect area 2647
 expect boundary_edges 0
+for projection in "" "--indicator visual --blend 1.5" "--indicator wavelet"; do
+    run boundary v.vti --max-triangles 3000 $projection
+    [ "$(value triangles)" -le 3000 ] && [ "$(value triangles)" -gt 2650 ] || fail "boundary$projection: $(cat out)"
+    expect area 2647
+    expect open_edges 0
+done
+refused 1 'even the coarsest surface has more than 2000' boundary v.vti --max-triangles 2000
 grep -q 'Name="value"' b.vtp || fail "the field is no array of its own name"
 for array in level element; do grep -q "Name=\"$array\"" b.vtp || fail "no $array in b.vtp"; done
 run slice v.vti --sphere 4.75,11.5,17,4 --cap
@@ -42,9 +49,12 @@ for indicator in visual numerical wavelet; do
     run slice v.vti --axis z --at 17 --threshold 0.5 --indicator $indicator --blend 1.25
     expect area 218.5
     expect open_edges 0
+    run slice v.vti --axis z --at 17 --max-triangles 600 --indicator $indicator --blend 1.25
+    [ "$(value triangles)" -le 600 ] && [ "$(value triangles)" -gt 400 ] || fail "$indicator: $(cat out)"
+    expect area 218.5
+    expect open_edges 0
 done
 refused 1 'no percentages' slice v.vti --axis z --at 17 --threshold 2% --indicator visual
-refused 1 'leave out --indicator' slice v.vti --axis z --at 17 --max-triangles 600 --blend 2
 
 run isolines v.vti --axis z --at 17 --count 4 -o l.vtp
 [ "$(grep -c '^isoline' out)" -ge 4 ] || fail "no isolines"
@@ -84,6 +94,14 @@ for threshold in 0 3%; do
     grep -q "NumberOfPolys=\"$((triangles + slice_triangles))\"" both.vtp ||
         fail "both.vtp has not all triangles"
 done
+run slice v.vti --axis z --at 17 --with-isosurface 100.5
+both=$(($(value triangles) + $(value isosurface_triangles)))
+for projection in "" "--indicator visual --blend 1.5"; do
+    run slice v.vti --axis z --at 17 --with-isosurface 100.5 --max-triangles $((both / 2)) $projection
+    found=$(($(value triangles) + $(value isosurface_triangles)))
+    [ $found -le $((both / 2)) ] && [ $found -gt $((both / 4)) ] || fail "$found triangles of both$projection, not $((both / 2))"
+    expect isosurface_open_edges 0
+done
 run slice v.vti --axis z --at 17 --with-isosurface 1e9
 expect isosurface_triangles 0
 
@@ -94,6 +112,10 @@ expect isosurface_triangles 0
         for x in 0 1 2 3 4 5 6 7 8; do printf "\\$(printf %o $((20 + 2 * x)))"; done
     done
 } >ramp.pgm
+{
+    printf 'P5\n65 65\n255\n'
+    LC_ALL=C awk 'BEGIN { for (i = 0; i < 65 * 65; ++i) printf "%c", 64 + 50 * sin(i % 65 / 9) * cos(int(i / 65) / 7) }'
+} >hills.pgm
 run height ramp.pgm --scale 1
 expect area 107.331263
 expect open_edges 0
@@ -102,6 +124,20 @@ expect open_edges 0
 run isolines ramp.pgm --values 25 --threshold 0.3 --indicator numerical
 run surface ramp.pgm --threshold 1 --outlines -o ramp.vtp
 expect area 48
+# Budgets in the plane: the same number of triangles for heights and surfaces.
+for projection in "" "--indicator visual" "--blend 2" "--indicator numerical --blend 1.5"; do
+    run surface hills.pgm --max-triangles 900 $projection
+    kept=$(value triangles)
+    within_budget 900 surface hills.pgm $projection
+    run height hills.pgm --scale 1 --max-triangles 900 $projection -o h.vtp
+    [ "$(value triangles) $(value open_edges)" = "$kept 0" ] || fail "height$projection: $(cat out)"
+    run isolines hills.pgm --count 3 --max-triangles 900 $projection
+    [ "$(value triangles)" = "$kept" ] || fail "isolines$projection: $(cat out)"
+    run isosurface hills.pgm --value 60 --max-triangles 60 $projection
+    within_budget 60 isosurface hills.pgm --value 60 $projection
+done
+run surface hills.pgm --max-triangles 900 --max-triangles 90000
+awk 'NR == 2 && $2 <= 900 && $1 > 0 || NR == 3 && $1 == 0 { rows++ } END { exit rows != 2 }' out || fail "two budgets: $(cat out)"
 run isolines ramp.pgm --values 25,31 -o r.vtp
 [ "$(grep -c '^isoline .*open, length 6$' out)" = 2 ] || fail "isolines of a ramp: $(cat out)"
 
@@ -156,12 +192,11 @@ refused 1 "expression 'x\+' is no expression" isolines v.vti --on-surface 100 --
 refused 1 'no finite number at' isolines v.vti --on-surface 100 --by '1/(x-x)' --count 3 -o x.vtp
 refused 1 'dimension 2, not 3' isolines ramp.pgm --on-surface 25 --by x --count 3 -o x.vtp
 refused 1 'with-isosurface is not a finite' slice v.vti --axis z --at 1 --with-isosurface inf -o x.vtp
-refused 1 'slice without an isosurface' slice v.vti --axis z --at 1 --with-isosurface 9 --max-triangles 9
 refused 2 '--with-isosurface' slice v.vti --axis z --at 1 --with-isosurface 9 --cap
 refused 1 "names 'x' twice" mesh "$cube" --family bisection --field x --field x -o x.nestgrid
 refused 1 'one in space' height v.vti --scale 1
 refused 1 'scale is 0' height ramp.pgm --scale nan
-refused 1 'max-triangles is for grids of dimension 3' surface ramp.pgm --max-triangles 5
+refused 1 'even the coarsest surface has more than 1 triangles: 9' surface ramp.pgm --max-triangles 1
 head -c 40 ramp.pgm >cut.pgm && refused 1 'cut.pgm is cut off' height cut.pgm --scale 1 -o x.vtp
 : >empty.png && refused 1 'empty.png' height empty.png --scale 1
 echo text >text.png && refused 1 'text.png' height text.png --scale 1

@@ -21,6 +21,22 @@ fail() {
 }
 value() { awk -v name="$1" '$1 == name { print $2 }' out; }
 
+# within_budget COUNT ARGUMENTS...: what has just been drawn with --max-triangles COUNT and these
+# ARGUMENTS has no more triangles, and has more at a threshold that is a little less.
+within_budget() {
+    local most=$1 count found
+    shift
+    found=$(value threshold)
+    count=$(grep -oE "^(triangles|segments)" out)
+    [ "$(value "$count")" -le "$most" ] || fail "$*: $(value "$count") $count, not $most"
+    awk -v t="$found" 'BEGIN { exit !(t > 0) }' || fail "$*: threshold $found"
+    cp out out.kept
+    "$program" "$@" --threshold "$(awk -v t="$found" 'BEGIN { print 0.997 * t }')" >out 2>err ||
+        fail "$*: $(cat err)"
+    [ "$(value "$count")" -gt "$most" ] || fail "$*: $(value "$count") $count below $found, too"
+    mv out.kept out
+}
+
 # run ARGUMENTS...: ends well, and says nothing on stderr; what it prints is in the file `out`.
 run() {
     "$program" "$@" >out 2>err || fail "$*: $(cat err)"

@@ -62,6 +62,11 @@ for indicator in visual numerical wavelet; do
     threshold=$([ $indicator = visual ] && echo 0.7 || echo 10%)
     run_indicator --threshold $threshold --blend 1.5 || fail "$indicator: $(cat err)"
     [ "$(value triangles)" -lt "$finest" ] && [ "$(value open_edges)" = 0 ] || fail "$indicator"
+    for blend in 1 1.5; do
+        run_indicator --max-triangles $((finest / 2)) --blend $blend || fail "$indicator: $(cat err)"
+        within_budget $((finest / 2)) isosurface v.vti --value 130 --indicator $indicator --blend $blend
+        [ "$(value open_edges)" = 0 ] || fail "$indicator within a budget, blended by $blend: $(cat out)"
+    done
     run_indicator --threshold 2 --box=2,5,2,5,2,5 --box-threshold 0 || fail "$indicator: $(cat err)"
     [ "$(value open_edges)" = 0 ] || fail "$indicator in a box"
 done
@@ -71,7 +76,6 @@ done
 refused 1 'blend is not a finite number' isosurface v.vti --value 130 --threshold 1 --blend 0.5
 refused 1 'blend is not a finite number' isosurface v.vti --value 130 --threshold 1 --blend inf
 refused 1 'leave out --blend' isosurface v.vti --value 130 --threshold 1 --blend 2 --box 0,1,0,1,0,1
-refused 1 'leave out --indicator' isosurface v.vti --value 130 --indicator visual --max-triangles 9
 refused 1 'no percentages' isosurface v.vti --value 130 --threshold 2% --indicator visual
 refused 1 'curved grids' isosurface v.vti --value 130 --threshold 2 --indicator geometry
 refused 2 'indicator: ' isosurface v.vti --value 130 --threshold 2 --indicator colour

@@ -110,6 +110,8 @@ run slice "${film[@]}" --axis z --at 0.4 --frames 3 --max-triangles 60 -o s.vtp
 awk '$1 == "time" { rows = 1; next } rows && $3 > 60 { exit 1 }' out || fail "slices beyond a budget: $(cat out)"
 run isosurface "${film[@]}" --value 0.5 --frames 4 --max-triangles 150 -o s.vtp
 awk '$1 == "time" { rows = 1; next } rows && ($4 > 150 || $7 != 0) { exit 1 }' out || fail "budget: $(cat out)"
+run isosurface "${film[@]}" --value 0.5 --frames 4 --max-triangles 150 --indicator numerical --blend 1.25 -o s.vtp
+awk '$1 == "time" { rows = 1; next } rows && ($4 > 150 || $7 != 0) { exit 1 }' out || fail "budget of jumps: $(cat out)"
 run isosurface "${film[@]}" --value 0.8 --time 1 && all=$(column 4)
 run isosurface "${film[@]}" --value 0.8 --time 1 --lens ball:0.8,0,0,0.1 --slope 10 --threshold 0.02 --blend 1.25
 [ "$(column 4)" -lt "$all" ] && [ "$(column 7)" = 0 ] || fail "lens between frames: $(cat out)"

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
@@ -84,6 +85,15 @@ Shading height_field(const Hierarchy<Real>& hierarchy, double scale,
                      const ShadingOptions& options = {},
                      const Executor& executor = SequentialExecutor{});
 
+/// The number of triangles that a shading, or a height field of any scale, has under a criterion,
+/// or nothing where there are more than `most`. Counts up to there, and stores no triangle. \param
+/// options only flatness and progress have an effect \throw InvalidInput, GridError as shading()
+template <class Real>
+std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
+                                             const Criterion& criterion, const Bounds& bounds,
+                                             std::uint64_t most, const ShadingOptions& options = {},
+                                             const Executor& executor = SequentialExecutor{});
+
 // Each also takes a grid and a field in the place of the hierarchy.
 
 template <class Grid, class Field>
@@ -126,6 +136,14 @@ Shading height_field(const Grid& grid, const Field& field, double scale,
                      const ShadingOptions& options = {},
                      const Executor& executor = SequentialExecutor{}) {
     return height_field(erase(grid, field), scale, options, executor);
+}
+template <class Grid, class Field>
+    requires(!detail::AnyHierarchy<Grid>)
+std::optional<std::uint64_t> count_triangles(const Grid& grid, const Field& field,
+                                             const Criterion& criterion, const Bounds& bounds,
+                                             std::uint64_t most, const ShadingOptions& options = {},
+                                             const Executor& executor = SequentialExecutor{}) {
+    return count_triangles(erase(grid, field), criterion, bounds, most, options, executor);
 }
 
 }  // namespace nestgrid

@@ -1,39 +1,28 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The least threshold whose surface keeps within a number of triangles.
-//
-// Stopping numbers are bfloat16, so S changes at these 2^15 thresholds only: the search is one over
-// integers. It ends between two neighbours, of which the greater threshold keeps within the budget
-// and the lesser one does not. Between frames S changes at other thresholds, too: the one found may
-// be greater than the least by 1/128 of it.
-// Cost: every trial ends when the budget is exceeded. Threshold 0 is tried first; then thresholds
-// are halved from the greatest one until the budget is exceeded, and 7 bisections remain, for an
-// octave has 128 numbers: at most 10 times the budget, and what fitted before the last halving.
+// The least threshold whose surface keeps within a number of triangles: that of an isosurface, of a
+// slice, or of the triangles in the plane, under any criterion that has a threshold. What is
+// promised, and at what cost, least_threshold.hpp says.
 #pragma once
 
 #include <concepts>
 #include <functional>
 #include <memory>
 
+#include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/least_threshold.hpp>
 #include <nestgrid/algorithms/level_function.hpp>
 
 namespace nestgrid {
 
-/// Bounds that know the range of the data: a HierarchicalIndicator, or KeyFrames between frames. No
-/// offset is greater than the range.
+/// Bounds that know the range of the data: a HierarchicalIndicator, or KeyFrames between frames.
+/// The search begins at the range.
 template <class T>
 concept RangedBounds = std::derived_from<T, Bounds> && requires(const T& bounds) {
     { bounds.least() } -> std::convertible_to<double>;
     { bounds.greatest() } -> std::convertible_to<double>;
-};
-
-struct TriangleBudget {
-    double threshold = 0;
-    std::uint64_t triangles = 0;  ///< of the surface at it
-    std::uint64_t extracted = 0;  ///< over all trials: the cost of the search
-    int trials = 0;
 };
 
 namespace detail {
@@ -43,7 +32,7 @@ using MakeCriterion = std::function<std::unique_ptr<const Criterion>(double thre
 /// Where the search begins.
 struct SearchBounds {
     const Bounds& bounds;
-    double range;  ///< of the data: the greatest threshold
+    double range;  ///< of the data, from which thresholds are searched
 };
 
 /// Defined for dimensions 2 and 3, float and double.
@@ -71,8 +60,9 @@ TriangleBudget with_made(const Criteria& criterion_at, const Find& find) {
 
 }  // namespace detail
 
-/// \param criterion_at the criterion for a threshold: S(double), one that holds at more nodes the
-///        greater the threshold is; fine_inside (region.hpp) with a threshold of its own, say
+/// \param criterion_at the criterion for a threshold from 0 to 3.4e38: S(double), one that holds
+///        at more nodes the greater the threshold is, by any indicator; Blended, a lens or
+///        fine_inside (region.hpp) with a threshold of its own, say
 /// \param options cap and progress count
 /// \throw InvalidInput where even the coarsest surface has more than max_triangles, and for a
 ///        hierarchy of another dimension
@@ -119,7 +109,38 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
         erase(grid, field), isovalue, criterion_at, bounds, max_triangles, options, executor);
 }
 
-/// The same with the indicator's own criterion.
+/// The same for the shading of a hierarchy of dimension 2, or for its height fields, which all have
+/// as many triangles. Of the options, flatness and progress count.
+template <class Real, class MakeCriterion, RangedBounds Ranged>
+    requires requires(const MakeCriterion& make) {
+        { make(0.0) } -> std::derived_from<Criterion>;
+    }
+TriangleBudget find_shading_threshold(const Hierarchy<Real>& hierarchy,
+                                      const MakeCriterion& criterion_at, const Ranged& bounds,
+                                      std::uint64_t max_triangles,
+                                      const ShadingOptions& options = {},
+                                      const Executor& executor = SequentialExecutor{}) {
+    return least_threshold(
+        [&](double threshold, std::uint64_t most) {
+            return count_triangles(hierarchy, criterion_at(threshold), bounds, most, options,
+                                   executor);
+        },
+        bounds.greatest() - bounds.least(), max_triangles);
+}
+template <class Grid, class Field, class MakeCriterion, RangedBounds Ranged>
+    requires requires(const MakeCriterion& make) {
+        { make(0.0) } -> std::derived_from<Criterion>;
+    }
+TriangleBudget find_shading_threshold(const Grid& grid, const Field& field,
+                                      const MakeCriterion& criterion_at, const Ranged& bounds,
+                                      std::uint64_t max_triangles,
+                                      const ShadingOptions& options = {},
+                                      const Executor& executor = SequentialExecutor{}) {
+    return find_shading_threshold(erase(grid, field), criterion_at, bounds, max_triangles, options,
+                                  executor);
+}
+
+/// The same for an isosurface with the indicator's own criterion.
 template <int dimension, class Real, RangedBounds Ranged>
     requires std::derived_from<Ranged, Indicator> TriangleBudget
     find_threshold(const Hierarchy<Real>& hierarchy, double isovalue, const Ranged& indicator,

@@ -18,12 +18,13 @@ public:
 
     HidingForest(Forest<dim> forest, std::mt19937&& random)
         : HidingForest(std::move(forest), random) {}
-    HidingForest(Forest<dim> forest, std::mt19937& random)
+    /// \param hidden_of_four so many of four leaves are hidden, on average
+    HidingForest(Forest<dim> forest, std::mt19937& random, unsigned hidden_of_four = 1)
         : Forest<dim>(std::move(forest)), part_(this->cells.size()) {
         for (std::size_t e = this->cells.size(); e-- > 0;) {
             const auto& cell = this->cells[e];
             if (cell.rule == nullptr) {
-                part_[e] = random() % 4 == 0 ? Hidden::wholly : Hidden::not_at_all;
+                part_[e] = random() % 4 < hidden_of_four ? Hidden::wholly : Hidden::not_at_all;
                 continue;
             }
             part_[e] = part_[cell.first_child];

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/least_threshold.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include <levels/bfloat16_search.hpp>
+#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
+
+namespace {
+
+using engine::octave;
+
+/// The code of the greatest finite threshold. Nodes outside of the domain have the indicator
+/// infinity, and no element may stop at them.
+constexpr std::uint16_t greatest = bfloat16_infinity - 1;
+
+/// After so many halvings of the threshold, steps double: what is then left is of data that are
+/// affine up to rounding, say.
+constexpr int halvings = 8;
+
+/// Codes of two thresholds, of which the greater one fits and the lesser one does not.
+struct Bracket {
+    std::uint16_t beyond;
+    std::uint16_t within;
+};
+
+/// Tries thresholds by their codes, and keeps the last one that fits.
+class Trials {
+public:
+    Trials(const CountTriangles& count, std::uint64_t max_triangles)
+        : count_{count}, max_triangles_{max_triangles} {}
+
+    const TriangleBudget& best() const { return best_; }
+
+    bool fits(std::uint16_t code) {
+        const double threshold = bfloat16_value(code);
+        const auto triangles = count_(threshold, max_triangles_);
+        ++best_.trials;
+        best_.extracted += triangles.value_or(max_triangles_ + 1);
+        if (triangles) {
+            best_.threshold = threshold;
+            best_.triangles = *triangles;
+        }
+        return triangles.has_value();
+    }
+
+    /// Requires: `within` fits, and 0 does not.
+    Bracket bracket_below(std::uint16_t within) {
+        int step = octave;
+        for (int trial = 0; within > step; ++trial) {
+            const auto code = static_cast<std::uint16_t>(within - step);
+            if (!fits(code)) return {code, within};
+            within = code;
+            if (trial >= halvings) step *= 2;
+        }
+        return {0, within};
+    }
+
+    /// Requires: `beyond` does not fit. Tries the greatest threshold first, because where that does
+    /// not fit, all other trials would be in vain.
+    Bracket bracket_above(std::uint16_t beyond) {
+        if (beyond == greatest || !fits(greatest)) throw_too_few();
+        for (int step = octave; beyond + step < greatest; step *= 2) {
+            const auto code = static_cast<std::uint16_t>(beyond + step);
+            if (fits(code)) return {beyond, code};
+            beyond = code;
+        }
+        return {beyond, greatest};
+    }
+
+private:
+    [[noreturn]] void throw_too_few() const {
+        const auto triangles =
+            count_(bfloat16_value(greatest), std::numeric_limits<std::uint64_t>::max());
+        throw InvalidInput("even the coarsest surface has more than " +
+                           std::to_string(max_triangles_) +
+                           " triangles: " + std::to_string(triangles.value()));
+    }
+
+    const CountTriangles& count_;
+    std::uint64_t max_triangles_;
+    TriangleBudget best_;
+};
+
+}  // namespace
+
+TriangleBudget least_threshold(const CountTriangles& count, double start,
+                               std::uint64_t max_triangles) {
+    Trials trials(count, max_triangles);
+    if (trials.fits(0)) return trials.best();
+    const std::uint16_t first =
+        std::min(bfloat16_above(float_above(std::max(start, 0.0))), greatest);
+    const Bracket bracket =
+        first > 0 && trials.fits(first) ? trials.bracket_below(first) : trials.bracket_above(first);
+    engine::least_that_fits(bracket.beyond, bracket.within,
+                            [&](std::uint16_t code) { return trials.fits(code); });
+    return trials.best();
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The least threshold at which a drawing keeps within a number of triangles, whatever is drawn and
+// whatever criterion the threshold is one of.
+//
+// Thresholds are searched among finite bfloat16 numbers. The indicators of the library
+// are bfloat16, so that the elements that stop change at these thresholds only.
+// Promise: the threshold that is found keeps within the number, and it is 0, or the bfloat16 number
+// below it (less by 1/256 to 1/128 of it) does not.
+// Not promised: that no lesser threshold keeps within the number. Triangles get fewer as the
+// threshold grows, but not at each step: a coarser element may cut a fold that finer ones miss.
+// Under criteria that blend, and between frames, vertices also move between bfloat16 numbers, and
+// some triangles come or go.
+// Cost: every trial ends when the number is exceeded. Threshold 0 is tried first. Thresholds are
+// then halved from `start` until the number is exceeded, or raised from there until it is kept, by
+// factors that grow; 7 bisections remain, for an octave has 128 numbers, and one more for each
+// doubling of the steps. From the range of the data, that is at most 10 times the number, and what
+// fitted before the last halving.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+namespace nestgrid {
+
+struct TriangleBudget {
+    double threshold = 0;
+    std::uint64_t triangles = 0;  ///< of the surface at it
+    std::uint64_t extracted = 0;  ///< over all trials: the cost of the search
+    int trials = 0;
+};
+
+/// The number of triangles at a threshold, or nothing where there are more than `most`: a function
+/// that draws or counts them, and ends as soon as there are more.
+using CountTriangles =
+    std::function<std::optional<std::uint64_t>(double threshold, std::uint64_t most)>;
+
+/// \param start a threshold at which about nothing is left to be projected away, such as the range
+///        of the data for indicators in their units; any number is right, others cost trials
+/// \throw InvalidInput where there are more than max_triangles even at the greatest threshold, 3.4e38, and what
+///        count() throws
+TriangleBudget least_threshold(const CountTriangles& count, double start,
+                               std::uint64_t max_triangles);
+
+}  // namespace nestgrid
