@@ -9,6 +9,7 @@
 #include <nestgrid/adapters/tetgen.hpp>
 
 #include "child_process.hpp"
+#include "coarse_file.hpp"
 #include "expression.hpp"
 #include "hierarchy.hpp"
 #include "text_header.hpp"
@@ -31,30 +32,6 @@ CoarseGrid read_with_tools(const MeshRequest& request, const std::string& ending
     return read_tetgen(request.input.string(), options);
 }
 
-void put_grid(const CoarseGrid& grid, Parcel& parcel) {
-    std::vector<Point> points(grid.nodes.size());
-    for (std::size_t i = 0; i < points.size(); ++i) points[i] = grid.nodes[i];
-    parcel.put(std::span<const int>(&grid.dimension, 1));
-    parcel.put(std::span<const Point>(points));
-    parcel.put(std::span<const Shape>(grid.shapes));
-    parcel.put(std::span<const std::uint32_t>(grid.corners));
-    parcel.put(std::span<const std::uint32_t>(grid.first_corner));
-}
-
-CoarseGrid grid_in(const Parcel& parcel) {
-    const auto copy = [&]<class Value>(std::size_t block, Value) {
-        const auto values = parcel.block<Value>(block);
-        return std::vector<Value>(values.begin(), values.end());
-    };
-    CoarseGrid grid;
-    grid.dimension = parcel.block<int>(0).front();
-    grid.nodes = Coordinates(copy(1, Point{}));
-    grid.shapes = copy(2, Shape{});
-    grid.corners = copy(3, std::uint32_t{});
-    grid.first_corner = copy(4, std::uint32_t{});
-    return grid;
-}
-
 /// Seconds to read a mesh, and to fill a complex, which takes longer.
 double reading_time(const MeshRequest& request, const std::string& ending) {
     if (request.read_limit > 0) return request.read_limit;
@@ -68,10 +45,8 @@ CoarseGrid read_coarse_grid(const MeshRequest& request) {
     const std::string name = "'" + request.input.string() + "'";
     if (std::filesystem::is_directory(request.input)) throw IoError(name + " is a folder");
     const std::string ending = lower(request.input.extension().string());
-    const auto parcel = run_apart(name, reading_time(request, ending), [&](Parcel& out) {
-        put_grid(read_with_tools(request, ending), out);
-    });
-    return grid_in(*parcel);
+    return read_grid_apart(name, reading_time(request, ending),
+                           [&] { return read_with_tools(request, ending); });
 }
 
 bool all_simplices(const CoarseGrid& coarse) {
