@@ -9,14 +9,16 @@
 
 #include <nestgrid/error.hpp>
 
+#include "solid.hpp"
+
 namespace {
 
 using nestgrid::Distance;
 using nestgrid::Point;
 
 constexpr const char* known =
-    "ball:x,y,z,r, box:x,x,y,y,z,z, halfspace:x,y,z,x,y,z, cone:x,y,z,x,y,z,degrees or "
-    "polygon:FILE";
+    "ball:x,y,z,r, box:x,x,y,y,z,z, halfspace:x,y,z,x,y,z, cone:x,y,z,x,y,z,degrees, "
+    "polygon:FILE or surface:FILE";
 
 [[noreturn]] void refuse(const std::string& text) {
     throw nestgrid::InvalidInput("the lens '" + text + "' is none of " + known);
@@ -92,6 +94,7 @@ Distance domain_of(const std::string& text) {
         return nestgrid::Cone(point_at(n, 0), point_at(n, 3), n[6] * std::numbers::pi / 180);
     }
     if (kind == "polygon") return read_polygon(list);
+    if (kind == "surface") return read_solid(list);
     refuse(text);
 }
 

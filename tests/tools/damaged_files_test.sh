@@ -51,5 +51,14 @@ nestgrid)
         mutate exact.nestgrid -- "${isosurface[@]}" --value 0.5 --time 0.5 &&
         mutate near.nestgrid -- "${isosurface[@]}" --value 0.5 --time 0.5
     ;;
+solid)
+    # An octahedron, as the domain of a lens.
+    printf '%s\n' 'OFF' '6 8 0' '2 9 8' '8 9 8' '5 4 8' '5 14 8' '5 9 3' '5 9 13' '3 0 2 4' '3 2 1 4' \
+        '3 1 3 4' '3 3 0 4' '3 2 0 5' '3 1 2 5' '3 3 1 5' '3 0 3 5' >s.off
+    "$program" mesh s.off --family red-green --field x -o s.nestgrid >log
+    for solid in s.vtp s.stl s.ply s.obj; do "$program" surface s.nestgrid -o $solid >log; done
+    lens=(isosurface "$work/v.vti" --value 130 --lens surface:IN -o OUT.vtp)
+    mutate s.vtp -- "${lens[@]}" && mutate s.stl -- "${lens[@]}" && mutate s.off -- "${lens[@]}"
+    ;;
 *) echo "unknown format $format" && exit 1 ;;
 esac

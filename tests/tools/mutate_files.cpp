@@ -5,8 +5,8 @@
 // within the limit of time given to it, and leave no file behind where it refuses.
 //
 // Arguments: the program; how many files; a folder with good ones, and the names of those that make
-// one input together, the named one first; "--" and arguments of the program, where IN stands for
-// that first file and OUT for a file that is written.
+// one input together, the named one first; "--" and arguments of the program, where IN, at the end
+// of an argument, stands for that first file and OUT for a file that is written.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -177,7 +177,10 @@ struct Arguments {
 std::vector<std::string> command_of(const Arguments& arguments, std::string& output) {
     std::vector<std::string> command{arguments.program};
     for (const std::string& word : arguments.rest) {
-        command.push_back(word.starts_with("IN") ? arguments.files.front() : word);
+        command.push_back(word);
+        if (word.ends_with("IN")) {
+            command.back().replace(word.size() - 2, 2, arguments.files.front());
+        }
         if (!word.starts_with("OUT")) continue;
         output = "written" + word.substr(3);
         command.back() = output;
