@@ -79,6 +79,7 @@ struct Explorer::Moment {
     SharedHierarchy hierarchy;
     std::size_t frame = 0;             ///< where it is that of a frame
     std::optional<KeyFrames> between;  ///< where it is not
+    std::vector<float> weights;        ///< of the frames
     const HierarchicalIndicator* offsets = nullptr;
 
     const Bounds& bounds() const {
@@ -240,11 +241,12 @@ Explorer::Moment Explorer::moment_at(const FrameRequest& request) const {
         weights = linear_weights(field_.times, request.time.value_or(field_.times.front()));
     }
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (weights[i] == 1) return {field_.frames[i], i, {}, &offsets_[i]};
+        if (weights[i] == 1) return {field_.frames[i], i, {}, std::move(weights), &offsets_[i]};
     }
     std::vector<const HierarchicalIndicator*> frames;
     for (const HierarchicalIndicator& frame : offsets_) frames.push_back(&frame);
-    return {field_.between(weights), 0, KeyFrames(std::move(frames), weights), nullptr};
+    KeyFrames between(std::move(frames), weights);
+    return {field_.between(weights), 0, std::move(between), std::move(weights), nullptr};
 }
 
 const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name) {
@@ -252,26 +254,38 @@ const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name
         if (moment.between) return *moment.between;
         return *moment.offsets;
     }
-    if (moment.between) {
+    if (!moment.between) return swept_of(name, moment.frame);
+    if (name == IndicatorName::visual) {
         throw InvalidInput(
-            "between frames thresholds are those of offsets: take the indicator offset, or the "
-            "time of a frame");
+            "between frames there is no visual indicator: take another one, or the time of a "
+            "frame");
     }
-    if (swept_ && swept_->name == name && swept_->frame == moment.frame) return swept_->indicator;
+    std::vector<const SweptIndicator*> frames;
+    std::vector<float> weights;
+    for (std::size_t i = 0; i < moment.weights.size(); ++i) {
+        if (moment.weights[i] == 0) continue;
+        frames.push_back(&swept_of(name, i));
+        weights.push_back(moment.weights[i]);
+    }
+    return swept_->between.emplace(std::move(frames), weights);
+}
+
+const SweptIndicator& Explorer::swept_of(IndicatorName name, std::size_t frame) {
+    if (!swept_ || swept_->name != name) {
+        swept_.emplace(Swept{name, {}, {}});
+        swept_->frames.resize(field_.frames.size());
+    }
+    std::optional<SweptIndicator>& swept = swept_->frames[frame];
+    if (swept) return *swept;
     const double tau = 0x1p-20 * (greatest_ - least_);
-    swept_.emplace(Swept{name, moment.frame,
-                         std::visit(
-                             [&](const auto& hierarchy) {
-                                 if (name == IndicatorName::visual) {
-                                     return visual_indicator(*hierarchy, {.tau = tau});
-                                 }
-                                 if (name == IndicatorName::numerical) {
-                                     return numerical_indicator(*hierarchy);
-                                 }
-                                 return wavelet_indicator(*hierarchy);
-                             },
-                             moment.hierarchy)});
-    return swept_->indicator;
+    swept.emplace(std::visit(
+        [&](const auto& hierarchy) {
+            if (name == IndicatorName::visual) return visual_indicator(*hierarchy, {.tau = tau});
+            if (name == IndicatorName::numerical) return numerical_indicator(*hierarchy);
+            return wavelet_indicator(*hierarchy);
+        },
+        field_.frames[frame]));
+    return *swept;
 }
 
 const SweptIndicator& Explorer::size_for(const Moment& moment, double slope) {

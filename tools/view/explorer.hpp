@@ -25,7 +25,7 @@
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/frame_budget.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
-#include <nestgrid/algorithms/swept_indicator.hpp>
+#include <nestgrid/algorithms/swept_key_frames.hpp>
 
 #include "explored_field.hpp"
 #include "frame_request.hpp"
@@ -55,7 +55,7 @@ public:
     ///         four int8 (times 1/127; the last is 0) or three float32 a vertex; values, one
     ///         float32 a vertex
     /// \throw InvalidInput with one sentence where the request is malformed, asks for a time
-    ///        outside the frames, or for another indicator than offsets between frames
+    ///        outside the frames, or for the visual indicator between frames
     std::vector<std::byte> frame(std::string_view request);
 
 private:
@@ -65,6 +65,7 @@ private:
 
     Moment moment_at(const FrameRequest& request) const;
     const Indicator& indicator_at(const Moment& moment, IndicatorName name);
+    const SweptIndicator& swept_of(IndicatorName name, std::size_t frame);
     const SweptIndicator& size_for(const Moment& moment, double slope);
     double greatest_threshold(IndicatorName indicator) const;
     Drawn draw_to_goal(const FrameRequest& request, const Drawing& drawing);
@@ -76,14 +77,14 @@ private:
     double greatest_ = 0;
     double preroll_seconds_ = 0;
 
-    /// The last indicator other than offsets, and the last sizes of elements.
+    /// The last indicator other than offsets: of the frames that have needed it, and between them.
     struct Swept {
         IndicatorName name;
-        std::size_t frame;
-        SweptIndicator indicator;
+        std::vector<std::optional<SweptIndicator>> frames;
+        std::optional<SweptKeyFrames> between;
     };
     std::optional<Swept> swept_;
-    std::optional<SweptIndicator> size_;
+    std::optional<SweptIndicator> size_;  // the last sizes of elements
     struct Budget {
         IndicatorName indicator;
         FrameBudget thresholds;

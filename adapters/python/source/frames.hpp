@@ -6,6 +6,7 @@
 
 #include <nestgrid/algorithms/between.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
+#include <nestgrid/algorithms/swept_key_frames.hpp>
 
 #include "source.hpp"
 
@@ -47,7 +48,8 @@ private:
               own_(&hierarchy_) {}
 
         AnyHierarchy hierarchy() const override { return &hierarchy_; }
-        /// Offsets and bounds are those of the frames; other indicators are made of this field.
+        /// Offsets, bounds, the numerical and the wavelet indicator are sums of those of the
+        /// frames; others are made of this field.
         ChosenIndicator choose(const std::string& name, double blend,
                                const Executor& executor) const override {
             if (name == "offset") {
@@ -55,6 +57,9 @@ private:
                 return {offsets, offsets, offsets.get()};
             }
             const auto bounds = key_frames(1, executor);
+            if (name == "numerical" || name == "wavelet") {
+                return {swept_frames(name, blend, executor), bounds, bounds.get()};
+            }
             return {own_.swept(name, blend, executor), bounds, bounds.get()};
         }
         std::shared_ptr<const SweptIndicator> sizes(double slope) const override {
@@ -77,6 +82,23 @@ private:
             std::vector<const HierarchicalIndicator*> borrowed;
             for (const auto& each : frames_->prerolls_) {
                 kept->prerolls.push_back(each->offsets(blend, executor));
+                borrowed.push_back(kept->prerolls.back().get());
+            }
+            kept->indicator.emplace(std::move(borrowed), weights_);
+            return {kept, &*kept->indicator};
+        }
+
+        /// Likewise of another indicator.
+        std::shared_ptr<const SweptKeyFrames> swept_frames(const std::string& name, double blend,
+                                                           const Executor& executor) const {
+            struct Kept {
+                std::vector<std::shared_ptr<const SweptIndicator>> prerolls;
+                std::optional<SweptKeyFrames> indicator;
+            };
+            const auto kept = std::make_shared<Kept>();
+            std::vector<const SweptIndicator*> borrowed;
+            for (const auto& each : frames_->prerolls_) {
+                kept->prerolls.push_back(each->swept(name, blend, executor));
                 borrowed.push_back(kept->prerolls.back().get());
             }
             kept->indicator.emplace(std::move(borrowed), weights_);

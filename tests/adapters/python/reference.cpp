@@ -24,6 +24,7 @@
 #include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
@@ -192,6 +193,8 @@ void write_volumes() {
         write(name + "_later.samples", later);
         const LatticeField field_later(grid, std::span<const float>(later));
         const HierarchicalIndicator offsets_later(grid, field_later);
+        const SweptIndicator wavelets = wavelet_indicator(grid, field);
+        const SweptIndicator wavelets_later = wavelet_indicator(grid, field_later);
         for (const bool cubic : {false, true}) {
             const std::array times{0.0, 1.0, 2.0};
             const auto weights =
@@ -202,6 +205,11 @@ void write_volumes() {
                           isosurface(grid, between, 40, Threshold(&frames, 12), frames,
                                      IsosurfaceOptions{.normals = true}),
                           12);
+            const SweptKeyFrames swept({&wavelets, &wavelets_later, &wavelets}, weights);
+            write_surface(name + (cubic ? "_cubic" : "_between") + "_wavelet",
+                          isosurface(grid, between, 40, Threshold(&swept, 8), frames,
+                                     IsosurfaceOptions{.normals = true}),
+                          8);
         }
     }
 }

@@ -97,8 +97,11 @@ def test_frames(reference, order, cubic):
         samples(reference, name, np.float32, SHAPE, order) for name in (order, order + "_later")
     ]
     frames = nestgrid.Frames([first, later, first], **PLACE)
+    name = order + ("_cubic" if cubic else "_between")
     surface = frames.at(0.7, cubic=cubic).isosurface(40, 12)
-    reference.same_surface(order + ("_cubic" if cubic else "_between"), surface)
+    reference.same_surface(name, surface)
+    wavelet = frames.at(0.7, cubic=cubic).isosurface(40, 8, indicator="wavelet")
+    reference.same_surface(name + "_wavelet", wavelet)
 
 
 @pytest.mark.parametrize("dtype", TYPES)

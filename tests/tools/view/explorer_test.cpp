@@ -9,7 +9,9 @@
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "families.hpp"
 #include "frame_of.hpp"
@@ -256,7 +258,12 @@ TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
                 isosurface(grid, between, 0.4, s, indicator).surface);
 
     EXPECT_TRUE(frame_of(explorer, what + "&time=6&indicator=wavelet").has("isosurface"));
-    expect_refused([&] { explorer.frame(what + "&time=3&indicator=wavelet"); }, "between frames");
+    const SweptIndicator wavelets_of_a = wavelet_indicator(grid, a);
+    const SweptIndicator wavelets_of_b = wavelet_indicator(grid, b);
+    const SweptKeyFrames wavelets({&wavelets_of_a, &wavelets_of_b}, weights);
+    expect_part(frame_of(explorer, what + "&time=3&indicator=wavelet"), "isosurface",
+                isosurface(grid, between, 0.4, Threshold(&wavelets, 0.02), indicator).surface);
+    expect_refused([&] { explorer.frame(what + "&time=3&indicator=visual"); }, "between frames");
     expect_refused([&] { explorer.frame(what + "&time=7"); }, "7");
     expect_refused([&] { alone.frame(what + "&time=7"); }, "one frame");
 }
