@@ -38,7 +38,7 @@ void expect_same_from_threads(const Grid& grid, const Field& field,
             for (std::size_t i = 0; i < alone.size(); ++i) expect_same(alone[i], together[i]);
         }
         const auto triangles = [&](const Executor& executor) {
-            const auto at = [&](double) { return criterion; };
+            const auto at = [&](double) { return Threshold(criterion); };
             return find_threshold(grid, field, isovalues[0], at, indicator, 1000000, options,
                                   executor)
                 .triangles;

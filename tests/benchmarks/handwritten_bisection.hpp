@@ -68,7 +68,7 @@ private:
         }
         const std::uint32_t m = (i0 + (tag == 1 ? i1 : tag == 2 ? i2 : i3)) / 2;
         const Node node = nodes_[m];
-        const float bound = std::bit_cast<float>(std::uint32_t{node.bound} << 16U);
+        const auto bound = std::bit_cast<float>(std::uint32_t{node.bound} << 16U);
         if (hi + bound < isovalue_ || lo - bound > isovalue_) return;
         if (node.stop <= threshold_) {
             ++stopped;

@@ -96,7 +96,7 @@ private:
             bound = std::max(bound, nodes_[low + half * node].bound);
             stop = std::max(stop, nodes_[low + half * node].stop);
         }
-        const float range = std::bit_cast<float>(std::uint32_t{bound} << 16U);
+        const auto range = std::bit_cast<float>(std::uint32_t{bound} << 16U);
         if (hi + range < isovalue_ || lo - range > isovalue_) return;
         if (stop <= threshold_) {
             ++stopped;
@@ -118,8 +118,8 @@ private:
             if ((pattern >> a & 1U) == (pattern >> b & 1U)) continue;
             const float fraction = (isovalue_ - u[a]) / (u[b] - u[a]);
             for (std::size_t d = 0; d < 3; ++d) {
-                const float from = static_cast<float>(at[d] + size * (a >> d & 1U));
-                const float to = static_cast<float>(at[d] + size * (b >> d & 1U));
+                const auto from = static_cast<float>(at[d] + size * (a >> d & 1U));
+                const auto to = static_cast<float>(at[d] + size * (b >> d & 1U));
                 vertex[e][d] = from + fraction * (to - from);
             }
         }
