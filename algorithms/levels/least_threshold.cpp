@@ -9,6 +9,7 @@
 #include <levels/bfloat16_search.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/error.hpp>
+#include <walk/frontier.hpp>
 
 namespace nestgrid {
 
@@ -37,6 +38,7 @@ public:
         : count_{count}, max_triangles_{max_triangles} {}
 
     const TriangleBudget& best() const { return best_; }
+    bool any_fits() const { return any_fits_; }
 
     bool fits(std::uint16_t code) {
         const double threshold = bfloat16_value(code);
@@ -46,6 +48,7 @@ public:
         if (triangles) {
             best_.threshold = threshold;
             best_.triangles = *triangles;
+            any_fits_ = true;
         }
         return triangles.has_value();
     }
@@ -86,21 +89,33 @@ private:
     const CountTriangles& count_;
     std::uint64_t max_triangles_;
     TriangleBudget best_;
+    bool any_fits_ = false;
 };
 
-}  // namespace
-
-TriangleBudget least_threshold(const CountTriangles& count, double start,
-                               std::uint64_t max_triangles) {
-    Trials trials(count, max_triangles);
-    if (trials.fits(0)) return trials.best();
+void search(Trials& trials, double start) {
+    if (trials.fits(0)) return;
     const std::uint16_t first =
         std::min(bfloat16_above(float_above(std::max(start, 0.0))), greatest);
     const Bracket bracket =
         first > 0 && trials.fits(first) ? trials.bracket_below(first) : trials.bracket_above(first);
     engine::least_that_fits(bracket.beyond, bracket.within,
                             [&](std::uint16_t code) { return trials.fits(code); });
-    return trials.best();
+}
+
+}  // namespace
+
+TriangleBudget least_threshold(const CountTriangles& count, double start,
+                               std::uint64_t max_triangles) {
+    Trials trials(count, max_triangles);
+    try {
+        search(trials, start);
+        return trials.best();
+    } catch (const engine::Cancelled&) {
+        TriangleBudget best = trials.best();
+        best.cancelled = true;
+        if (!trials.any_fits()) best.threshold = bfloat16_value(greatest);
+        return best;
+    }
 }
 
 }  // namespace nestgrid

@@ -261,6 +261,36 @@ TEST(LeastThreshold, IsOneOfAnythingThatCounts) {
 }
 
 /// The search itself, for a number of triangles that falls at one place, from any start.
+/// Wherever progress cancels, what was found by then keeps the budget, and nothing is thrown.
+TEST(LeastThreshold, EndsWhereProgressCancels) {
+    const Samples n{65, 65, 65};
+    const SampledField data = sampled_fields(n)[1];
+    const LatticeBisection<3> grid({.samples = n});
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    const auto at = [&](double threshold) { return Threshold(&indicator, threshold); };
+    const std::uint64_t finest =
+        isosurface(grid, field, data.isovalue, indicator).surface.simplices.size();
+    const std::uint64_t budget = finest / 2;
+    int cancelled = 0;
+    for (int calls = 0; calls < 20; ++calls) {
+        int left = calls;
+        const IsosurfaceOptions options{.max_triangles = budget,
+                                        .progress = [&](const auto&) { return left-- > 0; }};
+        const TriangleBudget found =
+            find_threshold(grid, field, data.isovalue, at, indicator, budget, options);
+        cancelled += found.cancelled ? 1 : 0;
+        EXPECT_LE(found.triangles, budget);
+        const auto drawn = isosurface(grid, field, data.isovalue, at(found.threshold), indicator);
+        EXPECT_LE(drawn.surface.simplices.size(), budget);
+        left = calls;
+        EXPECT_LE(
+            isosurface(grid, field, data.isovalue, indicator, options).surface.simplices.size(),
+            budget);
+    }
+    EXPECT_GT(cancelled, 3);
+}
+
 TEST(LeastThreshold, EndsAtThePlaceWhereTheNumberFalls) {
     const double infinity = std::numeric_limits<double>::infinity();
     for (const double place : {1e-30, 1e-3, 1.0, 255.0, 1e30, 3.38e38}) {

@@ -30,6 +30,9 @@ struct TriangleBudget {
     std::uint64_t triangles = 0;  ///< of the surface at it
     std::uint64_t extracted = 0;  ///< over all trials: the cost of the search
     int trials = 0;
+    /// By options.progress: `threshold` is the least one that was found to keep within the number
+    /// by then, or the greatest one, with 0 triangles.
+    bool cancelled = false;
 };
 
 /// The number of triangles at a threshold, or nothing where there are more than `most`: a function
@@ -39,7 +42,8 @@ using CountTriangles =
 
 /// \param start a threshold at which about nothing is left to be projected away, such as the range
 ///        of the data for indicators in their units; any number is right, others cost trials
-/// \throw InvalidInput where there are more than max_triangles even at the greatest threshold, 3.4e38, and what
+/// \throw InvalidInput where there are more than max_triangles even at the greatest
+/// threshold, 3.4e38, and what
 ///        count() throws
 TriangleBudget least_threshold(const CountTriangles& count, double start,
                                std::uint64_t max_triangles);
