@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "moments.hpp"
 
+#include <utility>
+
 #include "extract.hpp"
 
 const ChosenIndicator& Moment::indicators() const {
@@ -10,9 +12,13 @@ const ChosenIndicator& Moment::indicators() const {
 }
 
 Moments::Moments(const InputField& field, const TimeOptions& time,
-                 const std::filesystem::path& path, const ProjectionChoice& choice,
-                 const std::optional<LensRequest>& lens, int threads)
-    : field_{field}, time_{time}, choice_{choice}, lens_{lens}, executor_(threads) {
+                 const std::filesystem::path& path, ProjectionChoice choice,
+                 std::optional<LensRequest> lens, int threads)
+    : field_{field},
+      time_{time},
+      choice_{std::move(choice)},
+      lens_{std::move(lens)},
+      executor_(threads) {
     require_frames(time, field.times, path);
 }
 

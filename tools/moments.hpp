@@ -49,7 +49,7 @@ public:
     /// \param path of its file, for sentences
     /// \throw nestgrid::InvalidInput as require_frames()
     Moments(const InputField& field, const TimeOptions& time, const std::filesystem::path& path,
-            const ProjectionChoice& choice, const std::optional<LensRequest>& lens, int threads);
+            ProjectionChoice choice, std::optional<LensRequest> lens, int threads);
 
     const nestgrid::Executor& executor() const { return executor_; }
     /// Calls function(moment) for each, in the order of their times.

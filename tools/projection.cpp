@@ -77,14 +77,13 @@ void check(const ProjectionChoice& choice) {
     throw InvalidInput("--blend is not a finite number of at least 1");
 }
 
-FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames,
-                             const ProjectionChoice& choice, const std::optional<LensRequest>& lens,
-                             const nestgrid::Executor& executor)
-    : choice_{choice},
-      lens_{lens},
+FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames, ProjectionChoice choice,
+                             std::optional<LensRequest> lens, const nestgrid::Executor& executor)
+    : choice_{std::move(choice)},
+      lens_{std::move(lens)},
       least_{std::numeric_limits<double>::infinity()},
       greatest_{-least_} {
-    const nestgrid::Spread spread{.factor = choice.indicator == "offset" ? choice.blend : 1};
+    const nestgrid::Spread spread{.factor = choice_.indicator == "offset" ? choice_.blend : 1};
     for (const SharedHierarchy& frame : frames) {
         std::visit(
             [&](const auto& hierarchy) {
@@ -94,8 +93,17 @@ FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames,
         least_ = std::min(least_, offsets_.back().least());
         greatest_ = std::max(greatest_, offsets_.back().greatest());
     }
+    if (frames.size() > 1 && (choice_.indicator == "numerical" || choice_.indicator == "wavelet")) {
+        for (const SharedHierarchy& frame : frames) {
+            std::visit(
+                [&](const auto& hierarchy) {
+                    swept_.push_back(*swept_indicator(*hierarchy, choice_, greatest_ - least_));
+                },
+                frame);
+        }
+    }
     if (!lens_) return;
-    lens_->options.blend = lens_->spread.factor = choice.blend;
+    lens_->options.blend = lens_->spread.factor = choice_.blend;
     std::visit(
         [&](const auto& hierarchy) {
             sizes_.emplace(nestgrid::mesh_size(*hierarchy, lens_->spread));
@@ -106,6 +114,7 @@ FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames,
 std::size_t FramePrerolls::memory_bytes() const {
     std::size_t bytes = sizes_ ? sizes_->memory_bytes() : 0;
     for (const auto& frame : offsets_) bytes += frame.memory_bytes();
+    for (const auto& frame : swept_) bytes += frame.memory_bytes();
     return bytes;
 }
 
@@ -120,6 +129,12 @@ ChosenIndicator::ChosenIndicator(const FramePrerolls& prerolls, const SharedHier
         for (const auto& frame : offsets) frames.push_back(&frame);
         between_.emplace(std::move(frames), weights);
     }
+    if (!prerolls.swept().empty()) {
+        std::vector<const nestgrid::SweptIndicator*> frames;
+        for (const auto& frame : prerolls.swept()) frames.push_back(&frame);
+        swept_between_.emplace(std::move(frames), weights);
+        return;
+    }
     std::visit(
         [&](const auto& each) {
             swept_ = swept_indicator(*each, prerolls.choice(), greatest() - least());
@@ -133,6 +148,7 @@ const nestgrid::Bounds& ChosenIndicator::bounds() const {
 }
 
 const nestgrid::Indicator& ChosenIndicator::chosen() const {
+    if (swept_between_) return *swept_between_;
     if (swept_) return *swept_;
     if (between_) return *between_;
     return *alone_;

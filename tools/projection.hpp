@@ -11,7 +11,7 @@
 
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
-#include <nestgrid/algorithms/swept_indicator.hpp>
+#include <nestgrid/algorithms/swept_key_frames.hpp>
 
 #include "frame_field.hpp"
 #include "lens_options.hpp"
@@ -45,13 +45,16 @@ void check(const ProjectionChoice& choice);
 class FramePrerolls {
 public:
     /// Walks all frames.
-    FramePrerolls(const std::vector<SharedHierarchy>& frames, const ProjectionChoice& choice,
-                  const std::optional<LensRequest>& lens, const nestgrid::Executor& executor);
+    FramePrerolls(const std::vector<SharedHierarchy>& frames, ProjectionChoice choice,
+                  std::optional<LensRequest> lens, const nestgrid::Executor& executor);
 
     const ProjectionChoice& choice() const { return choice_; }
     const std::optional<LensRequest>& lens() const { return lens_; }
     /// Of each frame, spread for blending where the choice compares thresholds with them.
     const std::vector<nestgrid::HierarchicalIndicator>& offsets() const { return offsets_; }
+    /// The chosen indicator of each of several frames, where it is that of a time between them,
+    /// too: the numerical and the wavelet one. Else empty.
+    const std::vector<nestgrid::SweptIndicator>& swept() const { return swept_; }
     /// Of elements; null where there is no lens.
     const nestgrid::SweptIndicator* sizes() const { return sizes_ ? &*sizes_ : nullptr; }
     double least() const { return least_; }        ///< of all frames
@@ -62,6 +65,7 @@ private:
     ProjectionChoice choice_;
     std::optional<LensRequest> lens_;
     std::vector<nestgrid::HierarchicalIndicator> offsets_;
+    std::vector<nestgrid::SweptIndicator> swept_;
     std::optional<nestgrid::SweptIndicator> sizes_;
     double least_;
     double greatest_;
@@ -71,7 +75,9 @@ private:
 /// and the sizes of elements for a lens. The prerolls must outlive it.
 class ChosenIndicator {
 public:
-    /// \param hierarchy the field at that moment; an indicator other than offsets is made of it
+    /// \param hierarchy the field at that moment; an indicator that the prerolls do not have is
+    /// made
+    ///        of it
     /// \param weights of the frames; empty where there is one frame
     /// \throw InvalidInput where the choice makes no sense for the hierarchy
     ChosenIndicator(const FramePrerolls& prerolls, const SharedHierarchy& hierarchy,
@@ -118,5 +124,6 @@ private:
     const FramePrerolls* prerolls_;
     const nestgrid::HierarchicalIndicator* alone_ = nullptr;  // at a frame; else null
     std::optional<nestgrid::KeyFrames> between_;              // between frames
-    std::optional<nestgrid::SweptIndicator> swept_;           // empty where offsets are chosen
+    std::optional<nestgrid::SweptKeyFrames> swept_between_;   // where the prerolls have swept()
+    std::optional<nestgrid::SweptIndicator> swept_;           // else, unless offsets are chosen
 };
