@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Builds everything, the program, the solvers' adapters, Python and the page included, with each of
-# the presets asan, tsan and tidy, and runs the tests of the first two. Ends with one line a preset: what it did and
-# how long it took. Arguments name presets; without any, all three run.
+# the presets asan, tsan and tidy, and runs the tests of the first two. Ends with one line a preset:
+# what it did and how long it took. Arguments name presets; without any, all three run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/packages.sh

@@ -36,5 +36,6 @@ std::string short_name(const std::string& name);
 /// Writes a PNG with the surfaces side by side, each whole above and, where asked for, magnified
 /// with its triangles below. Coloured surfaces have a scalar bar. Debian's VTK draws through an X
 /// display; where none can be used, an Xvfb is started for the time of drawing. The drawing happens
-/// in a process of its own, so its failure is an error. \throw nestgrid::IoError
+/// in a process of its own, so its failure is an error.
+/// \throw nestgrid::IoError
 void write_picture(const std::vector<Panel>& panels, const std::filesystem::path& path);

@@ -8,9 +8,9 @@
 
 /// The distance from the solid within the closed surface of a file: .stl, .obj, .ply, .off or .vtp,
 /// of triangles and quadrilaterals, which are cut in two. Where faces do not share the points that
-/// they name, points with equal coordinates are one; orientation has no meaning. To be called before
-/// there are threads.
+/// they name, points with equal coordinates are one; orientation has no meaning. To be called
+/// before there are threads.
 /// \throw nestgrid::IoError where the file cannot be read
-/// \throw nestgrid::InvalidInput where the surface is empty or open, intersects or touches itself, or
-///        where the program was built without CGAL
+/// \throw nestgrid::InvalidInput where the surface is empty or open, intersects or touches itself,
+///        or where the program was built without CGAL
 nestgrid::Distance read_solid(const std::filesystem::path& path);

@@ -86,8 +86,9 @@ Shading height_field(const Hierarchy<Real>& hierarchy, double scale,
                      const Executor& executor = SequentialExecutor{});
 
 /// The number of triangles that a shading, or a height field of any scale, has under a criterion,
-/// or nothing where there are more than `most`. Counts up to there, and stores no triangle. \param
-/// options only flatness and progress have an effect \throw InvalidInput, GridError as shading()
+/// or nothing where there are more than `most`. Counts up to there, and stores no triangle.
+/// \param options only flatness and progress have an effect
+/// \throw InvalidInput, GridError as shading()
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Criterion& criterion, const Bounds& bounds,

@@ -42,9 +42,8 @@ using CountTriangles =
 
 /// \param start a threshold at which about nothing is left to be projected away, such as the range
 ///        of the data for indicators in their units; any number is right, others cost trials
-/// \throw InvalidInput where there are more than max_triangles even at the greatest
-/// threshold, 3.4e38, and what
-///        count() throws
+/// \throw InvalidInput where there are more than max_triangles even at the greatest threshold,
+///        3.4e38, and what count() throws
 TriangleBudget least_threshold(const CountTriangles& count, double start,
                                std::uint64_t max_triangles);
 
