@@ -100,8 +100,10 @@ inline Forest<3> cubes_and_prisms(std::mt19937& random) {
     Forest<3> forest;
     const std::uint32_t rows = 1 + pick(2);
     const bool prisms = pick(3) == 0;
-    for (std::uint32_t i = 0; i < 2 * 3 * (rows + 1); ++i) {
-        forest.add_node({double(i % 3), double(i / 3 % (rows + 1)), double(i / 3 / (rows + 1))});
+    for (const double z : {0.0, 1.0}) {
+        for (std::uint32_t y = 0; y <= rows; ++y) {
+            for (const double x : {0.0, 1.0, 2.0}) forest.add_node({x, double(y), z});
+        }
     }
     const std::uint32_t up = 3 * (rows + 1);
     for (std::uint32_t e = 0; e < 2 * rows; ++e) {

@@ -88,9 +88,10 @@ double area_in_cubes(const Forest<3>& forest, const PlaneAt& plane) {
     double rows = 0;
     for (const Point& x : forest.positions) rows = std::max(rows, x[1]);
     double area = 0;
-    for (int i = 0; i < 2 * static_cast<int>(rows); ++i) {
-        const Point corner{double(i % 2), double(i / 2), 0};
-        area += area_in_cube(plane.through - corner, plane.normal);
+    for (double y = 0; y < rows; ++y) {
+        for (const double x : {0.0, 1.0}) {
+            area += area_in_cube(plane.through - Point{x, y, 0}, plane.normal);
+        }
     }
     return area / plane.cubes;
 }
@@ -157,8 +158,10 @@ struct Halved {
 /// Two cubes side by side along x.
 Forest<3> two_cubes(const Halved& left, const Halved& right) {
     Forest<3> forest;
-    for (unsigned i = 0; i < 12; ++i) {
-        forest.add_node({double(i % 3), double(i / 3 % 2), double(i / 6)});
+    for (const double z : {0.0, 1.0}) {
+        for (const double y : {0.0, 1.0}) {
+            for (const double x : {0.0, 1.0, 2.0}) forest.add_node({x, y, z});
+        }
     }
     forest.add_coarse(Shape::hexahedron, {0, 1, 3, 4, 6, 7, 9, 10}, 1);
     forest.add_coarse(Shape::hexahedron, {1, 2, 4, 5, 7, 8, 10, 11}, 1);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Compressed values are the values, on every family and under every saturated criterion.
-#include <cstring>
+#include <bit>
 #include <limits>
 #include <map>
 #include <random>
@@ -143,13 +143,14 @@ TEST(Compressed, KeepsEveryBit) {
     const CompressedField<LatticeOctree<3>, float> decoded(grid, values);
     const auto hierarchy = erase(grid, decoded);
     const engine::Walk<float> walk(hierarchy, {.values = true, .keys = true});
+    const auto bits_of = [](float x) { return std::bit_cast<std::uint32_t>(x); };
     std::size_t different = 0;
     engine::for_each_element(walk, false, [&](const auto& view, const auto&) {
         std::array<NodeKey, max_corners> keys{};
         walk.corners(view, keys.data(), nullptr);
         for (std::size_t k = 0; k < view.corner_count(); ++k) {
             const float stored = samples[static_cast<std::size_t>(keys[k])];
-            different += std::memcmp(&stored, &view.value[k], sizeof stored) != 0 ? 1 : 0;
+            different += bits_of(stored) != bits_of(view.value[k]) ? 1 : 0;
         }
     });
     EXPECT_EQ(different, 0U);

@@ -337,7 +337,7 @@ std::vector<std::array<std::array<double, 4>, 3>> shown(const Surface<3>& s) {
             const Point& x = s.vertices[t[i]];
             corners[i] = {x[0], x[1], x[2], s.attributes[t[i]]};
         }
-        std::ranges::rotate(corners, std::ranges::min_element(corners));
+        std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
     }
     std::ranges::sort(all);
     return all;
