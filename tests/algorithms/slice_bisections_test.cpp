@@ -7,6 +7,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
@@ -148,6 +149,26 @@ TEST(KnownBisections, StreamTheTrianglesOfASlice) {
             const auto triangles = stream(c.known, c.known_field);
             EXPECT_GT(triangles.size(), 100U);
             expect_same_bits(triangles, stream(c.unknown, c.unknown_field), "triangles");
+        }
+    }
+}
+
+/// Criteria that are not the threshold of the bounds are asked for one node at a time.
+TEST(KnownBisections, AreSlicedUnderOtherCriteria) {
+    const SlicedLattice c;
+    const HierarchicalIndicator another(c.known, c.known_field);
+    const SweptIndicator wavelets = wavelet_indicator(c.known, c.known_field);
+    const auto expect_same_under = [&](const Plane& plane, const Criterion& criterion) {
+        const Slice a = slice(c.known, c.known_field, plane, criterion, c.indicator);
+        EXPECT_GT(a.surface.simplices.size(), 50U);
+        expect_same_slice(a, slice(c.unknown, c.unknown_field, plane, criterion, c.indicator));
+    };
+    for (const Plane& plane : c.planes) {
+        for (const double threshold : c.thresholds) {
+            const Threshold s(&another, threshold);
+            expect_same_under(plane, s);
+            expect_same_under(plane, s && Threshold(&wavelets, 2 * threshold));
+            expect_same_under(plane, Exact{});
         }
     }
 }
