@@ -18,7 +18,8 @@ using nestgrid::Point;
 
 constexpr const char* known =
     "ball:x,y,z,r, box:x,x,y,y,z,z, halfspace:x,y,z,x,y,z, cone:x,y,z,x,y,z,degrees, "
-    "polygon:FILE or surface:FILE";
+    "frustum:x,y,z,x,y,z,x,y,z,degrees,aspect,nearest,farthest, polyhedron:FILE, polygon:FILE or "
+    "surface:FILE";
 
 [[noreturn]] void refuse(const std::string& text) {
     throw nestgrid::InvalidInput("the lens '" + text + "' is none of " + known);
@@ -45,8 +46,10 @@ Point point_at(const std::vector<double>& numbers, std::size_t first) {
     return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
 
-/// \throw nestgrid::IoError where the file is no list of corners, of 10 MB at most
-Distance read_polygon(const std::string& path) {
+/// \param each how many numbers are on each line, and `what` they are
+/// \throw nestgrid::IoError where the file is no such list, of 10 MB at most
+std::vector<double> read_numbers(const std::string& path, std::size_t each,
+                                 const std::string& what) {
     constexpr std::uintmax_t most_bytes = 10000000;
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
@@ -57,14 +60,28 @@ Distance read_polygon(const std::string& path) {
     double number = 0;
     const bool small = std::filesystem::file_size(path, error) <= most_bytes;
     while (small && file >> number) numbers.push_back(number);
-    if (!file.eof() || numbers.empty() || numbers.size() % 2 != 0) {
-        throw nestgrid::IoError("'" + path + "' is no list of corners, x and y on each line");
+    if (!file.eof() || numbers.empty() || numbers.size() % each != 0) {
+        throw nestgrid::IoError("'" + path + "' is no list of " + what + " on each line");
     }
+    return numbers;
+}
+
+Distance read_polygon(const std::string& path) {
+    const auto numbers = read_numbers(path, 2, "corners, x and y");
     std::vector<nestgrid::ImagePoint> corners;
     for (std::size_t i = 0; i < numbers.size(); i += 2) {
         corners.push_back({numbers[i], numbers[i + 1]});
     }
     return nestgrid::Polygon(std::move(corners));
+}
+
+Distance read_polyhedron(const std::string& path) {
+    const auto numbers = read_numbers(path, 6, "half-spaces, a point and the outer normal");
+    std::vector<nestgrid::HalfSpace> sides;
+    for (std::size_t i = 0; i < numbers.size(); i += 6) {
+        sides.emplace_back(point_at(numbers, i), point_at(numbers, i + 3));
+    }
+    return nestgrid::ConvexPolyhedron(std::move(sides));
 }
 
 Distance domain_of(const std::string& text) {
@@ -93,6 +110,16 @@ Distance domain_of(const std::string& text) {
         const auto n = numbers_of(text, list, 7);
         return nestgrid::Cone(point_at(n, 0), point_at(n, 3), n[6] * std::numbers::pi / 180);
     }
+    if (kind == "frustum") {
+        const auto n = numbers_of(text, list, 13);
+        const nestgrid::PerspectiveCamera camera{.eye = point_at(n, 0),
+                                                 .towards = point_at(n, 3),
+                                                 .up = point_at(n, 6),
+                                                 .angle = n[9] * std::numbers::pi / 180,
+                                                 .aspect = n[10]};
+        return nestgrid::view_frustum(camera, n[11], n[12]);
+    }
+    if (kind == "polyhedron") return read_polyhedron(list);
     if (kind == "polygon") return read_polygon(list);
     if (kind == "surface") return read_solid(list);
     refuse(text);

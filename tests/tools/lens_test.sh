@@ -41,7 +41,9 @@ blended 1 -o jumps.vtp && blended 1.5 -o moves.vtp && cmp -s jumps.vtp moves.vtp
 
 # The other domains, and the other commands.
 printf '0 0\n9 0\n9 10\n0 10\n' >half.txt
-for lens in halfspace:0,11,0,0,1,0 cone:5,-20,17,0,1,0,8 polygon:half.txt; do
+frustum=frustum:5,-20,17,0,1,0,0,0,1,20,1,5,60
+printf '0 0 9 0 0 -1\n0 0 20 0 0 1\n0 12 0 0 2 0\n' >slab.txt
+for lens in halfspace:0,11,0,0,1,0 cone:5,-20,17,0,1,0,8 polygon:half.txt $frustum polyhedron:slab.txt; do
     run_closed isosurface v.vti --value 130 --lens $lens
     [ "$triangles" -gt "$coarsest" ] && [ "$triangles" -lt "$finest" ] ||
         fail "$lens: $triangles triangles"
@@ -123,6 +125,10 @@ refused 1 "'.' is no file" $(surface) --lens=polygon:.
 : >empty.txt && refused 1 'no list of corners' $(surface) --lens=polygon:empty.txt
 echo 1 2 3 >odd.txt && refused 1 'no list of corners' $(surface) --lens=polygon:odd.txt
 echo 1 2 3 4 x >words.txt && refused 1 'no list of corners' $(surface) --lens=polygon:words.txt
+refused 1 'no list of half-spaces' $(surface) --lens=polyhedron:odd.txt
+echo 0 0 0 0 0 0 >flat.txt && refused 1 'normal' $(surface) --lens=polyhedron:flat.txt
+refused 1 'nearest' $(surface) --lens="${frustum%5,60}60,5"
+refused 1 'none of ball' $(surface) --lens=frustum:1,2,3
 echo 1 2 3 4 >two.txt && refused 1 'fewer than three' $(surface) --lens=polygon:two.txt
 refused 1 'finest is negative' $(surface) --lens=ball:1,2,3,4 --finest=-1
 refused 1 'finest is negative' $(surface) --lens=ball:1,2,3,4 --finest=nan
