@@ -47,32 +47,14 @@ void require_one_hierarchy(const HierarchicalIndicator& first, const Hierarchica
 KeyFrames::KeyFrames(std::vector<const HierarchicalIndicator*> frames,
                      std::span<const float> weights)
     : frames_{std::move(frames)} {
-    if (frames_.empty()) throw InvalidInput("there are no frames to interpolate between");
-    for (std::size_t i = 1; i < frames_.size(); ++i) {
-        require_one_hierarchy(*frames_[0], *frames_[i], i);
-    }
+    const auto& all = frames_.frames();
+    for (std::size_t i = 1; i < all.size(); ++i) require_one_hierarchy(first(), *all[i], i);
     set_weights(weights);
 }
 
 void KeyFrames::set_weights(std::span<const float> weights) {
-    detail::require_weights(frames_.size(), weights);
-    terms_.clear();
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
-        if (weights[i] != 0) {
-            terms_.push_back({frames_[i], std::abs(static_cast<double>(weights[i]))});
-        }
-    }
-    set_spread();
+    frames_.set_weights(weights);
     set_range(weights);
-}
-
-void KeyFrames::set_spread() {
-    spread_ = terms_.empty() ? Spread{} : terms_.front().frame->spread();
-    spread_.slope = 0;
-    for (const auto& [frame, weight] : terms_) {
-        spread_.factor = std::min(spread_.factor, frame->spread().factor);
-        spread_.slope += weight * frame->spread().slope;
-    }
 }
 
 /// Computes the range of U(t) and how far rounding can take its values.
@@ -87,9 +69,9 @@ void KeyFrames::set_range(std::span<const float> weights) {
     double sum_of_greatest = 0;
     double roundoff = 0;
     least_ = greatest_ = 0;
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
         if (weights[i] == 0) continue;
-        const HierarchicalIndicator& frame = *frames_[i];
+        const HierarchicalIndicator& frame = *frames_.frames()[i];
         const auto weight = static_cast<double>(weights[i]);
         const double at_least = weight * frame.least();
         const double at_greatest = weight * frame.greatest();
@@ -99,14 +81,14 @@ void KeyFrames::set_range(std::span<const float> weights) {
         roundoff = std::max(roundoff, frame.roundoff());
     }
     rounding_ = 0;
-    if (terms_.empty()) return;
+    if (frames_.term_count() == 0) return;
     const bool is_frame =
-        terms_.size() == 1 && std::count(weights.begin(), weights.end(), 1.0F) == 1;
+        frames_.term_count() == 1 && std::count(weights.begin(), weights.end(), 1.0F) == 1;
     if (is_frame) return;
-    const auto count = static_cast<double>(terms_.size());
+    const auto count = static_cast<double>(frames_.term_count());
     const double of_value =
         2 * count * (roundoff * sum_of_greatest + std::numeric_limits<float>::denorm_min());
-    rounding_ = 2 * of_value + 45 * frames_[0]->generations() * roundoff * sum_of_greatest;
+    rounding_ = 2 * of_value + 45 * first().generations() * roundoff * sum_of_greatest;
     least_ -= of_value;
     greatest_ += of_value;
 }
@@ -125,7 +107,8 @@ double KeyFrames::with_rounding(double sum) const {
 
 double KeyFrames::bound(const Rule& rule, std::span<const NodeKey> nodes) const {
     const auto at = [this](NodeKey node) {
-        return sum([node](const HierarchicalIndicator& frame) { return frame.bound(node); });
+        return frames_.sum(
+            [node](const HierarchicalIndicator& frame) { return frame.bound(node); });
     };
     if (rule.inside != no_new_node) return with_rounding(at(nodes[rule.inside]));
     double greatest = 0;
@@ -134,8 +117,8 @@ double KeyFrames::bound(const Rule& rule, std::span<const NodeKey> nodes) const 
 }
 
 double KeyFrames::offset_bound(NodeKey node) const {
-    return with_rounding(
-        sum([node](const HierarchicalIndicator& frame) { return frame.offset_bound(node); }));
+    return with_rounding(frames_.sum(
+        [node](const HierarchicalIndicator& frame) { return frame.offset_bound(node); }));
 }
 
 }  // namespace nestgrid

@@ -9,7 +9,8 @@
 // Invariants, up to the rounding of U(t), which bounds include:
 //   - stop(t, x) is not below the offset of U(t) at x, also where weights are negative;
 //   - S = (stop <= epsilon) is saturated, and U(t) within its bounds;
-//   - frames that are equal give their own stop at every time: neither the greatest of |mu_i| stop_i
+//   - frames that are equal give their own stop at every time: neither the greatest of |mu_i|
+//   stop_i
 //     nor their Euclidean norm does, and still data would change their grid between two frames;
 //   - stop has the same bits wherever it is asked for: weights are float, so that each product is
 //     exact in double, and sums are taken in the order of the frames;
@@ -21,7 +22,7 @@
 
 #include <vector>
 
-#include <nestgrid/algorithms/frame_weights.hpp>
+#include <nestgrid/algorithms/detail/weighted_frames.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
@@ -39,20 +40,20 @@ public:
     void set_weights(std::span<const float> weights);
 
     double stop(NodeKey node) const override {
-        return sum([node](const HierarchicalIndicator& frame) { return frame.stop(node); });
+        return frames_.sum([node](const HierarchicalIndicator& frame) { return frame.stop(node); });
     }
     NodeMask stops_at_most(const Rule& rule, std::span<const NodeKey> nodes,
                            double epsilon) const override;
     /// The least factor of the frames, and the sum of their slopes, weighted like `stop`.
-    Spread spread() const override { return spread_; }
+    Spread spread() const override { return frames_.spread(); }
     double bound(const Rule& rule, std::span<const NodeKey> nodes) const override;
     double offset_bound(NodeKey node) const override;
 
-    const HangingNodes* hanging() const override { return frames_.front()->hanging(); }
-    std::uint64_t epoch() const override { return frames_.front()->epoch(); }
-    bool stops_conform() const override { return frames_.front()->stops_conform(); }
-    int finest_level() const override { return frames_.front()->finest_level(); }
-    bool one_level_a_node() const override { return frames_.front()->one_level_a_node(); }
+    const HangingNodes* hanging() const override { return first().hanging(); }
+    std::uint64_t epoch() const override { return first().epoch(); }
+    bool stops_conform() const override { return first().stops_conform(); }
+    int finest_level() const override { return first().finest_level(); }
+    bool one_level_a_node() const override { return first().one_level_a_node(); }
 
     double least() const { return least_; }        ///< no value of U(t) is less
     double greatest() const { return greatest_; }  ///< no value of U(t) is greater
@@ -61,25 +62,11 @@ public:
     double rounding() const { return rounding_; }
 
 private:
-    struct Term {
-        const HierarchicalIndicator* frame;
-        double weight;  ///< positive
-    };
-
-    /// Sum of weight * of(frame), a float or a number of its precision, in the order of the frames.
-    template <class Of>
-    double sum(const Of& of) const {
-        double result = 0;
-        for (const auto& [frame, weight] : terms_) result += weight * of(*frame);
-        return result;
-    }
+    const HierarchicalIndicator& first() const { return *frames_.frames().front(); }
     double with_rounding(double sum) const;
-    void set_spread();
     void set_range(std::span<const float> weights);
 
-    std::vector<const HierarchicalIndicator*> frames_;
-    std::vector<Term> terms_;  // of frames whose weight is not 0
-    Spread spread_;
+    detail::WeightedFrames<HierarchicalIndicator> frames_;
     double least_ = 0;
     double greatest_ = 0;
     double rounding_ = 0;

@@ -22,7 +22,7 @@
 
 #include <vector>
 
-#include <nestgrid/algorithms/frame_weights.hpp>
+#include <nestgrid/algorithms/detail/weighted_frames.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -32,31 +32,23 @@ public:
     /// \param frames of one measure and one hierarchy; borrowed
     /// \param weights one for each frame, finite; such as linear_weights()
     /// \throw InvalidInput where there is no frame, or not one finite weight for each
-    SweptKeyFrames(std::vector<const SweptIndicator*> frames, std::span<const float> weights);
+    SweptKeyFrames(std::vector<const SweptIndicator*> frames, std::span<const float> weights)
+        : frames_{std::move(frames)} {
+        set_weights(weights);
+    }
 
     /// Goes to another time.
     /// \throw InvalidInput where there is not one finite weight for each frame
-    void set_weights(std::span<const float> weights);
+    void set_weights(std::span<const float> weights) { frames_.set_weights(weights); }
 
-    /// The same bits wherever it is asked for: each product is exact in double, and sums are taken
-    /// in the order of the frames.
     double stop(NodeKey node) const override {
-        double sum = 0;
-        for (const auto& [frame, weight] : terms_) sum += weight * frame->stop(node);
-        return sum;
+        return frames_.sum([node](const SweptIndicator& frame) { return frame.stop(node); });
     }
     /// The least factor of the frames, and the sum of their slopes, weighted like `stop`.
-    Spread spread() const override { return spread_; }
+    Spread spread() const override { return frames_.spread(); }
 
 private:
-    struct Term {
-        const SweptIndicator* frame;
-        double weight;  ///< positive
-    };
-
-    std::vector<const SweptIndicator*> frames_;
-    std::vector<Term> terms_;  // of frames whose weight is not 0
-    Spread spread_;
+    detail::WeightedFrames<SweptIndicator> frames_;
 };
 
 }  // namespace nestgrid
