@@ -58,7 +58,9 @@ private:
             }
             const auto bounds = key_frames(1, executor);
             if (name == "numerical" || name == "wavelet") {
-                return {swept_frames(name, blend, executor), bounds, bounds.get()};
+                const auto swept = sum_of_frames<SweptKeyFrames>(
+                    [&](Prerolls& frame) { return frame.swept(name, blend, executor); });
+                return {swept, bounds, bounds.get()};
             }
             return {own_.swept(name, blend, executor), bounds, bounds.get()};
         }
@@ -72,34 +74,24 @@ private:
         void clear() override { own_.clear(); }
 
     private:
-        /// The indicator of offsets, with the prerolls that it is made of.
         std::shared_ptr<const KeyFrames> key_frames(double blend, const Executor& executor) const {
-            struct Kept {
-                std::vector<std::shared_ptr<const HierarchicalIndicator>> prerolls;
-                std::optional<KeyFrames> indicator;
-            };
-            const auto kept = std::make_shared<Kept>();
-            std::vector<const HierarchicalIndicator*> borrowed;
-            for (const auto& each : frames_->prerolls_) {
-                kept->prerolls.push_back(each->offsets(blend, executor));
-                borrowed.push_back(kept->prerolls.back().get());
-            }
-            kept->indicator.emplace(std::move(borrowed), weights_);
-            return {kept, &*kept->indicator};
+            return sum_of_frames<KeyFrames>(
+                [&](Prerolls& frame) { return frame.offsets(blend, executor); });
         }
-
-        /// Likewise of another indicator.
-        std::shared_ptr<const SweptKeyFrames> swept_frames(const std::string& name, double blend,
-                                                           const Executor& executor) const {
+        /// An indicator that adds up those of the frames, with what it borrows.
+        /// \param of gives the indicator of one frame, of its prerolls
+        template <class Sum, class Of>
+        std::shared_ptr<const Sum> sum_of_frames(const Of& of) const {
+            using Frame = decltype(of(*frames_->prerolls_.front()));
             struct Kept {
-                std::vector<std::shared_ptr<const SweptIndicator>> prerolls;
-                std::optional<SweptKeyFrames> indicator;
+                std::vector<Frame> frames;
+                std::optional<Sum> indicator;
             };
             const auto kept = std::make_shared<Kept>();
-            std::vector<const SweptIndicator*> borrowed;
+            std::vector<typename Frame::element_type*> borrowed;
             for (const auto& each : frames_->prerolls_) {
-                kept->prerolls.push_back(each->swept(name, blend, executor));
-                borrowed.push_back(kept->prerolls.back().get());
+                kept->frames.push_back(of(*each));
+                borrowed.push_back(kept->frames.back().get());
             }
             kept->indicator.emplace(std::move(borrowed), weights_);
             return {kept, &*kept->indicator};
