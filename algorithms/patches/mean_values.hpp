@@ -10,6 +10,7 @@
 #include <nestgrid/detail/mean.hpp>
 #include <nestgrid/detail/pack.hpp>
 #include <nestgrid/keys.hpp>
+#include <patches/known_bisection.hpp>
 
 namespace nestgrid {
 
@@ -33,6 +34,27 @@ protected:
     CarriedValues& operator=(const CarriedValues&) = default;
     CarriedValues(CarriedValues&&) noexcept = default;
     CarriedValues& operator=(CarriedValues&&) noexcept = default;
+};
+
+/// Those of a field with known bisections (known_bisection.hpp), which is borrowed.
+template <class Grid, class Field>
+class CarriedField final : public CarriedValues<Grid> {
+public:
+    explicit CarriedField(const Field& field) : field_{&field} {}
+
+    void values_at(std::span<const typename Grid::Node> nodes, std::span<const NodeKey> keys,
+                   std::span<double> out) const override {
+        if constexpr (AnswersInRows<Grid>) {
+            field_->values_at(nodes, keys, out);
+        } else {
+            for (std::size_t i = 0; i < out.size(); ++i) {
+                out[i] = static_cast<double>(field_->template value_at<false>(nodes[i], keys[i]));
+            }
+        }
+    }
+
+private:
+    const Field* field_;
 };
 
 /// A function of position that a walk interpolates at all new nodes (position_functions.hpp), with

@@ -45,7 +45,8 @@ void bisect_means(const Hierarchy<double>& hierarchy, Task* task, const Handle& 
     }
     using Grid = ToldBisections<3, double>;
     const Grid grid(hierarchy, task);
-    const ToldCarriedValues<Grid> carried(*rows);
+    const ToldValues<double> told(*rows);
+    const CarriedField<Grid, ToldValues<double>> carried(told);
     const MeanValues<Grid> field(tolerance, carried);
     detail::walk_for(visitor, grid, field, told_element<3>(element), values, level, orientation);
 }

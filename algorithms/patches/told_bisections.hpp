@@ -138,21 +138,6 @@ private:
     const detail::BisectionRows<Real>* rows_;
 };
 
-/// Values that the hierarchy tells, as those that vertices carry.
-template <class Grid>
-class ToldCarriedValues final : public CarriedValues<Grid> {
-public:
-    explicit ToldCarriedValues(const detail::BisectionRows<double>& rows) : rows_{&rows} {}
-
-    void values_at(std::span<const typename Grid::Node> nodes, std::span<const NodeKey> keys,
-                   std::span<double> out) const override {
-        rows_->values(nodes, keys, out);
-    }
-
-private:
-    const detail::BisectionRows<double>* rows_;
-};
-
 /// Walks the bisections below an element in patches: by the rows that the hierarchy tells or, where
 /// it tells none, by its own bisect(). Requires facts().knows_patches.
 /// \throw GridError where the element has a tag that does not exist

@@ -22,14 +22,8 @@ using namespace nestgrid_test;
 
 namespace {
 
-struct Nothing {};
-
-/// The same grid, of which nothing is known at compile time.
 template <int dim>
-struct Unknown : LatticeBisection<dim> {
-    using LatticeBisection<dim>::LatticeBisection;
-    static constexpr Nothing bisections{};
-};
+using Unknown = UnknownGrid<LatticeBisection<dim>>;
 static_assert(KnowsBisections<LatticeBisection<3>, LatticeField<LatticeBisection<3>, float>>);
 static_assert(!KnowsBisections<Unknown<3>, LatticeField<Unknown<3>, float>>);
 

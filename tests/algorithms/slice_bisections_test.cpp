@@ -20,13 +20,7 @@ using namespace nestgrid_test;
 
 namespace {
 
-struct Nothing {};
-
-/// The same grid, of which nothing is known at compile time.
-struct Unknown : LatticeBisection<3> {
-    using LatticeBisection<3>::LatticeBisection;
-    static constexpr Nothing bisections{};
-};
+using Unknown = UnknownGrid<LatticeBisection<3>>;
 
 /// The plain traversal may look at more: at elements with a face in the plane and another one on
 /// the boundary.

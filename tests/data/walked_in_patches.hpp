@@ -8,6 +8,20 @@
 #include <nestgrid/hierarchy.hpp>
 #include <patches/erased_bisections.hpp>
 
+namespace nestgrid_test {
+
+/// What a grid has in the place of what is not to be known of it.
+struct Nothing {};
+
+/// The same grid, of which nothing is known at compile time.
+template <class Grid>
+struct UnknownGrid : Grid {
+    using Grid::Grid;
+    static constexpr Nothing bisections{};
+};
+
+}  // namespace nestgrid_test
+
 namespace nestgrid {
 
 /// Whether the bisections of a grid and a field can be walked in patches (Hierarchy::bisect).
@@ -30,23 +44,6 @@ void bisect_patches(
     detail::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
-/// Values at nodes of a grid with known bisections, as those that vertices carry.
-template <class Grid, class Field>
-class KnownCarriedValues final : public CarriedValues<Grid> {
-public:
-    explicit KnownCarriedValues(const Field& field) : field_{&field} {}
-
-    void values_at(std::span<const typename Grid::Node> nodes, std::span<const NodeKey> keys,
-                   std::span<double> out) const override {
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = static_cast<double>(field_->template value_at<false>(nodes[i], keys[i]));
-        }
-    }
-
-private:
-    const Field* field_;
-};
-
 /// Walks them for a function of position (Hierarchy::bisect_means).
 template <class Grid, class Field>
     requires(
@@ -56,7 +53,7 @@ template <class Grid, class Field>
 void bisect_patches_of_means(const Grid& grid, const Field& field, const ElementOf<Grid>& e,
                              const double* values, double tolerance, int level, int orientation,
                              detail::ErasedBisectionVisitor<3, double>& visitor) {
-    const KnownCarriedValues<Grid, Field> carried(field);
+    const CarriedField<Grid, Field> carried(field);
     detail::walk_for(visitor, grid, MeanValues<Grid>(tolerance, carried), e, values, level,
                      orientation);
 }

@@ -17,25 +17,6 @@ void bisect_patches(const LatticeBisection<dim>& grid,
     detail::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
-/// Samples as the values that vertices carry.
-template <class Sample>
-class CarriedSamples final : public CarriedValues<LatticeBisection<3>> {
-public:
-    using Field = LatticeField<LatticeBisection<3>, Sample>;
-
-    explicit CarriedSamples(const Field& field) : field_{&field} {}
-
-    void values_at(std::span<const LatticeBisection<3>::Node> nodes, std::span<const NodeKey> keys,
-                   std::span<double> out) const override {
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = static_cast<double>(field_->template value_at<false>(nodes[i], keys[i]));
-        }
-    }
-
-private:
-    const Field* field_;
-};
-
 /// The walk of bisect_patches_of_means(), compiled once for all samples.
 void walk_means(const LatticeBisection<3>& grid, const MeanValues<LatticeBisection<3>>& field,
                 const LatticeBisection<3>::Element& e, const double* values, int level,
@@ -47,7 +28,8 @@ void bisect_patches_of_means(const LatticeBisection<3>& grid,
                              const LatticeBisection<3>::Element& e, const double* values,
                              double tolerance, int level, int orientation,
                              detail::ErasedBisectionVisitor<3, double>& visitor) {
-    const CarriedSamples<Sample> carried(field);
+    const CarriedField<LatticeBisection<3>, LatticeField<LatticeBisection<3>, Sample>> carried(
+        field);
     walk_means(grid, {tolerance, carried}, e, values, level, orientation, visitor);
 }
 
