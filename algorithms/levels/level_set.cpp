@@ -13,6 +13,15 @@ namespace {
 
 unsigned all_corners(std::size_t corners) { return (1U << corners) - 1; }
 
+/// The faces whose corners are all among some, one bit each.
+unsigned faces_among(const Topology& t, unsigned corners) {
+    unsigned faces = 0;
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        faces |= unsigned{signs_of(t.face[f], ~corners) == 0} << f;
+    }
+    return faces;
+}
+
 }  // namespace
 
 template <int dimension, class Real>
@@ -217,16 +226,12 @@ bool LevelSet<dimension, Real>::takes(const View& view) {
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::is_near_boundary(const View& view) const {
     const double near = 0x1p28 * walk_->functions()->tolerance(0);
-    const Topology& t = view.topology();
     unsigned close = 0;
     for (std::size_t k = 0; k < view.corner_count(); ++k) {
         const auto value = static_cast<double>(view.value[k * walk_->components()]);
         close |= unsigned{std::abs(value) <= near} << k;
     }
-    unsigned faces = 0;
-    for (std::size_t f = 0; f < t.faces; ++f) {
-        faces |= unsigned{signs_of(t.face[f], ~close) == 0} << f;
-    }
+    const unsigned faces = faces_among(view.topology(), close);
     return faces != 0 && (faces & walk_->boundary(view)) != 0;
 }
 
@@ -269,11 +274,7 @@ unsigned LevelSet<dimension, Real>::boundary_in_slice(const View& view,
         const Real value = view.value[k * walk_->components() + level.component];
         above |= unsigned{value > level.least_inside} << k;
     }
-    const Topology& t = view.topology();
-    unsigned faces = 0;
-    for (std::size_t f = 0; f < t.faces; ++f) {
-        faces |= unsigned{signs_of(t.face[f], above) == 0} << f;
-    }
+    const unsigned faces = faces_among(view.topology(), ~above);
     return faces == 0 ? 0 : faces & walk_->boundary(view);
 }
 
