@@ -14,10 +14,10 @@
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
-#include <walk/walk.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"
+#include "for_each_split.hpp"
 #include "refusal.hpp"
 
 using namespace nestgrid_test;
@@ -93,33 +93,14 @@ std::vector<std::vector<float>> some_weights(std::mt19937& random) {
             {0.5F, -1.0F / 3, 1.25F}};
 }
 
-/// Calls met(view, split, corner keys and keys of new nodes) for every split.
-template <class Met>
-class SplitVisitor final : public engine::Visitor<double> {
-public:
-    SplitVisitor(const engine::Walk<double>& walk, const Met& met) : walk_{&walk}, met_{&met} {}
-    engine::Decision inspect(const engine::ElementView<double>&, const engine::Split&) override {
-        return {};
-    }
-    void extract(const engine::ElementView<double>&) override {}
-    void entered(const engine::ElementView<double>& view, const engine::Split& split,
-                 const double*) override {
-        engine::SplitKeys keys;
-        const std::span<const NodeKey> all = walk_->split_keys(view, split, keys);
-        (*met_)(all.first(view.corner_count()), split.keys);
-    }
-
-private:
-    const engine::Walk<double>* walk_;
-    const Met* met_;
-};
-
-template <class Met>
-void for_each_split(const Hierarchy<double>& hierarchy, const HangingNodes* hanging,
-                    const Met& met) {
-    const engine::Walk<double> walk(hierarchy, {.values = true, .keys = true}, hanging);
-    SplitVisitor<Met> visitor(walk, met);
-    walk.run(visitor);
+/// Calls met(keys of the corners, keys of the new nodes) for every split of one frame.
+template <class Frames, class Met>
+void for_each_split_of(const Frames& frames, const Met& met) {
+    for_each_split<double>(
+        erase(*frames.grid, frames.fields[0]), frames.offsets[0].hanging(),
+        [&](const auto& view, const auto& split, std::span<const NodeKey> keys, const double*) {
+            met(keys.first(view.corner_count()), split.keys);
+        });
 }
 
 template <class Family>
@@ -130,24 +111,23 @@ TYPED_TEST(SweptTime, IsSaturatedAndNotBelowTheIndicatorOfTheTime) {
     for_each_three_frames<TypeParam>(11, [](const auto& frames, const auto& make, auto& random) {
         for (const auto& weights : some_weights(random)) {
             const auto field = frames.between(weights);
-            const auto hierarchy = erase(*frames.grid, field);
-            const SweptIndicator anew = make(hierarchy);
+            const SweptIndicator anew = make(erase(*frames.grid, field));
             const SweptKeyFrames at = frames.at(weights);
             // Each generation rounds a number of the indicator made anew up by at most 2^-7 of it.
             const double rounded_down = std::pow(1 + 0x1p-7, -frames.offsets[0].generations() - 1);
             const Spread spread = at.spread();
             std::size_t broken = 0;
             std::size_t below = 0;
-            for_each_split(hierarchy, frames.offsets[0].hanging(),
-                           [&](std::span<const NodeKey> corners, std::span<const NodeKey> made) {
-                               for (const NodeKey node : made) {
-                                   const double stop = at.stop(node);
-                                   below += stop + 1e-12 >= rounded_down * anew.stop(node) ? 0 : 1;
-                                   for (const NodeKey corner : corners) {
-                                       broken += at.stop(corner) >= spread.factor * stop ? 0 : 1;
-                                   }
-                               }
-                           });
+            for_each_split_of(
+                frames, [&](std::span<const NodeKey> corners, std::span<const NodeKey> made) {
+                    for (const NodeKey node : made) {
+                        const double stop = at.stop(node);
+                        below += stop + 1e-12 >= rounded_down * anew.stop(node) ? 0 : 1;
+                        for (const NodeKey corner : corners) {
+                            broken += at.stop(corner) >= spread.factor * stop ? 0 : 1;
+                        }
+                    }
+                });
             EXPECT_EQ(broken, 0U);
             EXPECT_EQ(below, 0U);
         }
@@ -158,11 +138,9 @@ TYPED_TEST(SweptTime, IsThatOfAFrameAtItsTimeAndOfStillDataAtEveryTime) {
     for_each_three_frames<TypeParam>(12, [](const auto& frames, const auto&, auto& random) {
         const auto expect_same = [&](const SweptKeyFrames& at, const SweptIndicator& frame) {
             std::size_t different = 0;
-            for_each_split(erase(*frames.grid, frames.fields[0]), frames.offsets[0].hanging(),
-                           [&](std::span<const NodeKey>, std::span<const NodeKey> made) {
-                               for (const NodeKey n : made)
-                                   different += at.stop(n) != frame.stop(n);
-                           });
+            for_each_split_of(frames, [&](std::span<const NodeKey>, std::span<const NodeKey> made) {
+                for (const NodeKey n : made) different += at.stop(n) != frame.stop(n);
+            });
             EXPECT_EQ(different, 0U);
         };
         for (std::size_t i = 0; i < 3; ++i) {
