@@ -13,7 +13,7 @@ namespace nestgrid_test {
 /// What a grid has in the place of what is not to be known of it.
 struct Nothing {};
 
-/// The same grid, of which nothing is known at compile time.
+/// A grid of whose bisections nothing is known at compile time any more.
 template <class Grid>
 struct UnknownGrid : Grid {
     using Grid::Grid;
