@@ -52,7 +52,7 @@ ChildMaps make_child_maps(const Rule& rule) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(rule.corner_count()); ++i) {
         shape_function.push_back(at_nodes(rule, i));
     }
-    ChildMaps maps;
+    ChildMaps maps{&rule, {}};
     for (const Child& child : rule.children) {
         std::array<Point, max_corners> corner;
         const std::size_t corners = topology(child.shape).corners;

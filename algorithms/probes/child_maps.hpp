@@ -15,6 +15,7 @@ namespace nestgrid::engine {
 
 /// The children of a rule.
 struct ChildMaps {
+    const Rule* rule;
     std::vector<InverseMap> child;  ///< from reference coordinates of the father
     /// Whether the map of each child is a part of the father's, however deformed the father is.
     bool nested = true;

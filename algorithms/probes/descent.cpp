@@ -42,8 +42,7 @@ void Descent<Real>::run(Group found) {
         const std::size_t first = found[i].element;
         std::size_t last = first;
         while (i < found.size() && found[i].element <= last) {
-            last = std::size_t{found[i].element} + 1;
-            ++i;
+            last = std::size_t{found[i++].element} + 1;
         }
         walk_->run(*this, first, last);
     }
@@ -94,18 +93,15 @@ NodeMask Descent<Real>::children(const View& view) {
     const Rule& rule = *view.member->rule;
     if (rule.new_nodes.empty()) arrive(view);  // inspect() was not called
     Level& level = at_level(view.level);
-    if (level.rule != &rule) {
-        level.rule = &rule;
-        level.maps = &maps_.of(rule);
-    }
+    if (level.maps == nullptr || level.maps->rule != &rule) level.maps = &maps_.of(rule);
     level.nested = !curved_ && (level.affine || level.maps->nested);
     handed_.clear();
     if (margin_ != 0) {
-        for (const auto& in : level.group) hand_to_all(*level.maps, in, 2 * margin(view.level));
+        hand_to_all(*level.maps, level.group, 2 * margin(view.level), handed_);
     } else if (level.nested) {
-        for (const auto& in : level.group) hand_to_deepest(*level.maps, in);
+        hand_to_deepest(*level.maps, level.group, handed_);
     }
-    return sort_by_child(level);
+    return level.handed.sort(handed_, rule.children.size());
 }
 
 template <class Real>
@@ -128,18 +124,16 @@ void Descent<Real>::arrive(const View& view) {
         level.affine = is_affine(view.shape, corners_of(*walk_, view, x));
     } else {
         Level& father = at_level(view.level - 1);
-        const std::size_t first = father.first[view.child];
-        level.group = Group(father.handed).subspan(first, father.first[view.child + 1U] - first);
+        level.group = father.handed.of(view.child);
         const bool affine = father.affine && father.maps->child[view.child].affine();
         level.affine = is_simplex(view.shape) || (father.nested && affine);
-        if (margin_ != 0) refine(view, level);
+        if (margin_ != 0) refine(view, level.group);
     }
 }
 
-/// Makes the reference coordinates those of the element's own map, in the wide descent, and leaves
-/// out points that are too far away.
+/// Makes reference coordinates those of the element's own map, and drops points that are far away.
 template <class Real>
-void Descent<Real>::refine(const View& view, Level& level) {
+void Descent<Real>::refine(const View& view, Group& group) {
     const bool nested = at_level(view.level - 1).nested;
     Corners x;
     const auto corners = nested ? std::span<const Point>{} : corners_of(*walk_, view, x);
@@ -147,50 +141,7 @@ void Descent<Real>::refine(const View& view, Level& level) {
         const bool converged = nested || invert(view.shape, corners, points_[in.point], in.at);
         return !converged || !(face_distance(view.shape, in.at) >= -margin(view.level));
     };
-    const auto end = std::remove_if(level.group.begin(), level.group.end(), is_far);
-    level.group = Group(level.group.begin(), end);
-}
-
-template <class Real>
-void Descent<Real>::hand_to_deepest(const ChildMaps& maps, const PointInElement& point) {
-    PointInElement deepest = point;
-    double greatest = -infinity;
-    for (std::size_t c = 0; c < maps.child.size() && greatest < 0; ++c) {
-        Point s;
-        if (!maps.child[c](point.at, s)) continue;
-        const double distance = face_distance(maps.child[c].shape(), s);
-        if (!(distance > greatest)) continue;
-        greatest = distance;
-        deepest = {s, point.point, static_cast<std::uint32_t>(c)};
-    }
-    if (greatest > -infinity) handed_.push_back(deepest);
-}
-
-template <class Real>
-void Descent<Real>::hand_to_all(const ChildMaps& maps, const PointInElement& point, double margin) {
-    for (std::size_t c = 0; c < maps.child.size(); ++c) {
-        Point s;
-        if (!maps.child[c](point.at, s)) continue;
-        if (!(face_distance(maps.child[c].shape(), s) >= -margin)) continue;
-        handed_.push_back({s, point.point, static_cast<std::uint32_t>(c)});
-    }
-}
-
-template <class Real>
-NodeMask Descent<Real>::sort_by_child(Level& level) {
-    const std::size_t count = level.maps->child.size();
-    NodeMask some = 0;
-    std::fill_n(level.first.begin(), count + 1, 0U);
-    for (const auto& in : handed_) {
-        some |= NodeMask{1} << in.element;
-        ++level.first[in.element + 1U];
-    }
-    for (std::size_t c = 0; c < count; ++c) level.first[c + 1] += level.first[c];
-    std::array<std::size_t, max_children> next;
-    std::copy_n(level.first.begin(), count, next.begin());
-    if (level.handed.size() < handed_.size()) level.handed.resize(handed_.size());
-    for (const auto& in : handed_) level.handed[next[in.element]++] = in;
-    return some;
+    group = {group.begin(), std::remove_if(group.begin(), group.end(), is_far)};
 }
 
 template class Descent<float>;

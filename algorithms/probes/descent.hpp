@@ -17,8 +17,7 @@
 #include <vector>
 
 #include <nestgrid/algorithms/probe.hpp>
-#include <probes/child_maps.hpp>
-#include <probes/coarse_search.hpp>
+#include <probes/handed_points.hpp>
 #include <walk/criterion_question.hpp>
 #include <walk/walk.hpp>
 
@@ -51,21 +50,16 @@ private:
 
     /// The element of one level that the walk is at, and what it hands to its children.
     struct Level {
-        Group group;          ///< the points of the element
-        bool affine = false;  ///< its map is affine
-        const Rule* rule = nullptr;
-        const ChildMaps* maps = nullptr;     ///< of that rule
-        bool nested = false;                 ///< the children's maps are parts of the element's
-        std::vector<PointInElement> handed;  ///< the points of the children, child by child
-        std::array<std::size_t, max_children + 1> first{};  ///< of each child, in `handed`
+        Group group;                      ///< the points of the element
+        bool affine = false;              ///< its map is affine
+        const ChildMaps* maps = nullptr;  ///< of its rule
+        bool nested = false;              ///< the children's maps are parts of the element's
+        HandedPoints handed;              ///< the points of the children
     };
 
     Level& at_level(int level);
     void arrive(const View& view);
-    void refine(const View& view, Level& level);
-    void hand_to_deepest(const ChildMaps& maps, const PointInElement& point);
-    void hand_to_all(const ChildMaps& maps, const PointInElement& point, double margin);
-    NodeMask sort_by_child(Level& level);
+    void refine(const View& view, Group& group);
     double margin(int level) const { return level == 0 ? margin_ : wide_margin; }
 
     const Walk<Real>* walk_;
