@@ -8,12 +8,13 @@
 // and triangles that repeat a vertex vanish, so that every edge keeps as many triangles one way as
 // the other. What remains to be done:
 //   - a fan around a vertex inside an element vanishes where all nodes around it lie on one line
-//     with the vertex;
+//     with the vertex (collapsed_fans.hpp);
 //   - triangles with three nodes on one line vanish, and the triangle beyond the edge between the
-//     outer two nodes is divided at the inner one;
+//     outer two nodes is divided at the inner one (collinear_triangles.hpp);
 //   - two triangles with the same vertices and opposite orientations vanish together;
 //   - where two triangles would run along an edge the same way, or two fans meet in a vertex, the
-//     cuts at the nodes there keep their places. So the surface stays a manifold.
+//     cuts at the nodes there keep their places (node_classes.hpp). So the surface stays a
+//     manifold.
 #pragma once
 
 #include <nestgrid/algorithms/surface.hpp>
