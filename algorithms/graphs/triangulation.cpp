@@ -13,15 +13,9 @@ template <class Real>
 Triangulation<Real>::Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder)
     : graph_{graph},
       polygon_{*graph.walk, graph.shape},
-      surface_{builder, graph.walk->hierarchy().facts().node_count} {
-    own_nodes_.begin(graph.walk->components());
-    surface_.begin(builder, nullptr, false);
-}
-
-template <class Real>
-void Triangulation<Real>::count_only(std::uint64_t most) {
-    tally_ = SimplexTally(most);
-    surface_.count_only();
+      drawn_{{builder, graph.walk->hierarchy().facts().node_count}} {
+    drawn_.nodes.begin(graph.walk->components());
+    drawn_.surface.begin(builder, nullptr, false);
 }
 
 template <class Real>
@@ -33,21 +27,11 @@ void Triangulation<Real>::run(const Executor& executor,
         walk(executor);
         records_ = false;
         restart();
-        tally_.begin_later();
-        own_nodes_.finish();
-        if (!own_nodes_.empty()) nodes_ = &own_nodes_;
+        drawn_.tally.begin_later();
+        drawn_.nodes.finish();
+        if (!drawn_.nodes.empty()) nodes_ = &drawn_.nodes;
     }
     walk(executor);
-}
-
-template <class Real>
-void Triangulation<Real>::report(Shading& result) const {
-    result.counts = counts_;
-    result.counts.extracted = surface_.extracted();
-    result.error_bound = surface_.error_bound();
-    result.edge_nodes = own_nodes_.size();
-    result.edge_nodes_bytes = own_nodes_.memory_bytes();
-    result.table_bytes = surface_.memory_bytes();
 }
 
 /// Walks alone, or in tasks.
@@ -62,7 +46,8 @@ void Triangulation<Real>::walk(const Executor& executor) {
             return *tasks[i]->draws;
         },
         [&](std::size_t i) {
-            add(*tasks[i]);
+            count(tasks[i]->draws->drawn_.counts.calls);
+            drawn_.add(tasks[i]->draws->drawn_, tasks[i]->part);
             tasks[i].reset();
         });
 }
@@ -75,29 +60,18 @@ auto Triangulation<Real>::begin_task() const -> std::unique_ptr<Task> {
         graph_, SurfaceBuilder<3>(task->part, true, graph_.elements));
     task->draws->records_ = records_;
     task->draws->nodes_ = nodes_;
-    if (surface_.counts_only()) task->draws->count_only(tally_.limit());
+    if (drawn_.surface.counts_only()) task->draws->count_only(drawn_.tally.limit());
     return task;
-}
-
-template <class Real>
-void Triangulation<Real>::add(const Task& task) {
-    count(task.draws->counts_.calls);
-    surface_.add_extracted(task.draws->surface_.extracted());
-    surface_.raise_error_bound(task.draws->surface_.error_bound());
-    if (records_) own_nodes_.append(task.draws->own_nodes_);
-    tally_.add(task.draws->tally_);
-    if (surface_.counts_only()) return;
-    surface_.add_part(task.part);
 }
 
 /// \throw Cancelled where progress says so
 template <class Real>
 void Triangulation<Real>::count(std::uint64_t elements) {
-    const std::uint64_t before = counts_.calls;
-    counts_.calls += elements;
-    counts_.visited += elements;
-    if (progress_ == nullptr || before >> 16U == counts_.calls >> 16U) return;
-    if (!(*progress_)(counts_)) throw Cancelled{};
+    const std::uint64_t before = drawn_.counts.calls;
+    drawn_.counts.calls += elements;
+    drawn_.counts.visited += elements;
+    if (progress_ == nullptr || before >> 16U == drawn_.counts.calls >> 16U) return;
+    if (!(*progress_)(drawn_.counts)) throw Cancelled{};
 }
 
 template <class Real>
@@ -125,7 +99,7 @@ Decision Triangulation<Real>::look(const View& view, const Split& split) {
 template <class Real>
 Leaves Triangulation<Real>::leaves(const Rule&, const Real*, NodeMask which, bool closed) {
     count(static_cast<std::uint64_t>(std::popcount(which)));
-    if (records_ && !closed && !tally_.limited()) return {};
+    if (records_ && !closed && !drawn_.tally.limited()) return {};
     return {which, 0};
 }
 
@@ -133,10 +107,10 @@ Leaves Triangulation<Real>::leaves(const Rule&, const Real*, NodeMask which, boo
 /// at least.
 template <class Real>
 void Triangulation<Real>::record(const View& view) {
-    if (tally_.limited() && view.member->hidden != Hidden::wholly) tally_.add_later(1);
+    if (drawn_.tally.limited() && view.member->hidden != Hidden::wholly) drawn_.tally.add_later(1);
     if (!view.closed.any) return;
     polygon_.load(view);
-    polygon_.record(own_nodes_);
+    polygon_.record(drawn_.nodes);
 }
 
 template <class Real>
@@ -144,12 +118,12 @@ void Triangulation<Real>::extract(const View& view) {
     if (records_) return record(view);
     polygon_.load(view);
     const bool finest = view.level == graph_.bounds->finest_level();
-    polygon_.draw(finest ? nullptr : nodes_, surface_);
-    if (surface_.counts_only()) {
-        tally_.add(surface_.builder().target()->simplices.size());
-        return surface_.forget_element();
+    polygon_.draw(finest ? nullptr : nodes_, drawn_.surface);
+    if (drawn_.surface.counts_only()) {
+        drawn_.tally.add(drawn_.surface.builder().target()->simplices.size());
+        return drawn_.surface.forget_element();
     }
-    surface_.add_extracted(1);
+    drawn_.surface.add_extracted(1);
     raise_error_bound(view);
 }
 
@@ -160,7 +134,7 @@ void Triangulation<Real>::raise_error_bound(const View& view) {
     const double corner = corner_offset(view, polygon_.keys(), *graph_.bounds);
     const bool quadrilaterals = graph_.walk->hierarchy().facts().only_shape == Shape::quadrilateral;
     const double chord = polygon_.chord(view.is_leaf() || quadrilaterals);
-    surface_.raise_error_bound((view.is_leaf() ? 0 : below_) + corner + chord);
+    drawn_.surface.raise_error_bound((view.is_leaf() ? 0 : below_) + corner + chord);
 }
 
 template class Triangulation<float>;

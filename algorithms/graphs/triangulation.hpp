@@ -10,11 +10,9 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 
+#include <graphs/drawn_graph.hpp>
 #include <graphs/element_polygon.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
-#include <surfaces/simplex_tally.hpp>
 #include <walk/criterion_question.hpp>
 #include <walk/frontier.hpp>
 
@@ -41,15 +39,15 @@ public:
 
     /// Only counts triangles, to be called before run().
     /// \param most run() throws OverLimit where there are more
-    void count_only(std::uint64_t most);
+    void count_only(std::uint64_t most) { drawn_.count_only(most); }
     /// Records and draws everything.
     /// \param progress as in ShadingOptions
     /// \throw Cancelled where progress says so; OverLimit
     void run(const Executor& executor, const std::function<bool(const TraversalCounts&)>& progress);
     /// Puts everything but the surface into a result.
-    void report(Shading& result) const;
+    void report(Shading& result) const { drawn_.report(result); }
     /// The number of triangles that were counted.
-    std::uint64_t triangles() const { return tally_.drawn(); }
+    std::uint64_t triangles() const { return drawn_.tally.drawn(); }
 
     bool sees_hidden() const override { return records_; }
     Decision inspect(const View& view, const Split& split) override;
@@ -57,10 +55,10 @@ public:
     Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
     void extract(const View& view) override;
     void undo() override {
-        --counts_.calls;
-        --counts_.visited;
+        --drawn_.counts.calls;
+        --drawn_.counts.visited;
     }
-    void restart() override { counts_ = {}; }
+    void restart() override { drawn_.counts = {}; }
 
 private:
     struct Task {
@@ -70,21 +68,17 @@ private:
 
     void walk(const Executor& executor);
     std::unique_ptr<Task> begin_task() const;
-    void add(const Task& task);
     void count(std::uint64_t elements);
     void record(const View& view);
     void raise_error_bound(const View& view);
 
     Graph<Real> graph_;
     ElementPolygon<Real> polygon_;
-    LevelSurface<3> surface_;
+    DrawnGraph drawn_;
     CriterionQuestion question_;
-    EdgeNodes own_nodes_;               // recorded in the first walk
     const EdgeNodes* nodes_ = nullptr;  // recorded by all tasks
     bool records_ = false;              // in the first walk
     double below_ = 0;                  // how far U may leave the corner values in an element
-    TraversalCounts counts_;
-    SimplexTally tally_;  // of triangles, where these are counted only
     const std::function<bool(const TraversalCounts&)>* progress_ = nullptr;
 };
 

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <graphs/drawn_graph.hpp>
+
+namespace nestgrid::engine {
+
+void DrawnGraph::count_only(std::uint64_t most) {
+    tally = SimplexTally(most);
+    surface.count_only();
+}
+
+void DrawnGraph::add(const DrawnGraph& task, const SurfacePart<3>& part) {
+    surface.add_extracted(task.surface.extracted());
+    surface.raise_error_bound(task.surface.error_bound());
+    nodes.append(task.nodes);
+    tally.add(task.tally);
+    if (!surface.counts_only()) surface.add_part(part);
+}
+
+void DrawnGraph::report(Shading& result) const {
+    result.counts = counts;
+    result.counts.extracted = surface.extracted();
+    result.error_bound = surface.error_bound();
+    result.edge_nodes = nodes.size();
+    result.edge_nodes_bytes = nodes.memory_bytes();
+    result.table_bytes = surface.memory_bytes();
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a triangulation has drawn, recorded and counted, and how a task's share is added to it.
+#pragma once
+
+#include <graphs/edge_nodes.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <surfaces/level_surface.hpp>
+#include <surfaces/simplex_tally.hpp>
+
+namespace nestgrid::engine {
+
+struct DrawnGraph {
+    LevelSurface<3> surface;
+    EdgeNodes nodes{};  ///< inside closed edges, recorded in the first of two walks
+    TraversalCounts counts{};
+    SimplexTally tally{};  ///< of triangles, where these are counted only
+
+    /// Only counts triangles from now on. Adding throws OverLimit where there are more than `most`.
+    void count_only(std::uint64_t most);
+    /// Adds all but the counts of a task, the tasks in their order.
+    /// \param part the surface that the task drew
+    /// \throw OverLimit
+    void add(const DrawnGraph& task, const SurfacePart<3>& part);
+    /// Puts everything but the surface into a result.
+    void report(Shading& result) const;
+};
+
+}  // namespace nestgrid::engine
