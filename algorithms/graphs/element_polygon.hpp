@@ -12,16 +12,11 @@
 #include <vector>
 
 #include <graphs/edge_nodes.hpp>
+#include <graphs/quadrilateral.hpp>
 #include <surfaces/level_surface.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {
-
-/// The parameters by which all elements are triangulated.
-struct GraphShape {
-    double lift = 0;  ///< vertices are lifted along z by this times component 0
-    double flatness;  ///< the greatest twist of a quadrilateral that two triangles draw
-};
 
 template <class Real>
 class ElementPolygon {
@@ -59,18 +54,18 @@ private:
 
     Side side(std::size_t edge) const;
     std::span<const double> values(std::size_t corner);
-    Point lifted(Point x, double u) const;
     Number vertex(NodeKey key, const Point& x, std::span<const double> values);
     void take_nodes(const EdgeNodes& nodes, std::size_t from, std::size_t edge,
                     std::vector<Number>& chain);
     void add_boundary(Number from, const std::vector<Number>& between, Number to);
-    void add_triangles(std::size_t sides, const std::array<std::size_t, 4>& loop);
-    std::array<bool, 2> cuts(const std::array<std::size_t, 4>& loop) const;
-    std::size_t first_of_diagonal(const std::array<std::size_t, 4>& loop) const;
+    void add_triangles(std::size_t sides);
+    QuadrilateralCorners four_corners() const { return std::span(x_).template first<4>(); }
     double u(std::size_t corner, std::size_t component = 0) const {
         return static_cast<double>(view_->value[corner * components_ + component]);
     }
-    double twist(std::size_t component) const;
+    std::array<double, 4> at_corners(std::size_t component) const {
+        return {u(0, component), u(1, component), u(2, component), u(3, component)};
+    }
     bool needs_centre() const;
     Number add_centre();
 
