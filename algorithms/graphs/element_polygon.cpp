@@ -20,44 +20,6 @@ std::array<std::size_t, 4> loop_of(std::size_t corners) {
 }  // namespace
 
 template <class Real>
-void ElementPolygon<Real>::load(const View& view) {
-    view_ = &view;
-    walk_->corners(view, key_.data(), x_.data());
-}
-
-template <class Real>
-auto ElementPolygon<Real>::side(std::size_t edge) const -> Side {
-    const auto [a, b] = view_->topology().edge[edge];
-    const MaximalEdge<Real>* const maximal = view_->closed.edge(edge);
-    if (maximal == nullptr) return {{a, b}, {key_[a], key_[b]}, true};
-    Side side{{a, b}, {maximal->key(0), maximal->key(1)}, false};
-    auto [from, to] = walk_->positions(*maximal);
-    if (maximal->key(0) != side.around.low) std::swap(from, to);
-    for (std::size_t i = 0; i < 2; ++i) {
-        side.place[i] = dot(x_[side.corner[i]] - from, to - from);
-    }
-    return side;
-}
-
-template <class Real>
-std::span<const double> ElementPolygon<Real>::values(std::size_t corner) {
-    for (std::size_t c = 0; c < components_; ++c) values_[c] = u(corner, c);
-    return values_;
-}
-
-template <class Real>
-void ElementPolygon<Real>::record(EdgeNodes& nodes) {
-    for (std::size_t e = 0; e < view_->topology().edges; ++e) {
-        if (view_->closed.edge(e) == nullptr) continue;
-        const Side at = side(e);
-        const std::size_t end = at.place[0] < at.place[1] ? 1 : 0;
-        const std::size_t corner = at.corner[end];
-        if (key_[corner] == at.around.low || key_[corner] == at.around.high) continue;
-        nodes.add({at.around, at.place[end], key_[corner], x_[corner], 0}, values(corner));
-    }
-}
-
-template <class Real>
 auto ElementPolygon<Real>::vertex(NodeKey key, const Point& x, std::span<const double> values)
     -> Number {
     return surface_->vertex_between({key, key}, [&] {
@@ -70,15 +32,11 @@ auto ElementPolygon<Real>::vertex(NodeKey key, const Point& x, std::span<const d
 template <class Real>
 void ElementPolygon<Real>::take_nodes(const EdgeNodes& nodes, std::size_t from, std::size_t edge,
                                       std::vector<Number>& chain) {
-    const Side at = side(edge);
-    const auto [least, greatest] = std::minmax(at.place[0], at.place[1]);
-    for (const EdgeNode& node : nodes.on(at.around)) {
-        if (!at.whole && !(least < node.place && node.place < greatest)) continue;
+    const ElementSide side = element_.side(edge);
+    for (const EdgeNode& node : side.inside(nodes)) {
         chain.push_back(vertex(node.key, node.x, nodes.values(node)));
     }
-    const bool first_is_low =
-        at.whole ? key_[at.corner[0]] == at.around.low : at.place[0] < at.place[1];
-    if (first_is_low != (at.corner[0] == from)) std::ranges::reverse(chain);
+    if (side.rises() != (side.corner[0] == from)) std::ranges::reverse(chain);
 }
 
 template <class Real>
@@ -94,17 +52,19 @@ void ElementPolygon<Real>::add_boundary(Number from, const std::vector<Number>& 
 template <class Real>
 void ElementPolygon<Real>::draw(const EdgeNodes* nodes, LevelSurface<3>& surface) {
     surface_ = &surface;
-    const std::size_t n = view_->corner_count();
+    const View& view = element_.view();
+    const std::size_t n = view.corner_count();
     auto loop = loop_of(n);
-    if (view_->orientation < 0) std::reverse(loop.begin() + 1, loop.begin() + std::ptrdiff_t(n));
-    surface.builder().add_element(view_->element(), view_->shape, view_->level);
-    const unsigned boundary = walk_->boundary(*view_);
+    if (view.orientation < 0) std::reverse(loop.begin() + 1, loop.begin() + std::ptrdiff_t(n));
+    surface.builder().add_element(view.element(), view.shape, view.level);
+    const unsigned boundary = element_.boundary();
     for (std::size_t i = 0; i < n; ++i) {
-        number_[i] = vertex(key_[loop[i]], x_[loop[i]], values(loop[i]));
+        number_[i] = vertex(element_.keys()[loop[i]], element_.positions()[loop[i]],
+                            element_.values(loop[i]));
     }
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t next = (i + 1) % n;
-        const std::size_t edge = edge_between(view_->shape, loop[i], loop[next]);
+        const std::size_t edge = edge_between(view.shape, loop[i], loop[next]);
         between_[i].clear();
         if (nodes != nullptr) take_nodes(*nodes, loop[i], edge, between_[i]);
         if ((boundary >> edge & 1U) != 0) add_boundary(number_[i], between_[i], number_[next]);
@@ -137,7 +97,7 @@ void ElementPolygon<Real>::add_triangles(std::size_t sides) {
 
 template <class Real>
 bool ElementPolygon<Real>::needs_centre() const {
-    for (std::size_t c = 0; c < components_; ++c) {
+    for (std::size_t c = 0; c < at_centre_.size(); ++c) {
         if (twist(at_corners(c)) > shape_.flatness) return true;
     }
     return false;
@@ -147,18 +107,19 @@ bool ElementPolygon<Real>::needs_centre() const {
 template <class Real>
 auto ElementPolygon<Real>::add_centre() -> Number {
     const auto mean = [](const auto& at) { return face_mean(at(0U), at(1U), at(2U), at(3U)); };
+    const auto& corners = element_.positions();
     Point x;
-    for (std::size_t d = 0; d < 3; ++d) x[d] = mean([&](std::size_t k) { return x_[k][d]; });
-    for (std::size_t c = 0; c < components_; ++c) {
-        values_[c] = mean([&](std::size_t k) { return u(k, c); });
+    for (std::size_t d = 0; d < 3; ++d) x[d] = mean([&](std::size_t k) { return corners[k][d]; });
+    for (std::size_t c = 0; c < at_centre_.size(); ++c) {
+        at_centre_[c] = mean([&](std::size_t k) { return element_.u(k, c); });
     }
-    x = shape_.lifted(x, values_[0]);
-    return surface_->add_unnamed(std::span(&x, 1), values_);
+    x = shape_.lifted(x, at_centre_[0]);
+    return surface_->add_unnamed(std::span(&x, 1), at_centre_);
 }
 
 template <class Real>
 double ElementPolygon<Real>::chord(bool nested) const {
-    if (view_->corner_count() != 4) return 0;
+    if (element_.view().corner_count() != 4) return 0;
     return quadrilateral_chord(four_corners(), at_corners(0), nested, centred_);
 }
 

@@ -11,10 +11,9 @@
 #include <array>
 #include <vector>
 
-#include <graphs/edge_nodes.hpp>
+#include <graphs/element_sides.hpp>
 #include <graphs/quadrilateral.hpp>
 #include <surfaces/level_surface.hpp>
-#include <walk/walk.hpp>
 
 namespace nestgrid::engine {
 
@@ -25,60 +24,45 @@ public:
     using Number = std::uint32_t;
 
     ElementPolygon(const Walk<Real>& walk, const GraphShape& shape)
-        : walk_{&walk}, shape_{shape}, components_{walk.components()}, values_(components_) {}
+        : element_{walk}, shape_{shape}, at_centre_(walk.components()) {}
 
-    /// Loads the corners of an element.
-    void load(const View& view);
-    /// Records the nodes that the loaded element has inside closed edges: of each of its edges the
-    /// end with the greater place, because that is the other end of the next edge, too.
-    void record(EdgeNodes& nodes);
+    /// Loads an element, which must outlive its use.
+    void load(const View& view) { element_.load(view); }
+    /// Records the nodes that the loaded element has inside closed edges.
+    void record(EdgeNodes& nodes) { element_.record(nodes); }
     /// Draws the loaded element.
     /// \param nodes that finer sides recorded, or null
     void draw(const EdgeNodes* nodes, LevelSurface<3>& surface);
     /// How far component 0, interpolated from the corners, and the triangles drawn last differ.
     /// \param nested whether all leaves below the element have its shape
     double chord(bool nested) const;
-    const std::array<NodeKey, max_corners>& keys() const { return key_; }
+    const std::array<NodeKey, max_corners>& keys() const { return element_.keys(); }
 
     /// Adds a triangle; contours/contour_filling.hpp calls it.
     void triangle(Number a, Number b, Number c) { surface_->add_simplex({a, b, c}, {}); }
 
 private:
-    /// An edge of the element between the ends of the maximal edge around it.
-    struct Side {
-        std::array<std::size_t, 2> corner;
-        KeyPair around;
-        bool whole;                     // the edge is the maximal one
-        std::array<double, 2> place{};  // of the two corners, where it is not
-    };
-
-    Side side(std::size_t edge) const;
-    std::span<const double> values(std::size_t corner);
     Number vertex(NodeKey key, const Point& x, std::span<const double> values);
     void take_nodes(const EdgeNodes& nodes, std::size_t from, std::size_t edge,
                     std::vector<Number>& chain);
     void add_boundary(Number from, const std::vector<Number>& between, Number to);
     void add_triangles(std::size_t sides);
-    QuadrilateralCorners four_corners() const { return std::span(x_).template first<4>(); }
-    double u(std::size_t corner, std::size_t component = 0) const {
-        return static_cast<double>(view_->value[corner * components_ + component]);
+    QuadrilateralCorners four_corners() const {
+        return std::span(element_.positions()).template first<4>();
     }
     std::array<double, 4> at_corners(std::size_t component) const {
-        return {u(0, component), u(1, component), u(2, component), u(3, component)};
+        const auto u = [&](std::size_t corner) { return element_.u(corner, component); };
+        return {u(0), u(1), u(2), u(3)};
     }
     bool needs_centre() const;
     Number add_centre();
 
-    const Walk<Real>* walk_;
+    ElementSides<Real> element_;
     GraphShape shape_;
-    std::size_t components_;
-    const View* view_ = nullptr;
     LevelSurface<3>* surface_ = nullptr;
-    std::array<NodeKey, max_corners> key_{};
-    std::array<Point, max_corners> x_{};
     std::array<Number, 4> number_{};                // of the corners, around the polygon
     std::array<std::vector<Number>, 4> between_{};  // vertices on the sides, likewise
-    std::vector<double> values_;
+    std::vector<double> at_centre_;                 // a value for each component
     bool centred_ = false;
 };
 
