@@ -7,6 +7,8 @@
 
 #include <nestgrid/shape.hpp>
 
+#include "expression_range.hpp"
+
 namespace mu {
 class Parser;
 }
@@ -25,6 +27,11 @@ public:
 
     /// \throw nestgrid::InvalidInput where the value is not a number
     double operator()(const nestgrid::Point& x, double t = 0) const;
+    /// Bounds of a function of x, y and z in the box between two corners; perhaps infinite. Several
+    /// threads may call this.
+    ValueRange range(const nestgrid::Point& low, const nestgrid::Point& high) const {
+        return range_in_box(*parser_, x_, low, high);
+    }
 
     /// Names and what they stand for, one per line.
     static std::string names();

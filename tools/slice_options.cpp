@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slice_options.hpp"
 
+#include <algorithm>
 #include <mutex>
 
 #include <nestgrid/error.hpp>
@@ -10,7 +11,7 @@
 
 namespace {
 
-/// The zero of an expression. All elements are searched, because nothing bounds it.
+/// The zero of an expression.
 class ExpressionFunction final : public nestgrid::LevelFunction {
 public:
     explicit ExpressionFunction(const std::string& text) : expression_{text} {}
@@ -18,10 +19,21 @@ public:
         const std::scoped_lock lock(mutex_);
         return expression_(x);
     }
+    double variation(const nestgrid::Point& centre, double radius) const override {
+        nestgrid::Point low = centre;
+        nestgrid::Point high = centre;
+        for (std::size_t d = 0; d < 3; ++d) {
+            low[d] -= radius;
+            high[d] += radius;
+        }
+        const ValueRange here = expression_.range(centre, centre);
+        const ValueRange around = expression_.range(low, high);
+        return std::max(around.greatest - here.least, here.greatest - around.least);
+    }
 
 private:
     Expression expression_;
-    mutable std::mutex mutex_;  // the parser has one place for x, y and z
+    mutable std::mutex mutex_;  // of values: the parser has one place for x, y and z
 };
 
 int count_slices(const SliceOptions& o) {

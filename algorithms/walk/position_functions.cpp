@@ -18,14 +18,14 @@ PositionFunctions::PositionFunctions(std::span<const LevelFunction* const> funct
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> least(functions.size(), infinity);
     std::vector<double> greatest(functions.size(), -infinity);
-    double magnitude = 0;
+    Point farthest{};  // from the origin: rounding moves positions there most
     const std::unique_ptr<Task> task = hierarchy.open();
     Coarse coarse;
     Family family;
     for (std::size_t i = 0; i < hierarchy.coarse_count(); ++i) {
         hierarchy.coarse(task.get(), i, coarse, family);
         for (std::size_t k = 0; k < topology(coarse.shape).corners; ++k) {
-            magnitude = std::max(magnitude, norm(coarse.corners[k]));
+            if (norm(coarse.corners[k]) > norm(farthest)) farthest = coarse.corners[k];
             for (std::size_t f = 0; f < functions_.size(); ++f) {
                 const double at = value(f, coarse.corners[k]);
                 least[f] = std::min(least[f], at);
@@ -34,7 +34,7 @@ PositionFunctions::PositionFunctions(std::span<const LevelFunction* const> funct
         }
     }
     for (std::size_t f = 0; f < functions_.size() && hierarchy.coarse_count() > 0; ++f) {
-        const double rounding = 0x1p-50 * functions_[f]->variation({0, 0, 0}, magnitude);
+        const double rounding = functions_[f]->variation(farthest, 0x1p-50 * norm(farthest));
         tolerance_[f] =
             0x1p-40 * (greatest[f] - least[f]) + (std::isfinite(rounding) ? rounding : 0);
     }

@@ -26,7 +26,7 @@ namespace nestgrid::engine {
 class PositionFunctions {
 public:
     /// Borrows the functions. Evaluates them at the corners of the coarse grid, which give the
-    /// tolerances: 2^-40 of the range of the values there, and of the coordinates' magnitude.
+    /// tolerances: 2^-40 of the range of the values there, and what rounding of coordinates adds.
     /// \param bounds the position_bounds() of the grid, borrowed, or null
     /// \throw InvalidInput where a value is not a finite number
     PositionFunctions(std::span<const LevelFunction* const> functions,

@@ -35,8 +35,11 @@ for array in level element; do grep -q "Name=\"$array\"" b.vtp || fail "no $arra
 run slice v.vti --sphere 4.75,11.5,17,4 --cap
 run slice v.vti --cylinder 4.75,11.5,17,0,0,1,3 -o c.ply
 [ -s c.ply ] || fail "no c.ply"
+run slice v.vti --plane 4.75,0,0,1,0,0 --threshold 0
+visited=$(value visited)
 run slice v.vti --function 'x-4.75' --threshold 0
 expect area 782
+[ "$(value visited)" -le $((8 * visited)) ] || fail "$(value visited) elements visited by an expression, $visited by the plane"
 run slice v.vti --axis x --at 5 --threshold 0 --threshold 20 -o s.vtp
 [ -s s-1.vtp ] && [ -s s-2.vtp ] || fail "no files for two thresholds"
 [ "$(grep -c 'timestep="[12]" part="0" file="s-[12].vtp"' s.pvd)" = 2 ] || fail "s.pvd: $(cat s.pvd)"
