@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 
 #include "lens_options.hpp"
 #include "time_options.hpp"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/probe_line.hpp>
 #include <nestgrid/error.hpp>
 
 #include "moments.hpp"

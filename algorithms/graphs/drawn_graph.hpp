@@ -5,7 +5,7 @@
 #pragma once
 
 #include <graphs/edge_nodes.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/shading_options.hpp>
 #include <surfaces/level_surface.hpp>
 #include <surfaces/simplex_tally.hpp>
 

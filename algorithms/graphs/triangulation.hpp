@@ -13,6 +13,8 @@
 
 #include <graphs/drawn_graph.hpp>
 #include <graphs/element_polygon.hpp>
+#include <nestgrid/algorithms/executor.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
 #include <walk/criterion_question.hpp>
 #include <walk/frontier.hpp>
 

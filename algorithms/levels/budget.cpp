@@ -50,15 +50,16 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
                                              executor);
 }
 
+}  // namespace detail
+
 template <int dimension, class Real>
 Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
                         const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
                         const Executor& executor) {
+    hierarchy.facts().require_dimension(dimension);
     const auto levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
     return engine::criterion_for<dimension>(levels, indicator, options, executor);
 }
-
-}  // namespace detail
 
 #define NESTGRID_INSTANTIATE(dimension, Real)                                                      \
     template TriangleBudget engine::find_threshold<dimension>(                                     \
@@ -70,9 +71,9 @@ Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
     template TriangleBudget detail::find_threshold<dimension>(                                     \
         const Hierarchy<Real>&, double, const detail::MakeCriterion&, const detail::SearchBounds&, \
         std::uint64_t, const IsosurfaceOptions&, const Executor&);                                 \
-    template Threshold detail::criterion_for<dimension>(                                           \
-        const Hierarchy<Real>&, double, const HierarchicalIndicator&, const IsosurfaceOptions&,    \
-        const Executor&);
+    template Threshold criterion_for<dimension>(const Hierarchy<Real>&, double,                    \
+                                                const HierarchicalIndicator&,                      \
+                                                const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)
 NESTGRID_INSTANTIATE(3, float)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {

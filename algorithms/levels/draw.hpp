@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <levels/level_set.hpp>
+#include <nestgrid/algorithms/detail/surface_targets.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
 namespace nestgrid::engine {

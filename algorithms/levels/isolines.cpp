@@ -4,12 +4,16 @@
 
 #include <algorithm>
 
-namespace nestgrid::detail {
+#include <nestgrid/algorithms/isosurfaces.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
 
 template <class Real>
-Isolines draw_isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                       const Criterion& criterion, const Bounds& bounds,
-                       const IsosurfaceOptions& options, const Executor& executor) {
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const Criterion& criterion, const Bounds& bounds,
+                  const IsosurfaceOptions& options, const Executor& executor) {
     IsosurfaceOptions kept = options;
     kept.normals = kept.elements = kept.reference = false;
     auto drawn = isosurfaces<2>(hierarchy, values, criterion, bounds, kept, executor);
@@ -26,9 +30,32 @@ Isolines draw_isolines(const Hierarchy<Real>& hierarchy, std::span<const double>
     return result;
 }
 
-template Isolines draw_isolines(const Hierarchy<float>&, std::span<const double>, const Criterion&,
-                                const Bounds&, const IsosurfaceOptions&, const Executor&);
-template Isolines draw_isolines(const Hierarchy<double>&, std::span<const double>, const Criterion&,
-                                const Bounds&, const IsosurfaceOptions&, const Executor&);
+template <class Real>
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
+                  const Executor& executor) {
+    if (options.max_triangles != 0) throw InvalidInput("a limit of segments is for one isoline");
+    const auto s = criterion_for<2>(hierarchy, 0, indicator, options, executor);
+    return isolines(hierarchy, values, s, indicator, options, executor);
+}
 
-}  // namespace nestgrid::detail
+template <class Real>
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const IsosurfaceOptions& options, const Executor& executor) {
+    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
+    return isolines(hierarchy, values, indicator, options, executor);
+}
+
+#define NESTGRID_INSTANTIATE(Real)                                                                \
+    template Isolines isolines(const Hierarchy<Real>&, std::span<const double>, const Criterion&, \
+                               const Bounds&, const IsosurfaceOptions&, const Executor&);         \
+    template Isolines isolines(const Hierarchy<Real>&, std::span<const double>,                   \
+                               const HierarchicalIndicator&, const IsosurfaceOptions&,            \
+                               const Executor&);                                                  \
+    template Isolines isolines(const Hierarchy<Real>&, std::span<const double>,                   \
+                               const IsosurfaceOptions&, const Executor&);
+NESTGRID_INSTANTIATE(float)
+NESTGRID_INSTANTIATE(double)
+#undef NESTGRID_INSTANTIATE
+
+}  // namespace nestgrid

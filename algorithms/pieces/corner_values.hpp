@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include <nestgrid/algorithms/discontinuous.hpp>
+#include <nestgrid/algorithms/discontinuous_data.hpp>
 
 namespace nestgrid::engine {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include <nestgrid/algorithms/discontinuous.hpp>
+#include <nestgrid/algorithms/element_deviations.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>

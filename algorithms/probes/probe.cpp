@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/probe_line.hpp>
 
 #include <algorithm>
 #include <cmath>

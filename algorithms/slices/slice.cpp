@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 
-#include <levels/draw.hpp>
+#include <slices/slice_levels.hpp>
 #include <walk/hanging_nodes.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid {
 
 namespace {
 
@@ -25,83 +25,51 @@ private:
     HangingNodes hanging_;
 };
 
-/// Calls draw(levels) with the levels of a request.
-template <class Real, class Draw>
-auto with_levels(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
-                 const IsosurfaceOptions& options, Draw&& draw) {
-    hierarchy.facts().require_dimension(3);
-    const std::size_t functions = request.functions.size();
-    const engine::WidenedHierarchy<Real> widened(hierarchy, functions);
-    const engine::PositionFunctions placed(request.functions, widened, options.position_bounds);
-    engine::Levels<double> levels = engine::isosurface_levels<double>(widened, request.isovalues);
-    for (auto& level : levels.levels) level = engine::Level<double>(level.value, functions);
-    for (std::size_t i = functions; i-- > 0;) {
-        levels.levels.insert(levels.levels.begin(), engine::Level<double>(0, i, 0));
-    }
-    levels.first_attribute = functions;
-    levels.functions = &placed;
-    return draw(levels);
-}
-
 }  // namespace
 
 template <class Real>
-std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
-                               const SurfaceTargets<3>& targets, const Criterion& criterion,
-                               const Bounds& bounds, IsosurfaceOptions options,
-                               const Executor& executor) {
-    options.at_nodes = targets.soups.empty();
-    return with_levels(hierarchy, request, options, [&](const engine::Levels<double>& levels) {
-        return engine::draw_levels<3>(levels, targets, criterion, bounds, options, executor);
-    });
+Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+            const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
+            const Executor& executor) {
+    return std::move(
+        slices(hierarchy, {{&function}}, criterion, bounds, options, executor).front());
 }
 
 template <class Real>
-Slice draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
-                 const HierarchicalIndicator* indicator, const IsosurfaceOptions& options,
-                 const Executor& executor) {
-    const SliceRequest request{{&function}};
-    hierarchy.facts().require_dimension(3);
-    if (indicator == nullptr && options.threshold == 0 && options.max_triangles == 0) {
-        const LeafBounds<Real> leaves(hierarchy);
-        return std::move(
-            draw_slices(hierarchy, request, {}, Exact{}, leaves, options, executor).front());
-    }
-    std::optional<HierarchicalIndicator> own;
-    if (indicator == nullptr) indicator = &own.emplace(hierarchy, LeafErrors{}, executor);
-    return with_levels(hierarchy, request, options, [&](const engine::Levels<double>& levels) {
-        const Threshold s = engine::criterion_for<3>(levels, *indicator, options, executor);
+Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+            const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
+            const Executor& executor) {
+    const auto draw = [&](const engine::Levels<double>& levels) {
+        const Threshold s = engine::criterion_for<3>(levels, indicator, options, executor);
         IsosurfaceOptions merged = options;
         merged.at_nodes = true;
         return std::move(
-            engine::draw_levels<3>(levels, {}, s, *indicator, merged, executor).front());
-    });
+            engine::draw_levels<3>(levels, {}, s, indicator, merged, executor).front());
+    };
+    return engine::with_levels(hierarchy, {{&function}}, options, draw);
 }
 
 template <class Real>
-TriangleBudget find_slice_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
-                                    const MakeCriterion& criterion_at, const SearchBounds& bounds,
-                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
-                                    const Executor& executor) {
-    return with_levels(hierarchy, {{&function}}, options,
-                       [&](const engine::Levels<double>& levels) {
-                           return engine::find_threshold<3>(levels, criterion_at, bounds,
-                                                            max_triangles, options, executor);
-                       });
+Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+            const IsosurfaceOptions& options, const Executor& executor) {
+    hierarchy.facts().require_dimension(3);
+    if (options.threshold == 0 && options.max_triangles == 0) {
+        const LeafBounds<Real> leaves(hierarchy);
+        return slice(hierarchy, function, Exact{}, leaves, options, executor);
+    }
+    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
+    return slice(hierarchy, function, indicator, options, executor);
 }
 
-#define NESTGRID_INSTANTIATE(Real)                                                               \
-    template std::vector<Slice> draw_slices(const Hierarchy<Real>&, const SliceRequest&,         \
-                                            const SurfaceTargets<3>&, const Criterion&,          \
-                                            const Bounds&, IsosurfaceOptions, const Executor&);  \
-    template Slice draw_slice(const Hierarchy<Real>&, const LevelFunction&,                      \
-                              const HierarchicalIndicator*, const IsosurfaceOptions&,            \
-                              const Executor&);                                                  \
-    template TriangleBudget find_slice_threshold(                                                \
-        const Hierarchy<Real>&, const LevelFunction&, const MakeCriterion&, const SearchBounds&, \
-        std::uint64_t, const IsosurfaceOptions&, const Executor&);
+#define NESTGRID_INSTANTIATE(Real)                                                                 \
+    template Slice slice(const Hierarchy<Real>&, const LevelFunction&, const Criterion&,           \
+                         const Bounds&, const IsosurfaceOptions&, const Executor&);                \
+    template Slice slice(const Hierarchy<Real>&, const LevelFunction&,                             \
+                         const HierarchicalIndicator&, const IsosurfaceOptions&, const Executor&); \
+    template Slice slice(const Hierarchy<Real>&, const LevelFunction&, const IsosurfaceOptions&,   \
+                         const Executor&);
 NESTGRID_INSTANTIATE(float)
 NESTGRID_INSTANTIATE(double)
 #undef NESTGRID_INSTANTIATE
 
-}  // namespace nestgrid::detail
+}  // namespace nestgrid

@@ -6,7 +6,7 @@
 
 #include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/discontinuous.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 
 #include "scenes.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <nestgrid/adapters/bisection_grid.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>

@@ -9,6 +9,7 @@
 
 #include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/outlines.hpp>
 
 using namespace nestgrid;

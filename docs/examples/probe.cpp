@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include <nestgrid/adapters/octree_grid.hpp>
-#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/probe_line.hpp>
 
 using namespace nestgrid;
 

@@ -10,7 +10,7 @@
 #include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/node_levels.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
 using namespace nestgrid;

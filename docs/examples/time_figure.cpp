@@ -7,7 +7,7 @@
 
 #include <nestgrid/adapters/union.hpp>
 #include <nestgrid/algorithms/between.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 

@@ -25,6 +25,7 @@
 #include <deal.II/numerics/vector_tools.h>
 
 #include <nestgrid/adapters/dealii.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 
 #include "counting_allocator.hpp"
 #include "refusal.hpp"

@@ -8,6 +8,7 @@
 #include <nestgrid/algorithms/between.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/check_grid.hpp>
 

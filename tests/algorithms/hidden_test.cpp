@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/discontinuous.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/count_triangles.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/check_grid.hpp>

@@ -9,7 +9,7 @@
 
 #include <indicators/packed_entries.hpp>
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <patches/check_bisections.hpp>
 
 #include "same_surface.hpp"

@@ -7,6 +7,7 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 
 #include "counting_allocator.hpp"
 #include "refusal.hpp"

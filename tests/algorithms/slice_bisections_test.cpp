@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "same_surface.hpp"

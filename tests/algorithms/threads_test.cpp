@@ -8,6 +8,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <walk/for_each_element.hpp>
 #include <walk/frontier.hpp>

@@ -7,7 +7,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
-#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/probe_line.hpp>
 
 #include "bucky_ball.hpp"
 #include "contest.hpp"

@@ -17,7 +17,7 @@
 #include <vtkPolyData.h>
 
 #include <nestgrid/adapters/lattice_octree.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 
 #include "counted_heap.hpp"
 #include "vtk_samples.hpp"

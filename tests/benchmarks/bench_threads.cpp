@@ -7,6 +7,7 @@
 // --quick takes 33^3 samples instead of 129^3, and two levels less.
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 
 #include "bucky_samples.hpp"
 #include "sample_grids.hpp"

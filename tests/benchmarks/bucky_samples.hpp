@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 
 #include "bucky_ball.hpp"
 #include "contest.hpp"

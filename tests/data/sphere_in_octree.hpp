@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 
 #include "sample_grids.hpp"
 

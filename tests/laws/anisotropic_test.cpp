@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/node_levels.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/check_grid.hpp>
 

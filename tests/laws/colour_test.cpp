@@ -8,7 +8,7 @@
 
 #include <map>
 
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
 #include "closedness.hpp"

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include <nestgrid/algorithms/isolines.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 
 #include "families.hpp"
 #include "plane_slice.hpp"

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include <nestgrid/adapters/octree_grid.hpp>
+#include <nestgrid/algorithms/probe_line.hpp>
 #include <nestgrid/rule_table.hpp>
 
 #include "curved.hpp"

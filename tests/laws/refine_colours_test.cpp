@@ -8,8 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/boundary_surface.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 
 #include "closedness.hpp"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/geometry_indicator.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 
 #include "bent_grid.hpp"

@@ -12,7 +12,8 @@
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>

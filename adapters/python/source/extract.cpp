@@ -6,7 +6,7 @@
 
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/lens.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/error.hpp>
 

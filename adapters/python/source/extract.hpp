@@ -10,6 +10,7 @@
 #include <nestgrid/algorithms/domains.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/level_function.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 

@@ -34,7 +34,7 @@ inline IsosurfaceOptions capped(IsosurfaceOptions options) {
 /// Attribute c of a vertex is component c of the field.
 /// \param bounds of the same grid and field
 /// \throw InvalidInput where the hierarchy has another dimension
-/// \throw GridError as isosurfaces()
+/// \throw GridError as isosurface()
 template <class Real>
 Slice boundary_surface(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
                        const Bounds& bounds, const IsosurfaceOptions& options = {},

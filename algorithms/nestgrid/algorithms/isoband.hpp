@@ -5,7 +5,7 @@
 // away from the band.
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {

@@ -5,9 +5,10 @@
 // are in surface_isolines.hpp, which this header includes.
 #pragma once
 
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/executor.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
-#include <nestgrid/error.hpp>
 
 namespace nestgrid {
 
@@ -19,28 +20,29 @@ struct Isolines {
     bool cancelled = false;  ///< by options.progress; the lines are then a part
 };
 
-namespace detail {
-
-/// Draws isolines of a hierarchy of dimension 2. Defined for float and double.
-template <class Real>
-Isolines draw_isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                       const Criterion& criterion, const Bounds& bounds,
-                       const IsosurfaceOptions& options, const Executor& executor);
-
-}  // namespace detail
-
 /// The isolines of component 0 of a field under the projection with `criterion`, in one traversal.
-/// They end on the boundary of the domain only. Vertices carry components 1 ... of the field. Like
-/// isosurfaces(), each function takes a hierarchy in the place of the grid and the field.
-/// \param options as of isosurfaces(); normals, elements and references are not kept
-/// \throw GridError, InvalidInput as isosurfaces()
+/// They end on the boundary of the domain only. Vertices carry components 1 ... of the field.
+/// \param options as of isosurface(); normals, elements and references are not kept
+/// \throw GridError, InvalidInput as isosurface()
 template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
                   const Criterion& criterion, const Bounds& bounds,
                   const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{}) {
-    return detail::draw_isolines(hierarchy, values, criterion, bounds, options, executor);
-}
+                  const Executor& executor = SequentialExecutor{});
+/// Draws isolines with S from options.threshold.
+/// \throw InvalidInput also for options.max_triangles, which is for one isoline
+template <class Real>
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{});
+/// Draws isolines with S from options.threshold, after its own preroll.
+template <class Real>
+Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
+                  const IsosurfaceOptions& options = {},
+                  const Executor& executor = SequentialExecutor{});
+
+// Each also takes a grid and a field in the place of the hierarchy.
+
 template <class Grid, class Field>
     requires(Grid::dimension == 2)
 Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
@@ -49,32 +51,12 @@ Isolines isolines(const Grid& grid, const Field& field, std::span<const double> 
                   const Executor& executor = SequentialExecutor{}) {
     return isolines(erase(grid, field), values, criterion, bounds, options, executor);
 }
-
-/// Draws isolines with S from options.threshold.
-/// \throw InvalidInput also for options.max_triangles, which is for one isoline
-template <class Real>
-Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{}) {
-    if (options.max_triangles != 0) throw InvalidInput("a limit of segments is for one isoline");
-    const auto s = detail::criterion_for<2>(hierarchy, 0, indicator, options, executor);
-    return isolines(hierarchy, values, s, indicator, options, executor);
-}
 template <class Grid, class Field>
     requires(Grid::dimension == 2)
 Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
                   const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
                   const Executor& executor = SequentialExecutor{}) {
     return isolines(erase(grid, field), values, indicator, options, executor);
-}
-
-/// Draws isolines with S from options.threshold, after its own preroll.
-template <class Real>
-Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                  const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{}) {
-    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
-    return isolines(hierarchy, values, indicator, options, executor);
 }
 template <class Grid, class Field>
     requires(Grid::dimension == 2)

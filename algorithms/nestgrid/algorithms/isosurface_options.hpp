@@ -69,4 +69,15 @@ struct Isosurface {
     std::size_t stack_bytes = 0;  ///< depth of the traversal times the size of one state
 };
 
+namespace detail {
+
+/// The dimension of a grid with isosurfaces.
+template <class Grid>
+constexpr int surface_dimension() {
+    static_assert(Grid::dimension >= 2, "isosurfaces need a grid of dimension 2 or 3");
+    return Grid::dimension;
+}
+
+}  // namespace detail
+
 }  // namespace nestgrid

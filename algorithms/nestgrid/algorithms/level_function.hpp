@@ -66,8 +66,7 @@ class Cylinder final : public LevelFunction {
 public:
     /// \param through a point on the axis
     /// \param axis its direction, of any length
-    /// \throw InvalidInput where the axis is 0, the radius is not positive, or a number is not
-    ///        finite
+    /// \throw InvalidInput for an axis 0, a radius of 0 or less, a number that is not finite
     Cylinder(const Point& through, const Point& axis, double radius);
     double value(const Point& x) const override;
     double variation(const Point& centre, double radius) const override;

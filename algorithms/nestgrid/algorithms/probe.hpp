@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Values of P_S U at points and along lines, by descent through the hierarchy (paper, section 3).
+// Values of P_S U at points, by descent through the hierarchy (paper, section 3). Those along lines
+// are in probe_line.hpp.
 //
 // Each point descends in reference coordinates, where children lie as their rule says, so that no
 // search structure is needed and deformed elements are treated exactly; all points descend in one
@@ -26,11 +27,6 @@ struct ProbeResult {
     bool found(std::size_t i) const { return level[i] >= 0; }
 };
 
-struct LineProbe : ProbeResult {
-    std::vector<Point> points;
-    std::vector<double> distance;  ///< from the first point, in units of the grid
-};
-
 namespace detail {
 
 /// Defined for float and double. Without criterion and bounds: at full resolution.
@@ -40,7 +36,6 @@ ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> point
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points);
 
-LineProbe make_line(const Point& from, const Point& to, std::size_t count);
 std::vector<double> only_values(ProbeResult result, const Point& x);
 
 }  // namespace detail
@@ -76,22 +71,6 @@ template <class Grid, class Field, class... S>
                                                                      const Point& x,
                                                                      const S&... s) {
         return probe_point<typename Field::value_type>(erase(grid, field), x, s...);
-    }
-
-/// The field at `count` points from one to another, equally spaced, both included.
-/// \throw InvalidInput also where count is below 2
-template <class Real, class... S>
-LineProbe probe_line(const Hierarchy<Real>& hierarchy, const Point& from, const Point& to,
-                     std::size_t count, const S&... s) {
-    LineProbe line = detail::make_line(from, to, count);
-    static_cast<ProbeResult&>(line) = probe<Real>(hierarchy, line.points, s...);
-    return line;
-}
-template <class Grid, class Field, class... S>
-    requires NodalField<Field, Grid> LineProbe probe_line(const Grid& grid, const Field& field,
-                                                          const Point& from, const Point& to,
-                                                          std::size_t count, const S&... s) {
-        return probe_line<typename Field::value_type>(erase(grid, field), from, to, count, s...);
     }
 
 }  // namespace nestgrid

@@ -10,7 +10,7 @@
 #include <functional>
 #include <memory>
 
-#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/least_threshold.hpp>
 #include <nestgrid/algorithms/level_function.hpp>
@@ -23,6 +23,14 @@ template <class T>
 concept RangedBounds = std::derived_from<T, Bounds> && requires(const T& bounds) {
     { bounds.least() } -> std::convertible_to<double>;
     { bounds.greatest() } -> std::convertible_to<double>;
+};
+
+/// Callables that make the criterion for a threshold from 0 to 3.4e38: one that holds at more nodes
+/// the greater the threshold is, by any indicator; Blended, a lens or fine_inside (region.hpp) with
+/// a threshold of its own, say.
+template <class T>
+concept MakesCriterion = requires(const T& make) {
+    { make(0.0) } -> std::derived_from<Criterion>;
 };
 
 namespace detail {
@@ -60,18 +68,13 @@ TriangleBudget with_made(const Criteria& criterion_at, const Find& find) {
 
 }  // namespace detail
 
-/// \param criterion_at the criterion for a threshold from 0 to 3.4e38: S(double), one that holds
-///        at more nodes the greater the threshold is, by any indicator; Blended, a lens or
-///        fine_inside (region.hpp) with a threshold of its own, say
+/// The least threshold at which an isosurface has at most max_triangles.
 /// \param options cap and progress count
 /// \throw InvalidInput where even the coarsest surface has more than max_triangles, and for a
 ///        hierarchy of another dimension
-template <int dimension, class Real, class MakeCriterion, RangedBounds Ranged>
-    requires requires(const MakeCriterion& make) {
-        { make(0.0) } -> std::derived_from<Criterion>;
-    }
+template <int dimension, class Real, MakesCriterion Make, RangedBounds Ranged>
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
-                              const MakeCriterion& criterion_at, const Ranged& bounds,
+                              const Make& criterion_at, const Ranged& bounds,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
                               const Executor& executor = SequentialExecutor{}) {
     hierarchy.facts().require_dimension(dimension);
@@ -83,12 +86,9 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
 }
 /// The same for the slice along the zero of a function. Triangles are counted before vertices are
 /// merged at nodes: the slice has no more.
-template <class Real, class MakeCriterion, RangedBounds Ranged>
-    requires requires(const MakeCriterion& make) {
-        { make(0.0) } -> std::derived_from<Criterion>;
-    }
+template <class Real, MakesCriterion Make, RangedBounds Ranged>
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
-                              const MakeCriterion& criterion_at, const Ranged& bounds,
+                              const Make& criterion_at, const Ranged& bounds,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
                               const Executor& executor = SequentialExecutor{}) {
     return detail::with_made(criterion_at, [&](const detail::MakeCriterion& make) {
@@ -97,12 +97,9 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, const LevelFunct
                                             max_triangles, options, executor);
     });
 }
-template <class Grid, class Field, class MakeCriterion, RangedBounds Ranged>
-    requires requires(const MakeCriterion& make) {
-        { make(0.0) } -> std::derived_from<Criterion>;
-    }
+template <class Grid, class Field, MakesCriterion Make, RangedBounds Ranged>
 TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
-                              const MakeCriterion& criterion_at, const Ranged& bounds,
+                              const Make& criterion_at, const Ranged& bounds,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
                               const Executor& executor = SequentialExecutor{}) {
     return find_threshold<detail::surface_dimension<Grid>()>(
@@ -111,13 +108,9 @@ TriangleBudget find_threshold(const Grid& grid, const Field& field, double isova
 
 /// The same for the shading of a hierarchy of dimension 2, or for its height fields, which all have
 /// as many triangles. Of the options, flatness and progress count.
-template <class Real, class MakeCriterion, RangedBounds Ranged>
-    requires requires(const MakeCriterion& make) {
-        { make(0.0) } -> std::derived_from<Criterion>;
-    }
-TriangleBudget find_shading_threshold(const Hierarchy<Real>& hierarchy,
-                                      const MakeCriterion& criterion_at, const Ranged& bounds,
-                                      std::uint64_t max_triangles,
+template <class Real, MakesCriterion Make, RangedBounds Ranged>
+TriangleBudget find_shading_threshold(const Hierarchy<Real>& hierarchy, const Make& criterion_at,
+                                      const Ranged& bounds, std::uint64_t max_triangles,
                                       const ShadingOptions& options = {},
                                       const Executor& executor = SequentialExecutor{}) {
     return least_threshold(
@@ -127,12 +120,9 @@ TriangleBudget find_shading_threshold(const Hierarchy<Real>& hierarchy,
         },
         bounds.greatest() - bounds.least(), max_triangles);
 }
-template <class Grid, class Field, class MakeCriterion, RangedBounds Ranged>
-    requires requires(const MakeCriterion& make) {
-        { make(0.0) } -> std::derived_from<Criterion>;
-    }
+template <class Grid, class Field, MakesCriterion Make, RangedBounds Ranged>
 TriangleBudget find_shading_threshold(const Grid& grid, const Field& field,
-                                      const MakeCriterion& criterion_at, const Ranged& bounds,
+                                      const Make& criterion_at, const Ranged& bounds,
                                       std::uint64_t max_triangles,
                                       const ShadingOptions& options = {},
                                       const Executor& executor = SequentialExecutor{}) {
@@ -165,10 +155,7 @@ template <class Grid, class Field, RangedBounds Ranged>
 template <int dimension, class Real>
 Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
                         const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
-                        const Executor& executor = SequentialExecutor{}) {
-    hierarchy.facts().require_dimension(dimension);
-    return detail::criterion_for<dimension>(hierarchy, isovalue, indicator, options, executor);
-}
+                        const Executor& executor = SequentialExecutor{});
 template <class Grid, class Field>
 Threshold criterion_for(const Grid& grid, const Field& field, double isovalue,
                         const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,

@@ -17,6 +17,7 @@
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What shading() and height_field() have in common. Defined for float and double.
+#pragma once
+
+#include <nestgrid/algorithms/executor.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/shading_options.hpp>
+
+namespace nestgrid::engine {
+
+/// \param scale of the heights; 0 for a shading
+template <class Real>
+Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                    const Bounds& bounds, const ShadingOptions& options, const Executor& executor);
+/// Draws with S from options.threshold.
+template <class Real>
+Shading triangulate(const Hierarchy<Real>& hierarchy, double scale,
+                    const HierarchicalIndicator& indicator, const ShadingOptions& options,
+                    const Executor& executor);
+/// Draws with S from options.threshold, after a preroll.
+template <class Real>
+Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const ShadingOptions& options,
+                    const Executor& executor);
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Makes what a triangulation borrows, once its input is known to be sound.
+#pragma once
+
+#include <cmath>
+
+#include <graphs/triangulation.hpp>
+#include <levels/draw.hpp>
+#include <levels/level_search.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid::engine {
+
+/// \throw InvalidInput, GridError as shading() and height_field() say
+template <class Real>
+void require_drawable(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                      const Bounds& bounds, const ShadingOptions& options) {
+    hierarchy.facts().require_dimension(2);
+    if (!std::isfinite(scale))
+        throw InvalidInput("the scale of the heights is not a finite number");
+    if (!(options.flatness >= 0)) throw InvalidInput("the flatness is negative or not a number");
+    require_same_epoch(hierarchy, bounds);
+    require_saturated(criterion, bounds, hierarchy.facts().decodes);
+}
+
+/// Calls draw(graph) with what a triangulation borrows.
+/// \param elements whether to keep the elements
+/// \throw InvalidInput, GridError as require_drawable()
+template <class Real, class Draw>
+auto with_graph(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
+                const Bounds& bounds, const ShadingOptions& options, bool elements, Draw&& draw) {
+    require_drawable(hierarchy, scale, criterion, bounds, options);
+    const Walk<Real> walk(hierarchy, Triangulation<Real>::needs, bounds.hanging());
+    return draw(Graph<Real>{&walk,
+                            &criterion,
+                            &bounds,
+                            {scale, options.flatness},
+                            elements,
+                            may_stop_apart(hierarchy, criterion, bounds)});
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Values of P_S U along lines (probe.hpp).
+#pragma once
+
+#include <nestgrid/algorithms/probe.hpp>
+
+namespace nestgrid {
+
+struct LineProbe : ProbeResult {
+    std::vector<Point> points;
+    std::vector<double> distance;  ///< from the first point, in units of the grid
+};
+
+namespace detail {
+
+/// The points and distances of a line, without values.
+LineProbe make_line(const Point& from, const Point& to, std::size_t count);
+
+}  // namespace detail
+
+/// The field at `count` points from one to another, equally spaced, both included.
+/// \throw InvalidInput also where count is below 2
+template <class Real, class... S>
+LineProbe probe_line(const Hierarchy<Real>& hierarchy, const Point& from, const Point& to,
+                     std::size_t count, const S&... s) {
+    LineProbe line = detail::make_line(from, to, count);
+    static_cast<ProbeResult&>(line) = probe<Real>(hierarchy, line.points, s...);
+    return line;
+}
+template <class Grid, class Field, class... S>
+    requires NodalField<Field, Grid> LineProbe probe_line(const Grid& grid, const Field& field,
+                                                          const Point& from, const Point& to,
+                                                          std::size_t count, const S&... s) {
+        return probe_line<typename Field::value_type>(erase(grid, field), from, to, count, s...);
+    }
+
+}  // namespace nestgrid

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is asked of a shading or a height field, and what comes out.
+#pragma once
+
+#include <functional>
+#include <limits>
+
+#include <nestgrid/algorithms/isosurface_options.hpp>
+
+namespace nestgrid {
+
+struct ShadingOptions {
+    /// epsilon, in the units of the data: offsets up to it are projected away. At least 0.
+    double threshold = 0;
+    /// Quadrilaterals in which some component differs by more than this from two triangles get a
+    /// vertex in their middle. At least 0, in the units of the data.
+    double flatness = std::numeric_limits<double>::infinity();
+    /// Keep the extracted elements and which triangle comes from which.
+    bool elements = true;
+    /// Called now and then with the counts so far; returning false ends the traversal.
+    std::function<bool(const TraversalCounts&)> progress{};
+};
+
+struct Shading {
+    /// Component k of the field at vertex v is attributes[v * components + k]. The triangles are
+    /// oriented as the elements: counterclockwise in the plane.
+    Surface<3> surface;
+    TraversalCounts counts;
+    /// Component 0, drawn linearly on triangles, differs by at most this from the data interpolated
+    /// on the finest grid. Infinity under a criterion that is not saturated.
+    double error_bound = 0;
+    bool cancelled = false;            ///< by options.progress; the surface is then a part
+    std::size_t edge_nodes = 0;        ///< nodes of finer sides that were recorded
+    std::size_t edge_nodes_bytes = 0;  ///< memory of this record
+    std::size_t table_bytes = 0;       ///< hash table of the vertices
+};
+
+}  // namespace nestgrid

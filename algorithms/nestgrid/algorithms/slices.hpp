@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Several slices and isosurfaces of a hierarchy of dimension 3 in one traversal, under one
+// criterion. What holds of each slice, slice.hpp says.
+#pragma once
+
+#include <nestgrid/algorithms/isosurfaces.hpp>
+#include <nestgrid/algorithms/slice.hpp>
+
+namespace nestgrid {
+
+/// What one walk draws.
+struct SliceRequest {
+    std::vector<const LevelFunction*> functions;  ///< borrowed
+    std::vector<double> isovalues{};              ///< isosurfaces of component 0, behind the slices
+};
+
+namespace detail {
+
+template <class Real>
+std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
+                               const SurfaceTargets<3>& targets, const Criterion& criterion,
+                               const Bounds& bounds, IsosurfaceOptions options,
+                               const Executor& executor);
+
+}  // namespace detail
+
+/// Slices and isosurfaces under the projection with `criterion`. All carry all components of the
+/// field as attributes.
+/// \param bounds, options, and what is thrown: as slice()
+template <class Real>
+std::vector<Slice> slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
+                          const Criterion& criterion, const Bounds& bounds,
+                          const IsosurfaceOptions& options = {},
+                          const Executor& executor = SequentialExecutor{}) {
+    return detail::draw_slices(hierarchy, request, {}, criterion, bounds, options, executor);
+}
+template <class Grid, class Field>
+std::vector<Slice> slices(const Grid& grid, const Field& field, const SliceRequest& request,
+                          const Criterion& criterion, const Bounds& bounds,
+                          const IsosurfaceOptions& options = {},
+                          const Executor& executor = SequentialExecutor{}) {
+    return slices(erase(grid, field), request, criterion, bounds, options, executor);
+}
+
+/// The same, each into a sink of its own (surface.hpp). A SimplexSink also gets triangles without
+/// area, around nodes that lie on a slice.
+template <class Real, class Sink>
+std::vector<Slice> extract_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
+                                  std::vector<Sink> sinks, const Criterion& criterion,
+                                  const Bounds& bounds, const IsosurfaceOptions& options = {},
+                                  const Executor& executor = SequentialExecutor{}) {
+    return detail::draw_slices(hierarchy, request, detail::targets_of<3>(sinks), criterion, bounds,
+                               options, executor);
+}
+template <class Grid, class Field, class Sink>
+std::vector<Slice> extract_slices(const Grid& grid, const Field& field, const SliceRequest& request,
+                                  std::vector<Sink> sinks, const Criterion& criterion,
+                                  const Bounds& bounds, const IsosurfaceOptions& options = {},
+                                  const Executor& executor = SequentialExecutor{}) {
+    return extract_slices(erase(grid, field), request, std::move(sinks), criterion, bounds, options,
+                          executor);
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Functions of position as level functions of a walk, in front of isosurfaces of the field.
+#pragma once
+
+#include <levels/draw.hpp>
+#include <nestgrid/algorithms/slices.hpp>
+
+namespace nestgrid::engine {
+
+/// Calls draw(levels) with the levels of a request.
+template <class Real, class Draw>
+auto with_levels(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
+                 const IsosurfaceOptions& options, Draw&& draw) {
+    hierarchy.facts().require_dimension(3);
+    const std::size_t functions = request.functions.size();
+    const WidenedHierarchy<Real> widened(hierarchy, functions);
+    const PositionFunctions placed(request.functions, widened, options.position_bounds);
+    Levels<double> levels = isosurface_levels<double>(widened, request.isovalues);
+    for (auto& level : levels.levels) level = Level<double>(level.value, functions);
+    for (std::size_t i = functions; i-- > 0;) {
+        levels.levels.insert(levels.levels.begin(), Level<double>(0, i, 0));
+    }
+    levels.first_attribute = functions;
+    levels.functions = &placed;
+    return draw(levels);
+}
+
+}  // namespace nestgrid::engine
