@@ -471,26 +471,6 @@ std::uint8_t Walk<Real>::interpolated_corners(const View& father, const Child& a
     return static_cast<std::uint8_t>(result);
 }
 
-template <class Real>
-void Walk<Real>::corners(const View& view, NodeKey* keys, Point* positions) const {
-    const std::size_t corners = view.corner_count();
-    NodeKey* const own_keys = own_keys_ ? keys : nullptr;
-    Point* const own_positions = own_positions_ ? positions : nullptr;
-    if (own_keys != nullptr || own_positions != nullptr) {
-        hierarchy_->corners(view.stack->task.get(), view.element(), corners, own_keys,
-                            own_positions, nullptr);
-    }
-    const auto node = [&](std::size_t k) {
-        return view.as == nullptr ? k : std::size_t{view.as->corner[k]};
-    };
-    for (std::size_t k = 0; keys != own_keys && k < corners; ++k) {
-        keys[k] = view.node_key[node(k)];
-    }
-    for (std::size_t k = 0; positions != own_positions && k < corners; ++k) {
-        positions[k] = view.node_position[node(k)];
-    }
-}
-
 template class WalkStack<float>;
 template class WalkStack<double>;
 template struct ClosingSplit<float>;

@@ -67,6 +67,26 @@ void Walk<Real>::gradients(const View& view, std::span<Point> out) const {
     hierarchy_->corner_gradients(view.stack->task.get(), view.element(), out);
 }
 
+template <class Real>
+void Walk<Real>::corners(const View& view, NodeKey* keys, Point* positions) const {
+    const std::size_t corners = view.corner_count();
+    NodeKey* const own_keys = own_keys_ ? keys : nullptr;
+    Point* const own_positions = own_positions_ ? positions : nullptr;
+    if (own_keys != nullptr || own_positions != nullptr) {
+        hierarchy_->corners(view.stack->task.get(), view.element(), corners, own_keys,
+                            own_positions, nullptr);
+    }
+    const auto node = [&](std::size_t k) {
+        return view.as == nullptr ? k : std::size_t{view.as->corner[k]};
+    };
+    for (std::size_t k = 0; keys != own_keys && k < corners; ++k) {
+        keys[k] = view.node_key[node(k)];
+    }
+    for (std::size_t k = 0; positions != own_positions && k < corners; ++k) {
+        positions[k] = view.node_position[node(k)];
+    }
+}
+
 template std::span<const NodeKey> Walk<float>::split_keys(const View&, const Split&,
                                                           SplitKeys&) const;
 template std::span<const NodeKey> Walk<double>::split_keys(const View&, const Split&,
@@ -81,5 +101,7 @@ template unsigned Walk<float>::boundary(const View&) const;
 template unsigned Walk<double>::boundary(const View&) const;
 template void Walk<float>::gradients(const View&, std::span<Point>) const;
 template void Walk<double>::gradients(const View&, std::span<Point>) const;
+template void Walk<float>::corners(const View&, NodeKey*, Point*) const;
+template void Walk<double>::corners(const View&, NodeKey*, Point*) const;
 
 }  // namespace nestgrid::engine
