@@ -11,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include <graphs/edge_nodes.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <walk/project.hpp>
 
@@ -423,30 +422,6 @@ TEST(HeightFields, KeepAShellClosed) {
             EXPECT_TRUE(s.boundary.empty());
         }
     }
-}
-
-/// Several sheets at one edge record some nodes each, some of them twice.
-TEST(HeightFields, KeepNodesOfAnEdgeOnceInTheirOrder) {
-    const KeyPair edge(7, 3);
-    engine::EdgeNodes nodes, task;
-    nodes.begin(1);
-    task.begin(1);
-    const auto add = [&](engine::EdgeNodes& to, double place, NodeKey key) {
-        to.add({edge, place, key, {place, 0, 0}, 0}, std::array{10 * place});
-    };
-    add(nodes, 0.5, 20);
-    add(nodes, 0.75, 10);
-    add(task, 0.25, 30);
-    add(task, 0.5, 20);
-    nodes.append(task);
-    nodes.finish();
-    const auto on = nodes.on({3, 7});
-    ASSERT_EQ(on.size(), 3U);
-    for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_EQ(on[i].key, (std::array<NodeKey, 3>{30, 20, 10}[i]));
-        EXPECT_EQ(nodes.values(on[i])[0], 10 * on[i].place);
-    }
-    EXPECT_TRUE(nodes.on({3, 8}).empty());
 }
 
 /// Two components of one field.
