@@ -3,6 +3,7 @@
 #include <nestgrid/algorithms/mesh_size.hpp>
 
 #include <indicators/eta_source.hpp>
+#include <indicators/star_sizes.hpp>
 
 namespace nestgrid {
 
@@ -23,6 +24,7 @@ public:
 
 template <class Real>
 SweptIndicator sweep_diameters(const Hierarchy<Real>& hierarchy, const Spread& spread) {
+    if (hierarchy.facts().knows_star_positions) return engine::star_sizes(hierarchy, spread);
     DiameterSource source;
     return engine::sweep_source(hierarchy, source, spread);
 }

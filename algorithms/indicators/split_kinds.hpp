@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The kinds of splits, up to translation, of a grid that knows its stars (StarRow).
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <vector>
+
+#include <indicators/diameter.hpp>
+#include <indicators/spread.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+using KeyOffset = std::ptrdiff_t;  // from one dense key to another
+using KeyOffsets = std::vector<KeyOffset>;
+
+inline KeyOffset offset(NodeKey from, NodeKey to) {
+    return static_cast<KeyOffset>(to) - static_cast<KeyOffset>(from);
+}
+
+/// What one split of each kind tells of all: kinds are splits up to translation.
+template <class Real>
+class SplitKinds final : public Visitor<Real> {
+public:
+    explicit SplitKinds(const Walk<Real>& walk) : walk_{&walk} {}
+
+    bool sees_hidden() const override { return true; }
+    /// Goes down where a split is of a new kind.
+    Decision inspect(const ElementView<Real>& view, const Split& split) override {
+        if (split.rule == nullptr) return {Visit::skip};
+        SplitKeys of_split;
+        SplitPositions positions;
+        const Rule& rule = *split.rule;
+        const std::size_t corners = view.corner_count();
+        const auto keys = walk_->split_keys(view, split, of_split);
+        KeyOffsets kind;
+        for (const NodeKey key : keys) kind.push_back(offset(keys[0], key));
+        if (!kinds_.insert(std::move(kind)).second) return {Visit::skip};
+        const auto x = walk_->split_positions(view, split, positions);
+        const double diameter = diameter_of(x.first(corners));
+        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+            const NodeKey made = keys[corners + n];
+            double& size = size_[parents(rule.new_nodes[n], keys, made)];
+            size = std::max(size, diameter);
+            for (std::size_t k = 0; k < corners; ++k) {
+                const float distance = rule.inside == no_new_node
+                                           ? float_above(norm(x[corners + n] - x[k]))
+                                           : reach_of(rule, x);
+                float& reach = reach_[offset(keys[k], made)];
+                reach = std::max(reach, distance);
+            }
+        }
+        return {Visit::descend};
+    }
+    void extract(const ElementView<Real>&) override {}
+
+    /// The greatest diameter of the elements that make a node with these parents; 0 for a node of
+    /// the coarse grid.
+    /// \param parents offsets from the node
+    double size(std::span<const KeyOffset> parents) const {
+        KeyOffsets sorted(parents.begin(), parents.end());
+        std::ranges::sort(sorted);
+        return sorted.empty() ? 0 : size_.at(sorted);
+    }
+    /// How far a finer node, by its offset from a corner, hands on: where it stands for all new
+    /// nodes of its element, the greatest distance of any.
+    float reach(KeyOffset finer) const { return reach_.at(finer); }
+
+private:
+    static KeyOffsets parents(const Stencil& stencil, std::span<const NodeKey> keys, NodeKey made) {
+        KeyOffsets offsets;
+        for (std::size_t i = 0; i < stencil.count; ++i) {
+            offsets.push_back(offset(made, keys[stencil.parent[i]]));
+        }
+        std::ranges::sort(offsets);
+        return offsets;
+    }
+
+    const Walk<Real>* walk_;
+    std::set<KeyOffsets> kinds_;  // offsets of all nodes of a split from its first one
+    std::map<KeyOffsets, double> size_;
+    std::map<KeyOffset, float> reach_;
+};
+
+}  // namespace nestgrid::engine
