@@ -9,6 +9,7 @@
 #include <string>
 
 #include <indicators/spread.hpp>
+#include <indicators/star_sweep.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/hanging_nodes.hpp>
@@ -36,14 +37,17 @@ double trace_of(double offset) {
 
 namespace {
 
+/// What is kept of a split for the sweep.
+enum class Kept { nothing, nodes, nodes_and_reach };
+
 /// Shows a source the splits that a walk meets.
 template <class Real>
 class SourceVisitor final : public Visitor<Real> {
 public:
     using View = ElementView<Real>;
 
-    SourceVisitor(const Walk<Real>& walk, EtaSource& source, bool measures_reach, NodeEtas& etas)
-        : walk_{&walk}, source_{&source}, measures_reach_{measures_reach}, etas_{&etas} {}
+    SourceVisitor(const Walk<Real>& walk, EtaSource& source, Kept kept, NodeEtas& etas)
+        : walk_{&walk}, source_{&source}, kept_{kept}, etas_{&etas} {}
 
     bool sees_hidden() const override { return true; }
     Leaves leaves(const Rule& rule, const Real*, NodeMask which, bool) override {
@@ -77,8 +81,9 @@ public:
             etas_->maxima()[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
                 bfloat16_infinity;
         }
-        etas_->maxima().add_split(view.level, rule, nodes,
-                                  measures_reach_ ? reach_of(rule, all.positions) : 0);
+        if (kept_ == Kept::nothing) return;
+        const float reach = kept_ == Kept::nodes_and_reach ? reach_of(rule, all.positions) : 0;
+        etas_->maxima().add_split(view.level, rule, nodes, reach);
     }
 
 private:
@@ -93,7 +98,7 @@ private:
     }
     const Walk<Real>* walk_;
     EtaSource* source_;
-    bool measures_reach_;
+    Kept kept_;
     NodeEtas* etas_;
     SplitKeys keys_;
     int level_ = 0;
@@ -115,10 +120,18 @@ SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
         hierarchy, {.values = source.wants_values(), .keys = true, .positions = true}, &hanging);
     const std::size_t dense = hierarchy.facts().node_count;
     NodeEtas etas(dense);
-    SourceVisitor<Real> visitor(walk, source, spread.slope > 0, etas);
+    const bool in_rows = hierarchy.facts().knows_star_positions;
+    SourceVisitor<Real> visitor(walk, source,
+                                in_rows            ? Kept::nothing
+                                : spread.slope > 0 ? Kept::nodes_and_reach
+                                                   : Kept::nodes,
+                                etas);
     walk.run(visitor);
     source.finish(etas);
-    return {etas.saturate(spread), spread};
+    if (!in_rows) return {etas.saturate(spread), spread};
+    auto table = etas.take();
+    sweep_rows(hierarchy, SplitKinds<Real>(hierarchy), spread, table.dense);
+    return {std::move(table), spread};
 }
 
 template SweptIndicator sweep_source(const Hierarchy<float>&, EtaSource&, const Spread&);

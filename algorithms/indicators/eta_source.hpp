@@ -26,8 +26,10 @@ public:
         at = std::max(at, bfloat16_above(float_above(eta)));
     }
     NodeMaxima<std::uint16_t>& maxima() { return maxima_; }
-    /// Sweeps, and moves the numbers out.
+    /// Sweeps over all splits, and moves the numbers out.
     detail::NodeTable<std::uint16_t> saturate(const Spread& spread);
+    /// Moves the numbers out as they are.
+    detail::NodeTable<std::uint16_t> take() { return maxima_.take_table(); }
 
 private:
     [[noreturn]] static void refuse(double eta);

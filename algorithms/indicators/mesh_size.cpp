@@ -3,7 +3,8 @@
 #include <nestgrid/algorithms/mesh_size.hpp>
 
 #include <indicators/eta_source.hpp>
-#include <indicators/star_sizes.hpp>
+#include <indicators/spread.hpp>
+#include <indicators/star_sweep.hpp>
 
 namespace nestgrid {
 
@@ -22,9 +23,26 @@ public:
     }
 };
 
+/// Gives a node the greatest diameter of all splits with its parents, row by row.
+template <class Real>
+SweptIndicator sweep_diameters_of_rows(const Hierarchy<Real>& hierarchy, const Spread& spread) {
+    engine::require_spread(spread);
+    const engine::SplitKinds<Real> kinds(hierarchy);
+    std::vector<std::uint16_t> sizes(hierarchy.facts().node_count, 0);
+    hierarchy.star_rows([&](const StarRow& row) {
+        if (row.gathers) return;
+        const std::uint16_t size = bfloat16_above(float_above(kinds.diameter(row.parents)));
+        for (std::size_t i = 0; i < row.count; ++i) sizes[row.first + i * row.stride] = size;
+    });
+    engine::sweep_rows(hierarchy, kinds, spread, sizes);
+    return {{std::move(sizes), {}}, spread};
+}
+
 template <class Real>
 SweptIndicator sweep_diameters(const Hierarchy<Real>& hierarchy, const Spread& spread) {
-    if (hierarchy.facts().knows_star_positions) return engine::star_sizes(hierarchy, spread);
+    if (hierarchy.facts().knows_star_positions) {
+        return sweep_diameters_of_rows(hierarchy, spread);
+    }
     DiameterSource source;
     return engine::sweep_source(hierarchy, source, spread);
 }

@@ -24,10 +24,28 @@ inline KeyOffset offset(NodeKey from, NodeKey to) {
 
 /// What one split of each kind tells of all: kinds are splits up to translation.
 template <class Real>
-class SplitKinds final : public Visitor<Real> {
+class SplitKinds final : private Visitor<Real> {
 public:
-    explicit SplitKinds(const Walk<Real>& walk) : walk_{&walk} {}
+    explicit SplitKinds(const Hierarchy<Real>& hierarchy)
+        : walk_(hierarchy, {.values = false, .keys = true, .positions = true}) {
+        walk_.run(*this);
+    }
+    SplitKinds(const SplitKinds&) = delete;
+    SplitKinds& operator=(const SplitKinds&) = delete;
 
+    /// The greatest diameter of the elements that make a node with these parents; 0 for a node of
+    /// the coarse grid.
+    /// \param parents offsets from the node
+    double diameter(std::span<const KeyOffset> parents) const {
+        KeyOffsets sorted(parents.begin(), parents.end());
+        std::ranges::sort(sorted);
+        return sorted.empty() ? 0 : diameter_.at(sorted);
+    }
+    /// How far a finer node, by its offset from a corner, hands on: where it stands for all new
+    /// nodes of its element, the greatest distance of any.
+    float reach(KeyOffset finer) const { return reach_.at(finer); }
+
+private:
     bool sees_hidden() const override { return true; }
     /// Goes down where a split is of a new kind.
     Decision inspect(const ElementView<Real>& view, const Split& split) override {
@@ -36,16 +54,16 @@ public:
         SplitPositions positions;
         const Rule& rule = *split.rule;
         const std::size_t corners = view.corner_count();
-        const auto keys = walk_->split_keys(view, split, of_split);
+        const auto keys = walk_.split_keys(view, split, of_split);
         KeyOffsets kind;
         for (const NodeKey key : keys) kind.push_back(offset(keys[0], key));
         if (!kinds_.insert(std::move(kind)).second) return {Visit::skip};
-        const auto x = walk_->split_positions(view, split, positions);
+        const auto x = walk_.split_positions(view, split, positions);
         const double diameter = diameter_of(x.first(corners));
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             const NodeKey made = keys[corners + n];
-            double& size = size_[parents(rule.new_nodes[n], keys, made)];
-            size = std::max(size, diameter);
+            double& greatest = diameter_[parents(rule.new_nodes[n], keys, made)];
+            greatest = std::max(greatest, diameter);
             for (std::size_t k = 0; k < corners; ++k) {
                 const float distance = rule.inside == no_new_node
                                            ? float_above(norm(x[corners + n] - x[k]))
@@ -58,19 +76,6 @@ public:
     }
     void extract(const ElementView<Real>&) override {}
 
-    /// The greatest diameter of the elements that make a node with these parents; 0 for a node of
-    /// the coarse grid.
-    /// \param parents offsets from the node
-    double size(std::span<const KeyOffset> parents) const {
-        KeyOffsets sorted(parents.begin(), parents.end());
-        std::ranges::sort(sorted);
-        return sorted.empty() ? 0 : size_.at(sorted);
-    }
-    /// How far a finer node, by its offset from a corner, hands on: where it stands for all new
-    /// nodes of its element, the greatest distance of any.
-    float reach(KeyOffset finer) const { return reach_.at(finer); }
-
-private:
     static KeyOffsets parents(const Stencil& stencil, std::span<const NodeKey> keys, NodeKey made) {
         KeyOffsets offsets;
         for (std::size_t i = 0; i < stencil.count; ++i) {
@@ -80,10 +85,10 @@ private:
         return offsets;
     }
 
-    const Walk<Real>* walk_;
-    std::set<KeyOffsets> kinds_;  // offsets of all nodes of a split from its first one
-    std::map<KeyOffsets, double> size_;
-    std::map<KeyOffset, float> reach_;
+    Walk<Real> walk_;
+    std::set<KeyOffsets> kinds_;             // offsets of all nodes of a split from its first one
+    std::map<KeyOffsets, double> diameter_;  // by the offsets of parents from their node
+    std::map<KeyOffset, float> reach_;       // by the offset of a new node from a corner
 };
 
 }  // namespace nestgrid::engine

@@ -116,7 +116,7 @@ private:
     std::array<std::array<float, GradientLanes::count>, 3> normals_{};  // by coordinate
 };
 
-/// Finds the least and the greatest value of component 0.
+/// Finds the least and the greatest value of component 0, in a walk or in rows.
 template <class Real>
 class RangeVisitor final : public Visitor<Real> {
 public:
@@ -125,6 +125,14 @@ public:
     explicit RangeVisitor(std::size_t components) : components_{components} {}
 
     Real range() const { return least_ < greatest_ ? greatest_ - least_ : 0; }
+
+    /// \param value component 0 of the first node, and then every component
+    void add(const Real* value, std::size_t nodes) {
+        for (std::size_t i = 0; i < nodes; ++i) {
+            least_ = std::min(least_, value[i * components_]);
+            greatest_ = std::max(greatest_, value[i * components_]);
+        }
+    }
 
     bool sees_hidden() const override { return true; }
     Leaves leaves(const Rule&, const Real*, NodeMask, bool) override { return {}; }
@@ -138,13 +146,6 @@ public:
     }
 
 private:
-    void add(const Real* value, std::size_t nodes) {
-        for (std::size_t i = 0; i < nodes; ++i) {
-            least_ = std::min(least_, value[i * components_]);
-            greatest_ = std::max(greatest_, value[i * components_]);
-        }
-    }
-
     std::size_t components_;
     Real least_ = std::numeric_limits<Real>::max();
     Real greatest_ = std::numeric_limits<Real>::lowest();
@@ -153,10 +154,19 @@ private:
 /// 2^-20 of the range of component 0.
 template <class Real>
 double default_tau(const Hierarchy<Real>& hierarchy) {
-    const HangingNodes hanging = find_hanging_nodes(hierarchy);
-    const Walk<Real> walk(hierarchy, {.keys = false}, &hanging);
-    RangeVisitor<Real> visitor(walk.components());
-    walk.run(visitor);
+    RangeVisitor<Real> visitor(static_cast<std::size_t>(hierarchy.facts().components));
+    if (hierarchy.facts().knows_stars) {
+        std::vector<Real> values;  // stars are known of fields of one component
+        hierarchy.star_rows([&](const StarRow& row) {
+            values.resize(row.count);
+            hierarchy.row_values(static_cast<NodeKey>(row.first), row.stride, values);
+            visitor.add(values.data(), row.count);
+        });
+    } else {
+        const HangingNodes hanging = find_hanging_nodes(hierarchy);
+        const Walk<Real> walk(hierarchy, {.keys = false}, &hanging);
+        walk.run(visitor);
+    }
     return 0x1p-20 * static_cast<double>(visitor.range());
 }
 

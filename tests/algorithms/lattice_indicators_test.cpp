@@ -1,13 +1,18 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Mesh sizes of lattices, which are found row by row: laws at every split, and the sweep over all
-// splits beside them.
+// Indicators of lattices, which are saturated row by row: laws of mesh sizes at every split, and
+// the sweep over all splits beside all of them.
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
+#include <nestgrid/algorithms/numerical_indicator.hpp>
+#include <nestgrid/algorithms/visual_indicator.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <walk/for_each_element.hpp>
 
 using namespace nestgrid;
@@ -74,65 +79,83 @@ void expect_sizes(const Grid& grid, const SweptIndicator& size) {
     EXPECT_EQ(inside, 0U);
 }
 
+/// The same lattice, all of whose splits are kept.
 template <class Grid>
-SweptIndicator swept_size(const Grid& grid, const Spread& spread) {
-    const ZeroField<Grid> zero;
-    const auto diameters = [](const MeasuredSplit& split, std::span<double> eta) {
-        std::ranges::fill(eta, split.diameter());
-    };
-    return measured_indicator(grid, zero, diameters, spread);
-}
+struct WithoutStars : Grid {
+    using Grid::Grid;
+    bool knows_stars() const { return false; }
+};
 
-template <class Grid>
-std::vector<Grid> lattices(const Point& spacing) {
-    std::vector<Grid> grids;
-    if constexpr (Grid::dimension == 2) {
-        grids.emplace_back(LatticeGeometry<2>{.samples = {17, 17}, .spacing = spacing});
-        grids.emplace_back(LatticeGeometry<2>{.samples = {23, 9}, .spacing = spacing});
-        grids.emplace_back(
-            LatticeGeometry<2>{.samples = {33, 21}, .spacing = spacing, .block_levels = 2});
+template <int dim>
+std::vector<LatticeGeometry<dim>> geometries(const Point& spacing) {
+    if constexpr (dim == 2) {
+        return {{.samples = {17, 17}, .spacing = spacing},
+                {.samples = {23, 9}, .spacing = spacing},
+                {.samples = {33, 21}, .spacing = spacing, .block_levels = 2}};
     } else {
-        grids.emplace_back(LatticeGeometry<3>{.samples = {9, 9, 9}, .spacing = spacing});
-        grids.emplace_back(LatticeGeometry<3>{.samples = {14, 7, 18}, .spacing = spacing});
-        grids.emplace_back(
-            LatticeGeometry<3>{.samples = {17, 9, 11}, .spacing = spacing, .block_levels = 1});
+        return {{.samples = {9, 9, 9}, .spacing = spacing},
+                {.samples = {14, 7, 18}, .spacing = spacing},
+                {.samples = {17, 9, 11}, .spacing = spacing, .block_levels = 1}};
     }
-    return grids;
+}
+
+std::vector<float> noise(std::size_t count) {
+    std::mt19937 random(1);
+    std::vector<float> values(count);
+    for (float& v : values) v = std::uniform_real_distribution<float>(-1, 1)(random);
+    return values;
 }
 
 template <class Grid>
-class LatticeSizes : public testing::Test {};
+class LatticeIndicators : public testing::Test {};
 using Lattices =
     testing::Types<LatticeBisection<2>, LatticeBisection<3>, LatticeOctree<2>, LatticeOctree<3>>;
-TYPED_TEST_SUITE(LatticeSizes, Lattices);
+TYPED_TEST_SUITE(LatticeIndicators, Lattices);
 
-TYPED_TEST(LatticeSizes, AreDiametersAndSaturated) {
+TYPED_TEST(LatticeIndicators, SizesAreDiametersAndSaturated) {
     for (const Point& spacing : {Point{1, 1, 1}, Point{0.3, 1, 2.7}}) {
-        for (const auto& grid : lattices<TypeParam>(spacing)) {
+        for (const auto& geometry : geometries<TypeParam::dimension>(spacing)) {
+            const TypeParam grid(geometry);
             for (const Spread& spread : spreads) expect_sizes(grid, mesh_size(grid, spread));
         }
     }
 }
 
-template <class Grid>
-void expect_no_greater(const Grid& grid, const Spread& spread) {
-    const SweptIndicator size = mesh_size(grid, spread);
-    const SweptIndicator swept = swept_size(grid, spread);
+/// Expects that no number exceeds that of the sweep over all splits, in which a split hands on by
+/// its greatest distance. Without a slope the numbers are equal.
+void expect_no_greater(const Indicator& eta, const Indicator& swept, std::size_t nodes) {
     std::size_t greater = 0;
     std::size_t less = 0;
-    for (NodeKey node = 0; node < grid.node_count(); ++node) {
-        greater += size.stop(node) > swept.stop(node) ? 1 : 0;
-        less += size.stop(node) < swept.stop(node) ? 1 : 0;
+    for (NodeKey node = 0; node < nodes; ++node) {
+        greater += eta.stop(node) > swept.stop(node) ? 1 : 0;
+        less += eta.stop(node) < swept.stop(node) ? 1 : 0;
     }
     EXPECT_EQ(greater, 0U);
-    EXPECT_TRUE(less == 0 || spread.slope > 0) << less;
+    EXPECT_TRUE(less == 0 || eta.spread().slope > 0) << less;
 }
 
-/// In the sweep, a split hands on by its greatest distance. Without a slope the sizes are equal.
-TYPED_TEST(LatticeSizes, AreNoGreaterThanThoseOfTheSweep) {
+TYPED_TEST(LatticeIndicators, AreNoGreaterThanThoseOfTheSweep) {
+    using Unknown = WithoutStars<TypeParam>;
+    constexpr int dim = TypeParam::dimension;
     for (const Point& spacing : {Point{1, 1, 1}, Point{0.25, 1, 3}}) {
-        for (const auto& grid : lattices<TypeParam>(spacing)) {
-            for (const Spread& spread : spreads) expect_no_greater(grid, spread);
+        for (const auto& geometry : geometries<dim>(spacing)) {
+            const TypeParam grid(geometry);
+            const Unknown unknown(geometry);
+            const auto values = noise(grid.sample_count());
+            const LatticeField<TypeParam, float> field(grid, values);
+            const LatticeField<Unknown, float> same(unknown, values);
+            for (const Spread& spread : spreads) {
+                const auto expect = [&](const Indicator& eta, const Indicator& swept) {
+                    expect_no_greater(eta, swept, grid.node_count());
+                };
+                expect(mesh_size(grid, spread), mesh_size(unknown, spread));
+                expect(visual_indicator(grid, field, {.spread = spread}),
+                       visual_indicator(unknown, same, {.spread = spread}));
+                expect(numerical_indicator(grid, field, {.spread = spread}),
+                       numerical_indicator(unknown, same, {.spread = spread}));
+                expect(wavelet_indicator(grid, field, {.spread = spread}),
+                       wavelet_indicator(unknown, same, {.spread = spread}));
+            }
         }
     }
 }
