@@ -12,9 +12,10 @@
 namespace nestgrid::engine {
 
 /// In each lane a function that is known by its differences along the axes of an element.
+template <std::size_t count_>
 class GradientLanes {
 public:
-    static constexpr std::size_t count = 8;
+    static constexpr std::size_t count = count_;
     using Lanes = std::array<double, count>;
 
     /// Sets axis d of a lane, and by how much the function rises along it.

@@ -67,36 +67,26 @@ struct Jump {
     float diameter = 0;
 };
 
-class JumpSource final : public EtaSource {
+/// Gradients at the new nodes of a split, several at once. On a simplex there is one.
+template <std::size_t count>
+class SplitGradients {
 public:
-    void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
-               NodeEtas& etas) override {
-        const Rule& rule = split.rule;
-        const auto made = nodes.subspan(split.corner_count());
-        const std::vector<std::vector<Slope>>& slopes = slopes_of(rule);
-        const float diameter = float_above(split.diameter());
-        // On a simplex there is one gradient.
-        const std::size_t different = is_simplex(rule.parent) ? 1 : made.size();
-        for (std::size_t n = 0; n < made.size(); ++n) {
-            const std::size_t lane = n % GradientLanes::count;
-            if (n < different && lane == 0) {
-                for (std::size_t k = n; k < std::min(n + GradientLanes::count, different); ++k) {
-                    put(split, slopes[k], k - n);
-                }
-                gradients_.solve(topology(rule.parent).dimension, 1);
-            }
-            if (made[n] >= jumps_.size()) jumps_.resize(made[n] + 1);
-            Jump& jump = jumps_[made[n]];
-            jump.gradients.add(gradient(different == 1 ? 0 : lane));
-            jump.diameter = std::max(jump.diameter, diameter);
-            etas.raise(made[n], finite_offset(split.offset(n)));
+    /// Computes those at the new nodes from n on, as many as there are lanes.
+    /// \param slopes at the new nodes
+    void solve(const MeasuredSplit& split, const std::vector<std::vector<Slope>>& slopes,
+               std::size_t n) {
+        for (std::size_t lane = 0; lane < count && n + lane < slopes.size(); ++lane) {
+            put(split, slopes[n + lane], lane);
         }
+        lanes_.solve(topology(split.rule.parent).dimension, 1);
     }
-    void finish(NodeEtas& etas) override {
-        for (std::size_t node = 0; node < jumps_.size(); ++node) {
-            const Jump& jump = jumps_[node];
-            etas.raise(node, double{jump.diameter} * jump.gradients.diagonal());
+    std::array<float, 3> of(std::size_t lane) {
+        constexpr double most = std::numeric_limits<float>::max();
+        std::array<float, 3> g;
+        for (std::size_t d = 0; d < 3; ++d) {
+            g[d] = static_cast<float>(std::clamp(lanes_.result()[d][lane], -most, most));
         }
+        return g;
     }
 
 private:
@@ -108,16 +98,45 @@ private:
             along[axis] = along[axis] + value * split.positions[corner];
             rise[axis] += value * split.values[corner * split.components];
         }
-        for (std::size_t d = 0; d < 3; ++d) gradients_.set(lane, d, along[d], rise[d]);
+        for (std::size_t d = 0; d < 3; ++d) lanes_.set(lane, d, along[d], rise[d]);
     }
-    std::array<float, 3> gradient(std::size_t lane) {
-        constexpr double most = std::numeric_limits<float>::max();
-        std::array<float, 3> g;
-        for (std::size_t d = 0; d < 3; ++d) {
-            g[d] = static_cast<float>(std::clamp(gradients_.result()[d][lane], -most, most));
+
+    GradientLanes<count> lanes_;
+};
+
+class JumpSource final : public EtaSource {
+public:
+    void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
+               NodeEtas& etas) override {
+        const Rule& rule = split.rule;
+        const auto made = nodes.subspan(split.corner_count());
+        const std::vector<std::vector<Slope>>& slopes = slopes_of(rule);
+        const float diameter = float_above(split.diameter());
+        const auto add = [&](std::size_t n, const std::array<float, 3>& gradient) {
+            if (made[n] >= jumps_.size()) jumps_.resize(made[n] + 1);
+            Jump& jump = jumps_[made[n]];
+            jump.gradients.add(gradient);
+            jump.diameter = std::max(jump.diameter, diameter);
+            etas.raise(made[n], finite_offset(split.offset(n)));
+        };
+        if (is_simplex(rule.parent)) {
+            one_.solve(split, slopes, 0);
+            for (std::size_t n = 0; n < made.size(); ++n) add(n, one_.of(0));
+            return;
         }
-        return g;
+        for (std::size_t n = 0; n < made.size(); ++n) {
+            if (n % 8 == 0) eight_.solve(split, slopes, n);
+            add(n, eight_.of(n % 8));
+        }
     }
+    void finish(NodeEtas& etas) override {
+        for (std::size_t node = 0; node < jumps_.size(); ++node) {
+            const Jump& jump = jumps_[node];
+            etas.raise(node, double{jump.diameter} * jump.gradients.diagonal());
+        }
+    }
+
+private:
     /// At the new nodes of a rule.
     const std::vector<std::vector<Slope>>& slopes_of(const Rule& rule) {
         std::vector<std::vector<Slope>>& slopes = slopes_[&rule];
@@ -131,7 +150,8 @@ private:
     }
 
     std::vector<Jump> jumps_;
-    GradientLanes gradients_;
+    SplitGradients<1> one_;
+    SplitGradients<8> eight_;
     std::unordered_map<const Rule*, std::vector<std::vector<Slope>>> slopes_;
 };
 

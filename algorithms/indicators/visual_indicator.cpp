@@ -6,10 +6,8 @@
 #include <limits>
 #include <string>
 
-#include <indicators/corner_axes.hpp>
 #include <indicators/eta_source.hpp>
-#include <indicators/gradient_lanes.hpp>
-#include <indicators/vector_box.hpp>
+#include <indicators/normal_lanes.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/hanging_nodes.hpp>
 #include <walk/walk.hpp>
@@ -23,7 +21,7 @@ namespace {
 /// Boxes of the normals around each node.
 class NormalSource final : public EtaSource {
 public:
-    explicit NormalSource(double tau) : tau_{tau} {}
+    explicit NormalSource(double tau) : two_{tau}, eight_{tau} {}
 
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                NodeEtas& etas) override {
@@ -33,28 +31,9 @@ public:
             if (node >= boxes_.size()) boxes_.resize(node + 1);
             etas.raise(node, trace_of(split.offset(n)));
         }
-        const double h = split.diameter();
-        const std::vector<Child>& children = split.rule.children;
-        for (std::size_t first = 0; first < children.size();) {
-            std::size_t end = first;
-            std::size_t lanes = 0;
-            for (; end < children.size(); ++end) {
-                const std::size_t more = gradient_count(children[end].shape);
-                if (lanes + more > GradientLanes::count) break;
-                put(split, children[end], lanes);
-                lanes += more;
-            }
-            gradients_.solve(topology(split.rule.parent).dimension, h);
-            for (std::size_t lane = 0, k = first; k < end; ++k) {
-                if (children[k].shape == Shape::pyramid) average_apex(lane);
-                lane += gradient_count(children[k].shape);
-            }
-            put_normals();
-            for (std::size_t lane = 0; first < end; ++first) {
-                add_normals(children[first], lane, nodes, corners);
-                lane += gradient_count(children[first].shape);
-            }
-        }
+        const bool is_bisection = is_simplex(split.rule.parent) && split.rule.children.size() == 2;
+        if (is_bisection) return two_.add(split, nodes, boxes_);
+        eight_.add(split, nodes, boxes_);
     }
     void finish(NodeEtas& etas) override {
         for (std::size_t node = 0; node < boxes_.size(); ++node) {
@@ -63,57 +42,9 @@ public:
     }
 
 private:
-    /// Puts the gradients of a child into the lanes from `lane` on.
-    void put(const MeasuredSplit& split, const Child& child, std::size_t lane) {
-        const auto& table = corner_axes_of[static_cast<std::size_t>(child.shape)];
-        for (std::size_t i = 0; i < gradient_count(child.shape); ++i, ++lane) {
-            for (std::size_t d = 0; d < topology(child.shape).dimension; ++d) {
-                const std::size_t from = child.corner[table[i][d][0]];
-                const std::size_t to = child.corner[table[i][d][1]];
-                gradients_.set(
-                    lane, d, split.positions[to] - split.positions[from],
-                    split.values[to * split.components] - split.values[from * split.components]);
-            }
-        }
-    }
-
-    /// Adds the normals of a child to the boxes of its corners that are new.
-    void add_normals(const Child& child, std::size_t lane, std::span<const std::size_t> nodes,
-                     std::size_t corners) {
-        const std::size_t end = lane + gradient_count(child.shape);
-        VectorBox box;
-        for (; lane < end; ++lane) {
-            box.add({normals_[0][lane], normals_[1][lane], normals_[2][lane]});
-        }
-        for (std::size_t k = 0; k < topology(child.shape).corners; ++k) {
-            if (child.corner[k] >= corners) boxes_[nodes[child.corner[k]]].add(box);
-        }
-    }
-    /// Puts the mean of the gradients at the apex of a pyramid in the place of each of them.
-    void average_apex(std::size_t lane) {
-        for (auto& g : gradients_.result()) {
-            const double mean = (g[lane + 4] + g[lane + 5] + g[lane + 6] + g[lane + 7]) / 4;
-            for (std::size_t i = 4; i < 8; ++i) g[lane + i] = mean;
-        }
-    }
-    void put_normals() {
-        const auto& [x, y, z] = gradients_.result();
-        GradientLanes::Lanes by;
-        for (std::size_t l = 0; l < GradientLanes::count; ++l) {
-            const double square = x[l] * x[l] + y[l] * y[l] + z[l] * z[l] + tau_ * tau_;
-            by[l] = 1 / std::sqrt(std::max(square, std::numeric_limits<double>::min()));
-        }
-        for (std::size_t d = 0; d < 3; ++d) {
-            for (std::size_t l = 0; l < GradientLanes::count; ++l) {
-                normals_[d][l] = static_cast<float>(gradients_.result()[d][l] * by[l]);
-            }
-        }
-    }
-
-    double tau_;
     std::vector<VectorBox> boxes_;
-    GradientLanes gradients_;
-    std::array<std::array<float, GradientLanes::count>, 3> normals_{};  // by coordinate
+    NormalLanes<2> two_;
+    NormalLanes<8> eight_;
 };
 
 /// Finds the least and the greatest value of component 0, in a walk or in rows.
