@@ -16,8 +16,9 @@ struct ValueRange {
     double greatest;
 };
 
-/// Bounds of an expression in the box between two corners; infinite where it has an operation of
-/// which no bound is known. Several threads may call this, also while one evaluates.
+/// Bounds of an expression in the box between two corners: infinite where it has an operation of
+/// which no bound is known, and where an operation may have no result. Several threads may call
+/// this, also while one evaluates.
 /// \param parser has evaluated the expression before
 /// \param x the place at which the parser finds x, y and z
 ValueRange range_in_box(const mu::Parser& parser, const nestgrid::Point& x,

@@ -3,6 +3,7 @@
 #include "slice_options.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 
 #include <nestgrid/error.hpp>
@@ -28,7 +29,9 @@ public:
         }
         const ValueRange here = expression_.range(centre, centre);
         const ValueRange around = expression_.range(low, high);
-        return std::max(around.greatest - here.least, here.greatest - around.least);
+        // Above 0, so that elements in which the function is 0 are looked at.
+        return std::max({around.greatest - here.least, here.greatest - around.least,
+                         std::numeric_limits<double>::denorm_min()});
     }
 
 private:

@@ -18,7 +18,11 @@ PositionFunctions::PositionFunctions(std::span<const LevelFunction* const> funct
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> least(functions.size(), infinity);
     std::vector<double> greatest(functions.size(), -infinity);
-    Point farthest{};  // from the origin: rounding moves positions there most
+    // Corners at which the values of functions are least and greatest, and the one farthest from
+    // the origin, which rounding moves most.
+    std::vector<Point> at_least(functions.size());
+    std::vector<Point> at_greatest(functions.size());
+    Point farthest{};
     const std::unique_ptr<Task> task = hierarchy.open();
     Coarse coarse;
     Family family;
@@ -28,13 +32,19 @@ PositionFunctions::PositionFunctions(std::span<const LevelFunction* const> funct
             if (norm(coarse.corners[k]) > norm(farthest)) farthest = coarse.corners[k];
             for (std::size_t f = 0; f < functions_.size(); ++f) {
                 const double at = value(f, coarse.corners[k]);
+                if (at < least[f]) at_least[f] = coarse.corners[k];
+                if (at > greatest[f]) at_greatest[f] = coarse.corners[k];
                 least[f] = std::min(least[f], at);
                 greatest[f] = std::max(greatest[f], at);
             }
         }
     }
     for (std::size_t f = 0; f < functions_.size() && hierarchy.coarse_count() > 0; ++f) {
-        const double rounding = functions_[f]->variation(farthest, 0x1p-50 * norm(farthest));
+        // The function may be steep at one of these corners, but nodes are snapped everywhere.
+        double rounding = infinity;
+        for (const Point& x : {farthest, at_least[f], at_greatest[f]}) {
+            rounding = std::min(rounding, functions_[f]->variation(x, 0x1p-50 * norm(farthest)));
+        }
         tolerance_[f] =
             0x1p-40 * (greatest[f] - least[f]) + (std::isfinite(rounding) ? rounding : 0);
     }

@@ -72,16 +72,17 @@ TEST_P(ExpressionRanges, HoldEveryValueInTheBox) {
             ASSERT_GE(range.greatest, value) << GetParam();
         }
     }
-    EXPECT_GT(bounded, 100) << GetParam();
+    EXPECT_GT(bounded, 50) << GetParam();
 }
 
-INSTANTIATE_TEST_SUITE_P(Expressions, ExpressionRanges,
-                         testing::Values("x*x+y*y-4", "-x^2+3*y*sin(z)-1", "gyroid", "sphere",
-                                         "singularity", "front", "ln(x+y)+log(z+3)",
-                                         "min(x,y,z)-max(x*y,0.3)", "x^y", "x^3/(y+0.1)",
-                                         "tanh(x)*atan(y)-asin(z/4)+acos(z/4)",
-                                         "cosh(x)-sinh(y)+abs(z)+tan(x/4)", "exp(2*x+1)-pi",
-                                         "x^4-y^3+z^2+x^-1", "sqrt(x+2)^0.7", "5", "z"));
+INSTANTIATE_TEST_SUITE_P(
+    Expressions, ExpressionRanges,
+    testing::Values("x*x+y*y-4", "-x^2+3*y*sin(z)-1", "gyroid", "sphere", "singularity", "front",
+                    "ln(x+y+5)+log(z+3)", "min(x,y,z)-max(x*y,0.3)", "abs(x)^y", "x^3/(y+5)",
+                    "tanh(x)*atan(y)-asin(z/4)+acos(z/4)", "cosh(x)-sinh(y)+abs(z)",
+                    "exp(2*x+1)-pi", "x^4-y^3+z^2+(x+5)^-3", "sqrt(x+3)^0.7", "min(x,1)^65+y",
+                    "x^66-(y+5)^-2", "0.5^x", "sin(1e6*x)", "5", "z", "max(x,sqrt(x))+y", "x^0.5",
+                    "max(x,ln(y))", "1/x", "min(z,acos(x))"));
 
 TEST(ExpressionRange, IsThatOfTheValuesWhereEachVariableIsUsedOnce) {
     for (const char* text : {"x*y-z", "x^2+y^2+3*z+1", "sphere", "exp(x)*sin(y/4)+ln(z+3)"}) {
@@ -103,7 +104,8 @@ TEST(ExpressionRange, IsThatOfTheValuesWhereEachVariableIsUsedOnce) {
 }
 
 TEST(ExpressionRange, IsInfiniteWhereAnOperationHasNoBounds) {
-    for (const char* text : {"x > 0 ? 1 : y", "avg(x,y)", "rint(x)", "atan2(x,y)"}) {
+    for (const char* text : {"x > 0 ? 1 : y", "avg(x,y)", "rint(x)", "atan2(x,y)", "tan(x)", "1/x",
+                             "max(y,sqrt(x-1))", "(x-0.5)^0.5", "x^-65", "log(x)"}) {
         const ValueRange range = Expression(text).range({0, 0, 0}, {1, 1, 1});
         EXPECT_EQ(range.least, -INFINITY) << text;
         EXPECT_EQ(range.greatest, INFINITY) << text;
