@@ -4,6 +4,8 @@
 // What a triangulation has drawn, recorded and counted, and how a task's share is added to it.
 #pragma once
 
+#include <cstdint>
+
 #include <graphs/edge_nodes.hpp>
 #include <nestgrid/algorithms/shading_options.hpp>
 #include <surfaces/level_surface.hpp>

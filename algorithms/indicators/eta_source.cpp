@@ -121,16 +121,13 @@ SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
     const std::size_t dense = hierarchy.facts().node_count;
     NodeEtas etas(dense);
     const bool in_rows = hierarchy.facts().knows_star_positions;
-    SourceVisitor<Real> visitor(walk, source,
-                                in_rows            ? Kept::nothing
-                                : spread.slope > 0 ? Kept::nodes_and_reach
-                                                   : Kept::nodes,
-                                etas);
+    const Kept for_splits = spread.slope > 0 ? Kept::nodes_and_reach : Kept::nodes;
+    SourceVisitor<Real> visitor(walk, source, in_rows ? Kept::nothing : for_splits, etas);
     walk.run(visitor);
     source.finish(etas);
     if (!in_rows) return {etas.saturate(spread), spread};
     auto table = etas.take();
-    sweep_rows(hierarchy, SplitKinds<Real>(hierarchy), spread, table.dense);
+    sweep_rows(hierarchy, spread, table.dense);
     return {std::move(table), spread};
 }
 

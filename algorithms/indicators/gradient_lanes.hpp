@@ -12,10 +12,10 @@
 namespace nestgrid::engine {
 
 /// In each lane a function that is known by its differences along the axes of an element.
-template <std::size_t count_>
+template <std::size_t lanes>
 class GradientLanes {
 public:
-    static constexpr std::size_t count = count_;
+    static constexpr std::size_t count = lanes;
     using Lanes = std::array<double, count>;
 
     /// Sets axis d of a lane, and by how much the function rises along it.

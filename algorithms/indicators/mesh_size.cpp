@@ -3,7 +3,7 @@
 #include <nestgrid/algorithms/mesh_size.hpp>
 
 #include <indicators/eta_source.hpp>
-#include <indicators/spread.hpp>
+#include <indicators/split_kinds.hpp>
 #include <indicators/star_sweep.hpp>
 
 namespace nestgrid {
@@ -34,7 +34,7 @@ SweptIndicator sweep_diameters_of_rows(const Hierarchy<Real>& hierarchy, const S
         const std::uint16_t size = bfloat16_above(float_above(kinds.diameter(row.parents)));
         for (std::size_t i = 0; i < row.count; ++i) sizes[row.first + i * row.stride] = size;
     });
-    engine::sweep_rows(hierarchy, kinds, spread, sizes);
+    engine::sweep_rows(hierarchy, spread, sizes);
     return {{std::move(sizes), {}}, spread};
 }
 

@@ -19,6 +19,7 @@
 namespace nestgrid::engine {
 
 /// The normals of several elements at once.
+/// \tparam count at least as many as any child of a split has
 template <std::size_t count>
 class NormalLanes {
 public:

@@ -104,6 +104,8 @@ private:
     GradientLanes<count> lanes_;
 };
 
+constexpr std::size_t most_lanes = 8;
+
 class JumpSource final : public EtaSource {
 public:
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
@@ -125,8 +127,9 @@ public:
             return;
         }
         for (std::size_t n = 0; n < made.size(); ++n) {
-            if (n % 8 == 0) eight_.solve(split, slopes, n);
-            add(n, eight_.of(n % 8));
+            const std::size_t lane = n % most_lanes;
+            if (lane == 0) several_.solve(split, slopes, n);
+            add(n, several_.of(lane));
         }
     }
     void finish(NodeEtas& etas) override {
@@ -151,7 +154,7 @@ private:
 
     std::vector<Jump> jumps_;
     SplitGradients<1> one_;
-    SplitGradients<8> eight_;
+    SplitGradients<most_lanes> several_;
     std::unordered_map<const Rule*, std::vector<std::vector<Slope>>> slopes_;
 };
 

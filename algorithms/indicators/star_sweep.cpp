@@ -3,8 +3,9 @@
 #include <indicators/star_sweep.hpp>
 
 #include <algorithm>
+#include <optional>
 
-#include <indicators/spread.hpp>
+#include <indicators/split_kinds.hpp>
 
 namespace nestgrid::engine {
 
@@ -22,8 +23,10 @@ class StarSweep {
 public:
     using Etas = std::vector<std::uint16_t>;
 
-    StarSweep(const SplitKinds<Real>& kinds, const Spread& spread, Etas& etas)
-        : kinds_{&kinds}, spread_{spread}, etas_{&etas} {}
+    StarSweep(const Hierarchy<Real>& hierarchy, const Spread& spread, Etas& etas)
+        : spread_{spread}, etas_{&etas} {
+        if (spread.slope > 0) kinds_.emplace(hierarchy);
+    }
 
     void sweep(const StarRow& row) { return row.gathers ? gather(row) : raise(row); }
 
@@ -54,7 +57,7 @@ private:
     std::vector<FinerNodes> by_reach(std::span<const KeyOffset> finer) const {
         std::vector<FinerNodes> groups;
         for (const KeyOffset to : finer) {
-            const float reach = spread_.slope > 0 ? kinds_->reach(to) : 0;
+            const float reach = kinds_ ? kinds_->reach(to) : 0;
             auto group = std::find_if(groups.begin(), groups.end(),
                                       [&](const FinerNodes& g) { return g.reach == reach; });
             if (group == groups.end()) group = groups.insert(group, {reach, {}});
@@ -71,7 +74,7 @@ private:
         return greatest;
     }
 
-    const SplitKinds<Real>* kinds_;
+    std::optional<SplitKinds<Real>> kinds_;  // where distances count
     Spread spread_;
     Etas* etas_;
     Etas gathered_;  // of nodes that stand for all new nodes of their element
@@ -80,15 +83,13 @@ private:
 }  // namespace
 
 template <class Real>
-void sweep_rows(const Hierarchy<Real>& hierarchy, const SplitKinds<Real>& kinds,
-                const Spread& spread, std::vector<std::uint16_t>& etas) {
-    StarSweep<Real> sweep(kinds, spread, etas);
+void sweep_rows(const Hierarchy<Real>& hierarchy, const Spread& spread,
+                std::vector<std::uint16_t>& etas) {
+    StarSweep<Real> sweep(hierarchy, spread, etas);
     hierarchy.star_rows([&](const StarRow& row) { sweep.sweep(row); });
 }
 
-template void sweep_rows(const Hierarchy<float>&, const SplitKinds<float>&, const Spread&,
-                         std::vector<std::uint16_t>&);
-template void sweep_rows(const Hierarchy<double>&, const SplitKinds<double>&, const Spread&,
-                         std::vector<std::uint16_t>&);
+template void sweep_rows(const Hierarchy<float>&, const Spread&, std::vector<std::uint16_t>&);
+template void sweep_rows(const Hierarchy<double>&, const Spread&, std::vector<std::uint16_t>&);
 
 }  // namespace nestgrid::engine

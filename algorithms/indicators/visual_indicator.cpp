@@ -31,8 +31,9 @@ public:
             if (node >= boxes_.size()) boxes_.resize(node + 1);
             etas.raise(node, trace_of(split.offset(n)));
         }
-        const bool is_bisection = is_simplex(split.rule.parent) && split.rule.children.size() == 2;
-        if (is_bisection) return two_.add(split, nodes, boxes_);
+        std::size_t normals = 0;
+        for (const Child& child : split.rule.children) normals += gradient_count(child.shape);
+        if (normals <= 2) return two_.add(split, nodes, boxes_);
         eight_.add(split, nodes, boxes_);
     }
     void finish(NodeEtas& etas) override {
@@ -86,8 +87,8 @@ private:
 template <class Real>
 double default_tau(const Hierarchy<Real>& hierarchy) {
     RangeVisitor<Real> visitor(static_cast<std::size_t>(hierarchy.facts().components));
-    if (hierarchy.facts().knows_stars) {
-        std::vector<Real> values;  // stars are known of fields of one component
+    if (hierarchy.facts().knows_stars && hierarchy.facts().components == 1) {
+        std::vector<Real> values;
         hierarchy.star_rows([&](const StarRow& row) {
             values.resize(row.count);
             hierarchy.row_values(static_cast<NodeKey>(row.first), row.stride, values);

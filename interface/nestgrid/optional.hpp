@@ -41,7 +41,7 @@
 //         whether it does, where that is decided at run time; of a field, whether it has
 //         row_values()
 //     Point node_position(NodeKey)
-//         random access, with for_each_star_row
+//         random access, with for_each_star_row; splits with the same offsets in key are congruent
 //     std::uint64_t epoch()
 //         changes with the grid: tells stale prerolls
 // It may also name constants, from which the sizes of arrays and the lengths of loops follow:

@@ -58,7 +58,7 @@ void for_each_sized_split(const Grid& grid, const Indicator& size, const Functio
 template <class Grid>
 void expect_sizes(const Grid& grid, const SweptIndicator& size) {
     constexpr double rounding = 1 - 1e-12;
-    const auto [factor, slope] = size.spread();
+    const Spread spread = size.spread();
     std::size_t small = 0;
     std::size_t open = 0;
     std::size_t inside = 0;
@@ -69,7 +69,7 @@ void expect_sizes(const Grid& grid, const SweptIndicator& size) {
             inside += outside && !std::isinf(split.size[n]) ? 1 : 0;
             for (std::size_t k = 0; k < split.corners; ++k) {
                 const double distance = norm(split.x[n] - split.x[k]);
-                const double least = factor * (split.size[n] + slope * distance);
+                const double least = spread.factor * (split.size[n] + spread.slope * distance);
                 open += split.size[k] < rounding * least ? 1 : 0;
             }
         }
@@ -112,9 +112,23 @@ using Lattices =
     testing::Types<LatticeBisection<2>, LatticeBisection<3>, LatticeOctree<2>, LatticeOctree<3>>;
 TYPED_TEST_SUITE(LatticeIndicators, Lattices);
 
+/// Lattices so thin that nodes in different directions are equally far apart in key.
+template <int dim>
+std::vector<LatticeGeometry<dim>> thin_geometries(const Point& spacing) {
+    if constexpr (dim == 2) {
+        return {{.samples = {3, 9}, .spacing = spacing}, {.samples = {5, 5}, .spacing = spacing}};
+    } else {
+        return {{.samples = {3, 9, 9}, .spacing = spacing},
+                {.samples = {5, 5, 5}, .spacing = spacing},
+                {.samples = {5, 9, 9}, .spacing = spacing}};
+    }
+}
+
 TYPED_TEST(LatticeIndicators, SizesAreDiametersAndSaturated) {
     for (const Point& spacing : {Point{1, 1, 1}, Point{0.3, 1, 2.7}}) {
-        for (const auto& geometry : geometries<TypeParam::dimension>(spacing)) {
+        auto all = geometries<TypeParam::dimension>(spacing);
+        for (const auto& thin : thin_geometries<TypeParam::dimension>(spacing)) all.push_back(thin);
+        for (const auto& geometry : all) {
             const TypeParam grid(geometry);
             for (const Spread& spread : spreads) expect_sizes(grid, mesh_size(grid, spread));
         }
