@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <span>
+#include <utility>
 
 #include <nestgrid/detail/erase.hpp>
 

@@ -9,6 +9,7 @@
 // element, none for a node.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -5,6 +5,7 @@
 // isosurface.hpp says.
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -41,9 +42,8 @@ std::vector<Isosurface<dimension>> isosurfaces(const Hierarchy<Real>& hierarchy,
                                                const IsosurfaceOptions& options = {},
                                                const Executor& executor = SequentialExecutor{}) {
     hierarchy.facts().require_dimension(dimension);
-    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues,
-                                               detail::SurfaceTargets<dimension>{}, criterion,
-                                               bounds, options, executor);
+    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues, {}, criterion, bounds, options,
+                                               executor);
 }
 template <class Grid, class Field>
 auto isosurfaces(const Grid& grid, const Field& field, std::span<const double> isovalues,
@@ -54,8 +54,8 @@ auto isosurfaces(const Grid& grid, const Field& field, std::span<const double> i
                                                           bounds, options, executor);
 }
 
-/// The same, each surface into a sink of its own (surface.hpp); those of the results stay empty.
-/// \tparam Sink a MeshSink or a SimplexSink of the grid's dimension
+/// The same, each into a sink of its own (surface.hpp): a MeshSink or a SimplexSink of the grid's
+/// dimension. The surfaces of the results stay empty.
 /// \throw InvalidInput also where there is not one sink for each isovalue, and for normals into a
 ///        SimplexSink
 template <int dimension, class Real, class Sink>

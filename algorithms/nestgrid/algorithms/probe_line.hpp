@@ -4,6 +4,8 @@
 // Values of P_S U along lines (probe.hpp).
 #pragma once
 
+#include <vector>
+
 #include <nestgrid/algorithms/probe.hpp>
 
 namespace nestgrid {

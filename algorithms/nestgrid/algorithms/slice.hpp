@@ -42,7 +42,8 @@ template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
             const Executor& executor = SequentialExecutor{});
-/// Draws the slice like that, after its own preroll, or, at threshold 0, without any.
+/// Draws the slice like that after a preroll of its own. At threshold 0, and without a budget, it
+/// needs none.
 template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const IsosurfaceOptions& options = {}, const Executor& executor = SequentialExecutor{});

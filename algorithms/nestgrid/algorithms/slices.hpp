@@ -5,6 +5,9 @@
 // criterion. What holds of each slice, slice.hpp says.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 
@@ -18,6 +21,7 @@ struct SliceRequest {
 
 namespace detail {
 
+/// Defined for float and double.
 template <class Real>
 std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
                                const SurfaceTargets<3>& targets, const Criterion& criterion,
@@ -28,7 +32,8 @@ std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequ
 
 /// Slices and isosurfaces under the projection with `criterion`. All carry all components of the
 /// field as attributes.
-/// \param bounds, options, and what is thrown: as slice()
+/// \param bounds and options as of slice()
+/// \throw InvalidInput, GridError as slice(); InvalidInput also where an isovalue is not finite
 template <class Real>
 std::vector<Slice> slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
                           const Criterion& criterion, const Bounds& bounds,
@@ -46,6 +51,8 @@ std::vector<Slice> slices(const Grid& grid, const Field& field, const SliceReque
 
 /// The same, each into a sink of its own (surface.hpp). A SimplexSink also gets triangles without
 /// area, around nodes that lie on a slice.
+/// \throw InvalidInput also where there is not one sink for each, and for normals into a
+/// SimplexSink
 template <class Real, class Sink>
 std::vector<Slice> extract_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
                                   std::vector<Sink> sinks, const Criterion& criterion,

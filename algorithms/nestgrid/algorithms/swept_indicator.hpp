@@ -10,7 +10,7 @@
 // Consequence: S(x) = (eta(x) <= epsilon) is a saturated criterion, whatever is measured. Bounds,
 // for the search and for the error, come from the data: take those of a HierarchicalIndicator.
 // Memory: 2 bytes a node (with its key where keys are not dense); while it is made, 4 for each node
-// of each split more, but where the grid knows stars.
+// of each split more, or 2 a node at most where the grid knows stars.
 #pragma once
 
 #include <functional>

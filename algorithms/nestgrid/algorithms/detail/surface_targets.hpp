@@ -11,7 +11,7 @@
 
 namespace nestgrid::detail {
 
-/// Where the surfaces go: one sink for each isovalue, or none, for surfaces in the results.
+/// Where the surfaces go: one sink for each surface, or none, for surfaces in the results.
 template <int dimension>
 struct SurfaceTargets {
     std::vector<MeshSink<dimension>*> meshes;
