@@ -112,8 +112,7 @@ class RangeStack {
 public:
     /// \param x the variables
     /// \param place where the parser finds them
-    RangeStack(const std::array<Interval, 3>& x, const nestgrid::Point& place)
-        : x_{x}, place_{&place} {}
+    RangeStack(Operands x, const nestgrid::Point& place) : x_{x}, place_{&place} {}
 
     /// \return whether the token is one that is understood
     bool take(const mu::SToken& token) {
@@ -189,7 +188,7 @@ private:
         return true;
     }
 
-    std::array<Interval, 3> x_;
+    Operands x_;
     const nestgrid::Point* place_;
     boost::container::small_vector<Interval, 16> stack_;
 };
