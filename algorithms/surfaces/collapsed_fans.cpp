@@ -9,7 +9,6 @@ namespace nestgrid::engine {
 namespace {
 
 using Vertex = std::uint32_t;
-constexpr std::uint32_t none = ~std::uint32_t{0};
 
 bool is_collapsed(const NumberedTriangle& t, const NodeClasses& classes) {
     const auto& [a, b, c] = t.v;
@@ -42,16 +41,16 @@ std::vector<bool> remove_collapsed_fans(std::vector<NumberedTriangle>& triangles
     for (const Use& use : uses) on_line[use.centre] = true;
     std::erase_if(uses, [&](const Use& use) { return stays[use.centre]; });
     std::ranges::stable_sort(uses, {}, &Use::centre);
-    Vertex apex = none;
+    Vertex apex = 0;
     for (std::size_t i = 0; i < uses.size(); ++i) {
         NumberedTriangle& t = triangles[uses[i].triangle];
         while (t.v[0] != uses[i].centre) std::rotate(t.v.begin(), t.v.begin() + 1, t.v.end());
         const bool first = i == 0 || uses[i - 1].centre != uses[i].centre;
         if (first) apex = t.v[1];
         t.v[0] = apex;
-        if (t.v[1] == apex || t.v[2] == apex) t.from = none;
+        if (t.v[1] == apex || t.v[2] == apex) t.from = NumberedTriangle::removed;
     }
-    std::erase_if(triangles, [](const NumberedTriangle& t) { return t.from == none; });
+    erase_removed(triangles);
     return on_line;
 }
 

@@ -14,12 +14,19 @@
 
 namespace nestgrid::engine {
 
-/// A triangle of a surface, and the number of the simplex from which it was made.
+/// A triangle of a surface, and the number of the simplex from which it was made, or `removed`.
 struct NumberedTriangle {
+    static constexpr std::uint32_t removed = ~std::uint32_t{0};
     std::array<std::uint32_t, 3> v;
     std::uint32_t from;
     bool operator==(const NumberedTriangle&) const = default;
 };
+
+/// Erases the triangles that are marked as removed. \return how many there were
+inline std::size_t erase_removed(std::vector<NumberedTriangle>& triangles) {
+    return std::erase_if(
+        triangles, [](const NumberedTriangle& t) { return t.from == NumberedTriangle::removed; });
+}
 
 /// Whether a triangle's height is below 1e-9 of its longest side.
 bool are_collinear(const Point& a, const Point& b, const Point& c);

@@ -71,14 +71,15 @@ bool NodeMerge::cancel_pairs() {
             if (!is_merged(v) || !is_merged(a) || !is_merged(b)) continue;
             const Edge turned{b, a};
             const auto back = std::ranges::find_if(link, [&](const OppositeSide& other) {
-                return other.edge == turned && triangles_[other.triangle].from != none;
+                return other.edge == turned &&
+                       triangles_[other.triangle].from != NumberedTriangle::removed;
             });
             if (back == link.end()) continue;
-            triangles_[side.triangle].from = none;
-            triangles_[back->triangle].from = none;
+            triangles_[side.triangle].from = NumberedTriangle::removed;
+            triangles_[back->triangle].from = NumberedTriangle::removed;
         }
     });
-    return std::erase_if(triangles_, [](const auto& t) { return t.from == none; }) > 0;
+    return erase_removed(triangles_) > 0;
 }
 
 /// Keeps the boundary edges that nothing changed, and adds those changed ones that one triangle

@@ -32,10 +32,14 @@ PositionFunctions::PositionFunctions(std::span<const LevelFunction* const> funct
             if (norm(coarse.corners[k]) > norm(farthest)) farthest = coarse.corners[k];
             for (std::size_t f = 0; f < functions_.size(); ++f) {
                 const double at = value(f, coarse.corners[k]);
-                if (at < least[f]) at_least[f] = coarse.corners[k];
-                if (at > greatest[f]) at_greatest[f] = coarse.corners[k];
-                least[f] = std::min(least[f], at);
-                greatest[f] = std::max(greatest[f], at);
+                if (at < least[f]) {
+                    least[f] = at;
+                    at_least[f] = coarse.corners[k];
+                }
+                if (at > greatest[f]) {
+                    greatest[f] = at;
+                    at_greatest[f] = coarse.corners[k];
+                }
             }
         }
     }
