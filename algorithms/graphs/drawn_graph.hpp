@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a triangulation has drawn, recorded and counted, and how a task's share is added to it.
+// A triangulation while it is drawn: its surface, recorded nodes and counts. The leader adds those
+// of its tasks.
 #pragma once
 
 #include <cstdint>

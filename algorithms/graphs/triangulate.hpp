@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What shading() and height_field() have in common. Defined for float and double.
+// Draws a two-dimensional hierarchy as triangles, lifted along z by a scale times component 0.
+// shading() and height_field() call it. Defined for float and double.
 #pragma once
 
 #include <nestgrid/algorithms/executor.hpp>

@@ -37,7 +37,7 @@ double trace_of(double offset) {
 
 namespace {
 
-/// What is kept of a split for the sweep.
+/// Which numbers of a split the visitor keeps for the sweep over all splits.
 enum class Kept { nothing, nodes, nodes_and_reach };
 
 /// Shows a source the splits that a walk meets.

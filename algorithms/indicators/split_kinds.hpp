@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kinds of splits, up to translation, of a grid that knows its stars (StarRow): one split of
-// each kind stands for all.
+// The kinds of splits of a grid that knows its stars (StarRow): one split of a kind stands for all.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +25,8 @@ inline KeyOffset key_offset(NodeKey from, NodeKey to) {
     return static_cast<KeyOffset>(to) - static_cast<KeyOffset>(from);
 }
 
-/// What one split of each kind tells of all: kinds are splits up to translation.
+/// Walks a hierarchy down to one split of each kind, and keeps diameters and distances of these.
+/// Two splits are of one kind where a translation maps one to the other.
 template <class Real>
 class SplitKinds final : private Visitor<Real> {
 public:

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
-#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>

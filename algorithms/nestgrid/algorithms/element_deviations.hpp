@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What stops elements where data jump between them.
+// Decides where elements stop whose data jump from one to the next.
 //
 // Every leaf has values of its own at its corners. An element that is split has, at each of its
 // corners, the value of the leaf below it in that corner, and interpolates between them. It stops

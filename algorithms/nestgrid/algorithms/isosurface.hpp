@@ -37,7 +37,7 @@ Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isoval
                                  const Criterion& criterion, const Bounds& bounds,
                                  const IsosurfaceOptions& options = {},
                                  const Executor& executor = SequentialExecutor{});
-/// The same with S from options.threshold or options.max_triangles.
+/// Draws the isosurface with S from options.threshold or options.max_triangles.
 /// \throw InvalidInput also where the threshold is negative or not a number, and where even the
 ///        coarsest surface has more triangles than asked for
 template <int dimension, class Real>
@@ -45,7 +45,7 @@ Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isoval
                                  const HierarchicalIndicator& indicator,
                                  const IsosurfaceOptions& options = {},
                                  const Executor& executor = SequentialExecutor{});
-/// The same with its own preroll: one call for one surface.
+/// Draws the isosurface like that after a preroll of its own.
 template <int dimension, class Real>
 Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
                                  const IsosurfaceOptions& options = {},

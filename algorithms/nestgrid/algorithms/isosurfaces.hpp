@@ -54,8 +54,8 @@ auto isosurfaces(const Grid& grid, const Field& field, std::span<const double> i
                                                           bounds, options, executor);
 }
 
-/// The same, each into a sink of its own (surface.hpp): a MeshSink or a SimplexSink of the grid's
-/// dimension. The surfaces of the results stay empty.
+/// Draws the isosurfaces into sinks (surface.hpp), a MeshSink or a SimplexSink of the grid's
+/// dimension for each. The surfaces of the results stay empty.
 /// \throw InvalidInput also where there is not one sink for each isovalue, and for normals into a
 ///        SimplexSink
 template <int dimension, class Real, class Sink>

@@ -49,8 +49,8 @@ std::vector<Slice> slices(const Grid& grid, const Field& field, const SliceReque
     return slices(erase(grid, field), request, criterion, bounds, options, executor);
 }
 
-/// The same, each into a sink of its own (surface.hpp). A SimplexSink also gets triangles without
-/// area, around nodes that lie on a slice.
+/// Draws the slices and isosurfaces into sinks (surface.hpp), one for each. A SimplexSink also gets
+/// triangles without area, around nodes that lie on a slice.
 /// \throw InvalidInput also where there is not one sink for each, and for normals into a
 /// SimplexSink
 template <class Real, class Sink>

@@ -11,7 +11,7 @@
 
 namespace nestgrid::detail {
 
-/// Where the surfaces go: one sink for each surface, or none, for surfaces in the results.
+/// The sinks that take surfaces, one for each; without any, the results hold the surfaces.
 template <int dimension>
 struct SurfaceTargets {
     std::vector<MeshSink<dimension>*> meshes;
