@@ -62,8 +62,7 @@ try {
   check((await text('subtitle')).includes('values from'), 'the range is not told');
   check(count(await text('number-triangles')) > 1000, 'no triangles');
   check((await text('number-ms')).endsWith('ms'), 'no time');
-  check((await page.$$eval('#legend-ticks span', (spans) => spans.length)) >= 4, 'no legend');
-  check((await text('legend-title')).length > 0, 'the legend has no name');
+  check(await page.$eval('#legend', (legend) => legend.hidden), 'a legend of colours that nothing has');
   const first = await look();
   check(first.colours > 50 && first.drawn > 1000, `the canvas is empty: ${JSON.stringify(first)}`);
   await page.mouse.move(480, 400);
@@ -102,6 +101,9 @@ try {
   await rates('slice with the surface', 'slice-at', 300, 700, 50000);
   await picture('slice');
   check((await look()).colours > 50, 'no slice');
+  check(!(await page.$eval('#legend', (legend) => legend.hidden)), 'no legend');
+  check((await page.$$eval('#legend-ticks span', (spans) => spans.length)) >= 4, 'no values at the legend');
+  check((await text('legend-title')).length > 0, 'the legend has no name');
   await select('slice', 'view');
   check((await text('slice-text')).includes('distance'), 'the slice that faces the reader has no distance');
   await select('slice', 'none');
@@ -148,6 +150,7 @@ try {
   await session.send('Browser.setDownloadBehavior', { behavior: 'allow', downloadPath: saved });
   for (const [id, name] of [['screenshot', 'nestgrid.png'], ['gltf', 'nestgrid.glb']]) {
     await page.click(`#${id}`);
+    if (id === 'screenshot') await page.click('#picture-dialog button[value=save]');
     for (let i = 0; i < 100 && !existsSync(join(saved, name)); ++i) await new Promise((r) => setTimeout(r, 100));
     check(readdirSync(saved).includes(name), `${name} was not saved`);
   }

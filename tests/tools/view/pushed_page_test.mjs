@@ -47,8 +47,8 @@ try {
 
   // A surface that is there has no isovalue, threshold, slice or lens to choose.
   const controls = await page.$$eval('input, select, button, canvas#histogram',
-    (all) => all.filter((e) => e.checkVisibility()).map((e) => e.id).sort().join());
-  check(controls === 'gltf,outlines,reset,screenshot', `the controls are ${controls}`);
+    (all) => all.filter((e) => e.checkVisibility() && !e.closest('.tools')).map((e) => e.id).sort().join());
+  check(controls === 'gltf,outlines,projection,reset,screenshot', `the controls are ${controls}`);
   await page.$eval('#outlines', (box) => box.click());
   await page.waitForFunction(() => window.nestgrid.shown.frame.parts.some((part) => part.kind === 'outlines'));
 

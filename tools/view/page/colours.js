@@ -54,7 +54,7 @@ export function readable(x) {
   return String(Number(x.toPrecision(4)));
 }
 
-/** A count with thin spaces between thousands. */
+/** A count with commas between thousands, which screen readers take for one number. */
 export function readableCount(n) {
-  return Math.round(n).toString().replace(/\B(?=(\d{3})+$)/g, ' ');
+  return Math.round(n).toString().replace(/\B(?=(\d{3})+$)/g, ',');
 }

@@ -5,6 +5,7 @@
 // slider is dragged the change is 'moving', when it is let go 'settled'.
 import { readable, readableCount } from './colours.js';
 import { diagonalOf } from './state.js';
+import { setWhy } from './status.js';
 
 const byId = (id) => document.getElementById(id);
 const sliderSteps = 1000;
@@ -27,11 +28,15 @@ const rounded = (n) => {
   return Math.round(n / unit) * unit;
 };
 
+const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
+
 export class Controls {
   #change;
   #state;
   #info;
   #playing = null;
+  /** The slider that the reader moves at the moment. */
+  #held = null;
 
   /** change(changes, motion) */
   constructor(change) {
@@ -84,6 +89,10 @@ export class Controls {
     this.#place('lens-radius', this.#radiusScale.position(state.radius));
     this.#place('time', linear(info.times[0], info.times.at(-1)).position(state.time));
     this.#showTexts(state, info);
+    const nothing = !state.surface && state.slice === 'none';
+    for (const section of ['detail-section', 'lens-section', 'outlines-section']) {
+      setWhy(section, nothing ? 'Nothing is drawn: choose the isosurface or a slice.' : '');
+    }
   }
 
   #showTexts(state, info) {
@@ -92,13 +101,24 @@ export class Controls {
     if (document.activeElement !== byId('isovalue-number')) {
       byId('isovalue-number').value = readable(state.isovalue);
     }
-    byId('triangles-text').textContent = `about ${readableCount(state.triangles)} triangles`;
-    byId('threshold-text').textContent = this.#thresholdText(state, info);
+    const length = (x) => withUnit(readable(x), info.length_unit);
     const place = state.slice === 'view' ? 'distance from the centre' : state.slice;
-    byId('slice-text').textContent = `${place} ${readable(state.at)}`;
-    byId('lens-text').textContent = state.lens === 'click' && !state.centre
-      ? 'click on the surface' : `radius ${readable(state.radius)}`;
-    byId('time-text').textContent = `time ${readable(state.time)}`;
+    this.#say('isovalue', null, withUnit(readable(state.isovalue), info.unit));
+    this.#say('triangles', 'triangles-text', `about ${readableCount(state.triangles)} triangles`);
+    this.#say('threshold', 'threshold-text', this.#thresholdText(state, info));
+    this.#say('slice-at', 'slice-text', `${place} ${length(state.at)}`);
+    this.#say('lens-radius', 'lens-text', `radius ${length(state.radius)}`);
+    this.#say('time', 'time-text', `time ${readable(state.time)}`);
+    byId('lens-hint').textContent = state.lens === 'cursor'
+      ? 'Point at the surface, or aim at it with Ctrl and arrow keys.'
+      : state.centre ? 'Click elsewhere to move it, or aim there and press Enter.'
+        : 'Click on the surface, or aim at it and press Enter.';
+  }
+
+  /** Has a slider, and a text beside it, say what it is at. */
+  #say(slider, beside, text) {
+    byId(slider).setAttribute('aria-valuetext', text);
+    if (beside) byId(beside).textContent = text;
   }
 
   #thresholdText(state, info) {
@@ -161,15 +181,21 @@ export class Controls {
   #slider(id, changesAt) {
     const slider = byId(id);
     const position = () => Number(slider.value) / sliderSteps;
-    slider.addEventListener('input', () => this.#change(changesAt(position()), 'moving'));
-    slider.addEventListener('change', () => this.#change(changesAt(position()), 'settled'));
+    const move = (motion) => {
+      this.#held = id;
+      this.#change(changesAt(position()), motion);
+      this.#held = null;
+    };
+    slider.addEventListener('input', () => move('moving'));
+    slider.addEventListener('change', () => move('settled'));
   }
 
   #place(id, position) {
     const slider = byId(id);
     const value = String(Math.round(sliderSteps * Math.min(Math.max(position, 0), 1)));
-    // A slider under the hand stays where the hand is.
-    if (!slider.matches(':active')) slider.value = value;
+    // A slider under the hand stays where the hand is: a key that moves it less than its value is
+    // rounded to would move it never.
+    if (id !== this.#held && !slider.matches(':active')) slider.value = value;
   }
 
   #play() {
@@ -182,6 +208,13 @@ export class Controls {
     }
     byId('play').textContent = 'Pause';
     const { times } = this.#info;
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches) {
+      this.#playing = setInterval(() => {
+        const next = times.findIndex((time) => time > this.#state.time);
+        this.#change({ time: times[Math.max(next, 0)] }, 'settled');
+      }, 1000);
+      return;
+    }
     const length = times.at(-1) - times[0];
     const seconds = 2 * (times.length - 1);
     let last = performance.now();

@@ -6,8 +6,9 @@ import { Controls } from './controls.js';
 import { readable, readableCount } from './colours.js';
 import { FrameLoop } from './frame.js';
 import { drawHistogram } from './legend.js';
-import { Picture, showMessage, showNumbers } from './picture.js';
-import { addressOf, defaultState, requestOf, stateFromAddress } from './state.js';
+import { Picture } from './picture.js';
+import { addressOf, defaultState, planeOf, requestOf, stateFromAddress } from './state.js';
+import { showMessage, showNumbers, tell } from './status.js';
 
 const byId = (id) => document.getElementById(id);
 
@@ -24,9 +25,17 @@ export class ExploredPage {
     this.#picture = new Picture({
       moved: () => this.#remember(),
       reset: () => this.#change({ camera: null }, 'settled'),
+      project: (projection) => {
+        this.#state.projection = projection;
+        this.#remember();
+      },
+      address: () => addressOf({ ...this.#state, camera: this.stage.camera }),
       hovered: (hit) => this.#hover(hit),
       clicked: (hit) => {
         if (hit && this.#state.lens === 'click') this.#change({ centre: hit.point }, 'settled');
+      },
+      sized: (factor) => {
+        if (this.#state.lens !== 'off') this.#change({ radius: factor * this.#state.radius }, 'settled');
       },
     });
     this.#controls = new Controls((changes, motion) => this.#change(changes, motion));
@@ -69,15 +78,22 @@ export class ExploredPage {
 
   #restore() {
     this.#state = stateFromAddress(location.hash, this.#start);
+    this.#picture.project(this.#state.projection);
     this.stage.look(this.#state.camera);
-    this.#controls.show(this.#state, this.#info);
+    this.#showControls();
     this.#loop.want('settled');
+  }
+
+  #showControls() {
+    this.#controls.show(this.#state, this.#info);
+    const { lens, centre, radius } = this.#state;
+    this.stage.setLens(lens !== 'off' && centre ? { centre, radius } : null);
   }
 
   #change(changes, motion) {
     if (changes.slice === 'view') changes.normal = this.stage.towardsReader;
     Object.assign(this.#state, changes);
-    this.#controls.show(this.#state, this.#info);
+    this.#showControls();
     this.#loop.want(motion);
     if (motion === 'settled') this.#remember();
   }
@@ -90,10 +106,16 @@ export class ExploredPage {
 
   #show(frame, how) {
     showMessage('');
-    const { isovalue, surface } = this.#state;
-    const { name, least, greatest } = this.#info;
+    const { name, least, greatest, unit = '', length_unit: lengthUnit = '' } = this.#info;
     const bound = frame.error_bound;
-    this.#picture.show(frame, { field: name, least, greatest, isovalue, marked: surface, bound });
+    this.#picture.show(frame, {
+      field: name, unit, lengthUnit, least, greatest, bound,
+      isovalue: this.#state.surface ? this.#state.isovalue : null,
+      plane: planeOf(this.#state, this.#info),
+    });
+    if (how.motion === 'settled') {
+      tell(`${readableCount(frame.triangles)} triangles, error at most ${readable(bound)}`);
+    }
     showNumbers([
       ['triangles', 'triangles', readableCount(frame.triangles)],
       ['bound', 'error at most', readable(bound),

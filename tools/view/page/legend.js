@@ -1,37 +1,89 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The legend of the colours, and how often values occur.
+// The legend of the colours, beside the picture and in it, and how often values occur.
 import { cssColourAt, readable } from './colours.js';
 
 const byId = (id) => document.getElementById(id);
 
-/** Draws the bar of the legend, once. */
-export function drawBar(name) {
-  byId('legend-title').textContent = name;
-  const bar = byId('legend-bar');
-  const context = bar.getContext('2d');
-  for (let y = 0; y < bar.height; ++y) {
-    context.fillStyle = cssColourAt(1 - y / (bar.height - 1));
-    context.fillRect(0, y, bar.width, 1);
+/** Fills a rectangle with the colours, the least value at its bottom. */
+function fillBar(context, x, y, width, height) {
+  for (let row = 0; row < height; ++row) {
+    context.fillStyle = cssColourAt(1 - row / (height - 1));
+    context.fillRect(x, y + row, width, 1);
   }
 }
 
-/** Sets the values at the bar, with a mark at the isovalue, or none where it is null. */
-export function markLegend(least, greatest, isovalue) {
-  const part = (value) => (greatest > least ? (value - least) / (greatest - least) : 0);
-  const ticks = [0, 0.25, 0.5, 0.75, 1].map((t) => ({ at: t, value: least + t * (greatest - least) }));
-  const shown = isovalue === null ? ticks
-    : ticks.filter((t) => Math.abs(t.at - part(isovalue)) > 0.08);
-  const spans = shown.map(({ at, value }) => [at, readable(value), '']);
-  if (isovalue !== null) spans.push([part(isovalue), readable(isovalue), 'mark']);
-  byId('legend-ticks').replaceChildren(...spans.map(([at, text, kind]) => {
-    const span = document.createElement('span');
-    span.style.bottom = `${100 * at}%`;
-    span.textContent = text;
-    span.className = kind;
-    return span;
-  }));
+/**
+ * The values at the bar: the ends, round ones between them, and a mark, which may be null.
+ * returns [{ part, from 0 to 1; text; marks }]
+ */
+export function ticksOf(least, greatest, mark) {
+  const range = greatest - least;
+  const part = (value) => (range > 0 ? (value - least) / range : 0);
+  const ends = range > 0 ? [least, greatest] : [least];
+  const marks = mark === null || mark < least || mark > greatest ? [] : [mark];
+  const step = roundStep(range / 4);
+  const between = [];
+  for (let i = Math.ceil(least / step); range > 0 && i * step < greatest; ++i) between.push(i * step);
+  // Texts do not touch: a mark goes before an end, an end before a round value.
+  const shown = [];
+  for (const value of [...marks, ...ends, ...between]) {
+    if (shown.every((other) => Math.abs(part(other) - part(value)) > 0.09)) shown.push(value);
+  }
+  return shown.map((value) => ({
+    part: part(value), text: readable(value), marks: marks.includes(value) }));
+}
+
+/** The next of 1, 2, 5, 10, ... from a number upwards. */
+export function roundStep(x) {
+  const unit = 10 ** Math.floor(Math.log10(x));
+  return unit * ([1, 2, 5].find((step) => step * unit >= x * (1 - 1e-9)) ?? 10);
+}
+
+/** Shows the legend of { field, unit, least, greatest, mark }, or none. */
+export function showLegend(legend) {
+  byId('legend').hidden = !legend;
+  if (!legend) return;
+  byId('legend-title').textContent = titleOf(legend);
+  const bar = byId('legend-bar');
+  fillBar(bar.getContext('2d'), 0, 0, bar.width, bar.height);
+  byId('legend-ticks').replaceChildren(...ticksOf(legend.least, legend.greatest, legend.mark)
+    .map(({ part, text, marks }) => {
+      const span = document.createElement('span');
+      span.style.bottom = `${100 * part}%`;
+      span.textContent = text;
+      span.className = marks ? 'mark' : '';
+      return span;
+    }));
+}
+
+const titleOf = ({ field, unit }) => (unit ? `${field} (${unit})` : field);
+
+/**
+ * Draws the legend into a picture, its lower left corner at (x, y).
+ * em: the size of its text; colour: of its text
+ */
+export function drawLegend(context, legend, x, y, em, colour) {
+  const height = 14 * em;
+  const width = 1.4 * em;
+  fillBar(context, x, y - height, Math.round(width), Math.round(height));
+  context.strokeStyle = context.fillStyle = colour;
+  context.lineWidth = em / 13;
+  context.strokeRect(x, y - height, width, height);
+  context.textAlign = 'left';
+  context.textBaseline = 'middle';
+  for (const { part, text, marks } of ticksOf(legend.least, legend.greatest, legend.mark)) {
+    context.font = fontOf(em, marks);
+    context.fillText(marks ? `◂ ${text}` : text, x + width + 0.6 * em, y - part * height);
+  }
+  context.font = fontOf(em, true);
+  context.fillText(titleOf(legend), x, y - height - 1.4 * em);
+}
+
+/** The font of a text in a picture. */
+export function fontOf(em, bold = false) {
+  return `${bold ? '600 ' : ''}${em}px system-ui, "DejaVu Sans", sans-serif`;
 }
 
 /** Draws how often values occur, on a scale of roots, each in the colour of its value. */
@@ -54,38 +106,4 @@ export function drawHistogram(info) {
     context.fillStyle = cssColourAt((value - info.least) / range);
     context.fillRect(x - width / 2, canvas.height - height, width, height);
   });
-}
-
-/** The picture on the stage with its legend, as a canvas. */
-export function pictureWithLegend(stage, caption) {
-  const source = byId('canvas');
-  const scale = source.width / source.clientWidth;
-  const canvas = document.createElement('canvas');
-  canvas.width = source.width;
-  canvas.height = source.height;
-  const context = canvas.getContext('2d');
-  stage.drawNow();
-  context.drawImage(source, 0, 0);
-  context.scale(scale, scale);
-  const style = getComputedStyle(byId('stage'));
-  context.fillStyle = style.color;
-  context.font = `12px ${style.fontFamily}`;
-  context.textBaseline = 'middle';
-  const origin = source.getBoundingClientRect();
-  const place = (element) => {
-    const r = element.getBoundingClientRect();
-    return { x: r.left - origin.left, y: r.top - origin.top, width: r.width, height: r.height };
-  };
-  if (!byId('legend').hidden) {
-    const bar = place(byId('legend-bar'));
-    context.drawImage(byId('legend-bar'), bar.x, bar.y, bar.width, bar.height);
-    for (const text of [byId('legend-title'), ...byId('legend-ticks').children]) {
-      const at = place(text);
-      const mark = text.className === 'mark' ? '◂ ' : '';
-      context.fillText(mark + text.textContent, at.x, at.y + at.height / 2);
-    }
-  }
-  context.textAlign = 'right';
-  context.fillText(caption, source.clientWidth - 16, source.clientHeight - 18);
-  return canvas;
 }

@@ -4,8 +4,8 @@
 // Joins an engine and the page of what it has.
 import { Engine } from './engine.js';
 import { ExploredPage } from './explored_page.js';
-import { showMessage } from './picture.js';
 import { PushedPage } from './pushed_page.js';
+import { showMessage } from './status.js';
 
 const byId = (id) => document.getElementById(id);
 const engine = new Engine();
@@ -14,7 +14,6 @@ const engine = new Engine();
 function takeFiles(page) {
   const drop = byId('drop');
   const panel = byId('panel');
-  const hint = byId('hint');
   const open = async (file) => {
     if (!file) return;
     const subtitle = byId('subtitle').textContent;
@@ -26,7 +25,8 @@ function takeFiles(page) {
       page.begin(info);
       drop.hidden = true;
       panel.inert = false;
-      hint.hidden = false;
+      byId('help').hidden = false;
+      byId('choose').hidden = false;
     } catch (error) {
       byId('subtitle').textContent = subtitle;
       showMessage(error.message);
@@ -34,10 +34,12 @@ function takeFiles(page) {
   };
   drop.hidden = false;
   panel.inert = true;
-  hint.hidden = true;
-  hint.textContent += '. Drop another file to open it';
+  byId('help').hidden = true;
   byId('drop-formats').textContent = engine.formats ?? '';
   byId('file').addEventListener('change', (event) => open(event.target.files[0]));
+  for (const id of ['choose', 'choose-first']) {
+    byId(id).addEventListener('click', () => byId('file').click());
+  }
   document.addEventListener('dragover', (event) => {
     event.preventDefault();
     drop.classList.add('over');

@@ -1,61 +1,58 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The picture with its legend, the value at the cursor, the numbers, and what can be saved: the same
-// wherever surfaces come from.
-import { readable, readableCount } from './colours.js';
-import { drawBar, markLegend, pictureWithLegend } from './legend.js';
+// The picture with its legend, the value at the cursor, and what can be saved: the same wherever
+// surfaces come from.
+import { readable } from './colours.js';
+import { showLegend } from './legend.js';
+import { SavedPicture, download } from './saved_picture.js';
 import { Stage } from './stage.js';
+import { setWhy, showMessage, tell } from './status.js';
+import { ViewControls } from './view_controls.js';
 
 const byId = (id) => document.getElementById(id);
 
-export function showMessage(text) {
-  byId('message').textContent = text;
-  byId('message').hidden = text === '';
-}
-
-/** Shows the numbers of a picture. rows: [id, name, text, what it means] */
-export function showNumbers(rows) {
-  byId('numbers').replaceChildren(...rows.flatMap(([id, name, text, title]) => {
-    const term = document.createElement('dt');
-    term.textContent = name;
-    if (title) term.title = title;
-    const number = document.createElement('dd');
-    number.id = `number-${id}`;
-    number.textContent = text;
-    return [term, number];
-  }));
-}
-
-function download(blob, name) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-}
-
 export class Picture {
   #stage;
-  #title = '';
+  #view;
+  #saved;
   #frame = null;
   #scale = null;
 
   /**
-   * moved: called when the reader has turned or moved the picture
-   * reset: called when the reader has asked for the view of the beginning
-   * hovered, clicked: called with what lies there (Stage.pick), or with null
+   * does: {
+   *   moved     the reader has turned or moved the picture
+   *   reset     the reader has asked for the view of the beginning
+   *   project   takes the projection that the reader has chosen
+   *   hovered, clicked   take what lies there (Stage.pick), or null
+   *   sized     takes a factor for the lens
+   *   address   returns the address of the whole view, for who saves it
+   * }
    */
-  constructor({ moved, reset, hovered = () => {}, clicked = () => {} }) {
-    this.#stage = new Stage(byId('canvas'), moved);
+  constructor(does) {
+    const nothing = () => {};
+    const { hovered, clicked, sized } = { hovered: nothing, clicked: nothing, sized: nothing, ...does };
+    this.#stage = new Stage(byId('canvas'), does.moved);
     this.#followCursor(hovered, clicked);
-    byId('screenshot').addEventListener('click', () => this.#savePicture());
-    byId('gltf').addEventListener('click', () => this.#saveModel());
-    byId('reset').addEventListener('click', () => {
-      this.#stage.look(null);
-      this.#stage.draw();
-      reset();
+    this.#view = new ViewControls(this.#stage, {
+      moved: does.moved,
+      reset: does.reset,
+      project: does.project,
+      sized,
+      aimed: (x, y) => {
+        const hit = this.#lookAt(x, y);
+        tell(byId('cursor').textContent || 'Nothing is at the aim');
+        hovered(hit);
+      },
+      pressed: (x, y) => {
+        const hit = this.#lookAt(x, y);
+        tell(byId('cursor').textContent || 'Nothing is at the aim');
+        clicked(hit);
+      },
     });
+    this.#saved = new SavedPicture(this.#stage, does.address);
+    byId('screenshot').addEventListener('click', () => this.#saved.ask());
+    byId('gltf').addEventListener('click', () => this.#saveModel());
   }
 
   get stage() {
@@ -63,25 +60,33 @@ export class Picture {
   }
 
   setTitle(title) {
-    this.#title = title;
+    this.#saved.title = title;
     document.title = `${title} – nestgrid`;
     byId('title').textContent = title;
   }
 
+  /** Shows the picture in perspective or parallel projection. */
+  project(projection) {
+    this.#view.project(projection);
+  }
+
   /**
    * Shows a frame.
-   * scale: { field, its name; least, greatest, the ends of the colours, null where nothing has one;
-   *   isovalue, null where the surface has none; marked, whether the legend marks it; bound, of the error,
-   *   null where it is not known }
+   * scale: { field, its name; unit, lengthUnit, '' where they are not known; least, greatest, the ends
+   *   of the colours, null where nothing has one; isovalue, null where the surface has none; bound, of
+   *   the error, null where it is not known; plane, { point, normal } of the slice, or null }
    */
   show(frame, scale) {
-    const { field, least, greatest, isovalue, marked } = scale;
-    if (field !== this.#scale?.field) drawBar(field);
-    byId('legend').hidden = least === null;
-    if (least !== null) markLegend(least, greatest, marked ? isovalue : null);
-    this.#stage.show(frame, isovalue, least, greatest);
+    const { field, unit, least, greatest, isovalue } = scale;
+    const legend = frame.parts.some((part) => part.values)
+      ? { field, unit, least, greatest, mark: isovalue } : null;
+    showLegend(legend);
+    this.#stage.setPlane(scale.plane);
+    this.#stage.show(frame, least, greatest);
     this.#frame = frame;
     this.#scale = scale;
+    this.#saved.content = { legend, lengthUnit: scale.lengthUnit, frame };
+    setWhy('save-section', frame.triangles === 0 ? 'There is no surface to save.' : '');
   }
 
   #followCursor(hovered, clicked) {
@@ -91,36 +96,40 @@ export class Picture {
       const event = last;
       last = null;
       if (!event || event.buttons !== 0 || !this.#frame) return;
-      const hit = this.#stage.pick(event.clientX, event.clientY);
-      this.#tell(hit);
-      hovered(hit);
+      hovered(this.#lookAt(event.clientX, event.clientY));
     };
     canvas.addEventListener('pointermove', (event) => {
       if (!last) requestAnimationFrame(look);
       last = event;
     });
     canvas.addEventListener('pointerleave', () => this.#tell(null));
-    canvas.addEventListener('pointerdown', () => { byId('hint').hidden = true; }, { once: true });
+    // What follows a drag is no click.
+    let from = null;
+    canvas.addEventListener('pointerdown', (event) => { from = [event.clientX, event.clientY]; });
     canvas.addEventListener('click', (event) => {
-      if (this.#frame) clicked(this.#stage.pick(event.clientX, event.clientY));
+      const way = from ? Math.hypot(event.clientX - from[0], event.clientY - from[1]) : 0;
+      if (this.#frame && way < 5) clicked(this.#stage.pick(event.clientX, event.clientY));
     });
   }
 
+  #lookAt(x, y) {
+    const hit = this.#frame && this.#stage.pick(x, y);
+    this.#tell(hit);
+    return hit;
+  }
+
   #tell(hit) {
-    const place = hit ? ['x', 'y', 'z'].map((axis, d) => `${axis} ${readable(hit.point[d])}`) : [];
+    const unit = this.#scale?.lengthUnit ? ` ${this.#scale.lengthUnit}` : '';
+    const place = hit
+      ? ['x', 'y', 'z'].map((axis, d) => `${axis} ${readable(hit.point[d])}${unit}`) : [];
     let text = place.join('   ');
     const value = hit && (hit.value ?? this.#scale.isovalue);
     if (hit && value !== null) {
       text += `\n${this.#scale.field} = ${readable(value)}`;
+      if (this.#scale.unit) text += ` ${this.#scale.unit}`;
       if (this.#scale.bound !== null) text += ` ± ${readable(this.#scale.bound)}`;
     }
     byId('cursor').textContent = text;
-  }
-
-  #savePicture() {
-    const caption = `${this.#title}, ${readableCount(this.#frame?.triangles ?? 0)} triangles`;
-    pictureWithLegend(this.#stage, caption)
-      .toBlob((blob) => download(blob, 'nestgrid.png'), 'image/png');
   }
 
   async #saveModel() {

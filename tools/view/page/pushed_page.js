@@ -5,13 +5,14 @@
 // where the reader has put it.
 import { readable, readableCount } from './colours.js';
 import { decodeFrame } from './frame.js';
-import { Picture, showMessage, showNumbers } from './picture.js';
+import { Picture } from './picture.js';
 import { addressOf, stateFromAddress } from './state.js';
+import { setWhy, showMessage, showNumbers, tell } from './status.js';
 
 const byId = (id) => document.getElementById(id);
 const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 
-const start = { outlines: false, camera: null };
+const start = { outlines: false, camera: null, projection: 'perspective' };
 const sentences = {
   waiting: 'The solver has shown no surface yet',
   running: 'The solver is running',
@@ -33,7 +34,13 @@ export class PushedPage {
     this.#picture = new Picture({
       moved: () => this.#remember(),
       reset: () => this.#remember(null),
+      project: (projection) => {
+        this.#state.projection = projection;
+        this.#remember();
+      },
+      address: () => addressOf({ ...this.#state, camera: this.stage.camera }),
     });
+    this.#picture.project(this.#state.projection);
     document.body.classList.add('pushed');
     byId('outlines-section').hidden = true;
     byId('outlines').checked = this.#state.outlines;
@@ -60,9 +67,12 @@ export class PushedPage {
   }
 
   #tell(connection) {
+    if (document.body.dataset.connection === connection) return;
     byId('subtitle').textContent = sentences[connection];
     document.body.dataset.connection = connection;
-    byId('outlines').disabled = connection !== 'running';
+    tell(sentences[connection]);
+    setWhy('outlines-section',
+      connection === 'running' ? '' : 'Outlines come from the solver while it runs.');
   }
 
   #remember(camera = this.stage.camera) {
@@ -110,10 +120,12 @@ export class PushedPage {
   #show(frame) {
     showMessage(frame.triangles === 0 ? 'The surface is empty.' : '');
     this.#setBox(frame.box);
+    const { field, least, greatest } = frame;
+    // Colours of a surface are those of another quantity than the one whose value it has.
     const coloured = frame.parts.some((part) => part.values);
-    const { field, least, greatest, isovalue } = frame;
-    const marked = isovalue !== null && !coloured;
-    this.#picture.show(frame, { field, least, greatest, isovalue, marked, bound: null });
+    const isovalue = coloured ? null : frame.isovalue;
+    this.#picture.show(frame, {
+      field, unit: '', lengthUnit: '', least, greatest, isovalue, bound: null, plane: null });
     byId('outlines-section').hidden = !frame.outlined;
     const number = (x) => (Number.isInteger(x) ? readableCount(x) : readable(x));
     showNumbers([

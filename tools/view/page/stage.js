@@ -3,13 +3,24 @@
 //
 // The picture: surfaces in their box, camera and light.
 import * as THREE from './three.module.js';
-import { OrbitControls } from './OrbitControls.js';
 import { GLTFExporter } from './GLTFExporter.js';
-import { colourAt, coloursOf } from './colours.js';
+import { boxEdges, planeEdges } from './box.js';
+import { Camera } from './camera.js';
+import { coloursOf } from './colours.js';
 import { diagonalOf } from './state.js';
 
-const cssColour = (name) => new THREE.Color(
-  getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+const axes = ['x', 'y', 'z'];
+
+/** A colour of style.css under a scheme: 'light', 'dark', or '' as the page has it. */
+export function colourOf(name, scheme = '') {
+  const probe = document.createElement('i');
+  probe.className = scheme;
+  probe.style.color = `var(--${name})`;
+  document.body.append(probe);
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
+}
 
 /** A letter that faces the reader. */
 function letter(text, colour) {
@@ -19,63 +30,98 @@ function letter(text, colour) {
   context.font = '48px system-ui, "DejaVu Sans", sans-serif';
   context.textAlign = 'center';
   context.textBaseline = 'middle';
-  context.fillStyle = `#${colour.getHexString()}`;
+  context.fillStyle = colour;
   context.fillText(text, 32, 32);
-  return new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas) }));
+  const map = new THREE.CanvasTexture(canvas);
+  map.colorSpace = THREE.SRGBColorSpace;
+  return new THREE.Sprite(new THREE.SpriteMaterial({ map }));
+}
+
+/** A circle that faces the reader, also where the surface hides its centre. */
+function circle({ centre, radius }, color) {
+  const line = new THREE.LineLoop(
+    new THREE.BufferGeometry().setFromPoints(new THREE.Path().absarc(0, 0, radius).getPoints(96)),
+    new THREE.LineBasicMaterial({ color, depthTest: false }));
+  line.position.set(...centre);
+  line.onBeforeRender = (renderer, scene, camera) => {
+    line.quaternion.copy(camera.quaternion);
+    line.updateMatrixWorld();
+    line.modelViewMatrix.multiplyMatrices(camera.matrixWorldInverse, line.matrixWorld);
+  };
+  line.renderOrder = 1;
+  return line;
 }
 
 export class Stage {
   #canvas;
   #renderer;
   #scene = new THREE.Scene();
-  #camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
-  #controls;
+  #camera;
   #parts = new THREE.Group();
   #frame = new THREE.Group();
   #box = [[0, 0, 0], [1, 1, 1]];
+  #plane = null;
+  #lens = null;
+  #scheme = '';
+  #ground = colourOf('stage');
   #due = false;
   #raycaster = new THREE.Raycaster();
 
   /** moved: called when the reader has turned or moved the picture */
   constructor(canvas, moved) {
     this.#canvas = canvas;
-    this.#renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.#renderer = new THREE.WebGLRenderer({
+      canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.#camera.up.set(0, 0, 1);
-    this.#controls = new OrbitControls(this.#camera, canvas);
-    this.#controls.addEventListener('change', () => this.draw());
-    this.#controls.addEventListener('end', moved);
-    const lamp = new THREE.DirectionalLight(0xffffff, 2.6);
-    lamp.position.set(-0.6, 0.9, 1);
-    this.#camera.add(lamp);
-    this.#scene.add(this.#camera, new THREE.AmbientLight(0xffffff, 1.1), this.#parts, this.#frame);
+    this.#camera = new Camera(canvas, () => this.draw(), moved);
+    this.#scene.add(
+      ...this.#camera.objects, new THREE.AmbientLight(0xffffff, 1.4), this.#parts, this.#frame);
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-      this.setBox(this.#box);
-      this.draw();
-    });
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#paint());
   }
 
   /** The domain: drawn as the edges of a box, with letters at its axes. */
   setBox(box) {
     this.#box = box;
-    const diagonal = diagonalOf(box);
-    this.#camera.near = diagonal / 1000;
-    this.#camera.far = diagonal * 100;
-    this.#camera.updateProjectionMatrix();
+    this.#camera.box = box;
+    this.#drawFrame();
+  }
+
+  /** The plane of a slice, { point, normal }, whose edge is drawn, or null. */
+  setPlane(plane) {
+    if (JSON.stringify(plane) === JSON.stringify(this.#plane)) return;
+    this.#plane = plane;
+    this.#drawFrame();
+  }
+
+  /** The lens, { centre, radius }, drawn as a circle around it, or null. */
+  setLens(lens) {
+    if (JSON.stringify(lens) === JSON.stringify(this.#lens)) return;
+    this.#lens = lens;
+    this.#drawFrame();
+    this.draw();
+  }
+
+  #drawFrame() {
+    for (const object of this.#frame.children) {
+      object.geometry?.dispose();
+      object.material.map?.dispose();
+      object.material.dispose();
+    }
     this.#frame.clear();
-    const size = new THREE.Vector3(...box[1]).sub(new THREE.Vector3(...box[0]));
-    const edges = new THREE.LineSegments(
-      new THREE.EdgesGeometry(new THREE.BoxGeometry(size.x, size.y, size.z)),
-      new THREE.LineBasicMaterial({
-        color: cssColour('--quiet'), transparent: true, opacity: 0.35 }));
-    edges.position.set(...box[0]).addScaledVector(size, 0.5);
-    this.#frame.add(edges);
-    const step = 0.035 * diagonalOf(box);
-    ['x', 'y', 'z'].forEach((text, d) => {
-      const sprite = letter(text, cssColour('--quiet'));
-      const at = [...box[0]];
-      at[d] = (box[0][d] + box[1][d]) / 2;
+    const [low, high] = this.#box;
+    const quiet = colourOf('quiet', this.#scheme);
+    const lines = (points, opacity) => this.#frame.add(new THREE.LineSegments(
+      new THREE.BufferGeometry().setFromPoints(points),
+      new THREE.LineBasicMaterial({ color: quiet, transparent: true, opacity })));
+    lines(boxEdges(this.#box).flat(), 0.5);
+    if (this.#plane) lines(planeEdges(this.#box, this.#plane), 1);
+    if (this.#lens) this.#frame.add(circle(this.#lens, colourOf('accent', this.#scheme)));
+    const step = 0.035 * diagonalOf(this.#box);
+    axes.forEach((text, d) => {
+      const sprite = letter(text, quiet);
+      const at = [...low];
+      at[d] = (low[d] + high[d]) / 2;
       at[(d + 1) % 3] -= step;
       at[(d + 2) % 3] -= step;
       sprite.position.set(...at);
@@ -84,64 +130,58 @@ export class Stage {
     });
   }
 
+  /** Where the reader stands: camera.js. */
+  get view() {
+    return this.#camera;
+  }
+
   /** Looks at the whole box, or takes [position, target, up] of the address. */
   look(camera) {
-    if (camera) {
-      this.#camera.position.set(...camera.slice(0, 3));
-      this.#controls.target.set(...camera.slice(3, 6));
-      this.#camera.up.set(...camera.slice(6, 9));
-    } else {
-      const centre = this.#box[0].map((x, d) => (x + this.#box[1][d]) / 2);
-      this.#controls.target.set(...centre);
-      this.#camera.up.set(0, 0, 1);
-      const narrow = Math.min(1, this.#camera.aspect);
-      this.#camera.position.set(...centre)
-        .addScaledVector(new THREE.Vector3(0.55, -0.75, 0.4).normalize(), 1.75 * diagonalOf(this.#box) / narrow);
-    }
-    this.#camera.updateProjectionMatrix();
-    this.#controls.update();
+    if (camera) this.#camera.view = camera;
+    else this.#camera.lookFrom();
+    this.draw();
   }
 
   get camera() {
-    return [...this.#camera.position, ...this.#controls.target, ...this.#camera.up];
+    return this.#camera.view;
   }
 
   /** The direction to the reader. */
   get towardsReader() {
-    return [...this.#camera.position.clone().sub(this.#controls.target).normalize()];
+    return this.#camera.towardsReader;
   }
 
   /** Whether dragging turns the picture. */
   set turns(on) {
-    this.#controls.enabled = on;
+    this.#camera.turns = on;
   }
 
-  /** Replaces the surfaces by those of a frame. The ends of the colours, and the isovalue, may be null. */
-  show(frame, isovalue, least, greatest) {
+  /** Replaces the surfaces by those of a frame. The ends of the colours are null where nothing has one. */
+  show(frame, least, greatest) {
     for (const part of this.#parts.children) {
       part.geometry.dispose();
       part.material.dispose();
     }
     this.#parts.clear();
-    for (const part of frame.parts) this.#parts.add(this.#object(part, isovalue, least, greatest));
+    for (const part of frame.parts) this.#parts.add(this.#object(part, least, greatest));
     this.draw();
   }
 
-  #object(part, isovalue, least, greatest) {
+  #object(part, least, greatest) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(part.positions, 3));
     geometry.setIndex(new THREE.BufferAttribute(part.indices, 1));
-    const object = this.#drawn(part, geometry, isovalue, least, greatest);
+    const object = this.#drawn(part, geometry, least, greatest);
     // Spares the search for a sphere around the surface, once a frame.
     object.frustumCulled = false;
     object.userData = { kind: part.kind };
     return object;
   }
 
-  #drawn(part, geometry, isovalue, least, greatest) {
+  #drawn(part, geometry, least, greatest) {
     if (part.kind === 'outlines') {
       return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({
-        color: cssColour('--text'), transparent: true, opacity: 0.45 }));
+        color: colourOf('outline', this.#scheme), transparent: true, opacity: 0.55 }));
     }
     const look = {
       side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
@@ -151,9 +191,7 @@ export class Stage {
       geometry.setAttribute('value', new THREE.BufferAttribute(part.values, 1));
       look.vertexColors = true;
     } else {
-      const place = greatest > least && isovalue !== null ? (isovalue - least) / (greatest - least) : 0.5;
-      const [r, g, b] = colourAt(place).map((c) => c / 255);
-      look.color = new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace);
+      look.color = new THREE.Color(colourOf('surface', this.#scheme));
     }
     // A slice has no normals: its colours are those of the legend, without light.
     if (!part.normals) return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(look));
@@ -167,7 +205,11 @@ export class Stage {
     const at = new THREE.Vector2(
       2 * (clientX - rectangle.left) / rectangle.width - 1,
       1 - 2 * (clientY - rectangle.top) / rectangle.height);
-    this.#raycaster.setFromCamera(at, this.#camera);
+    this.#raycaster.setFromCamera(at, this.#camera.three);
+    // Of a parallel view nothing is behind the reader.
+    if (this.#camera.isParallel) {
+      this.#raycaster.ray.recast(-20 * diagonalOf(this.#box));
+    }
     const meshes = this.#parts.children.filter((part) => part.isMesh);
     const hit = this.#raycaster.intersectObjects(meshes, false)[0];
     if (!hit) return null;
@@ -194,8 +236,52 @@ export class Stage {
 
   drawNow() {
     this.#due = false;
-    this.#renderer.setClearColor(cssColour('--stage'));
-    this.#renderer.render(this.#scene, this.#camera);
+    this.#renderer.setClearColor(this.#ground, 1);
+    this.#renderer.render(this.#scene, this.#camera.three);
+  }
+
+  /**
+   * The picture in another size, drawn by parts that every graphics card holds.
+   * ground: a colour, or null for none; scheme: of the lines and surfaces, 'light' or 'dark'
+   * frame: whether box and letters are drawn
+   * returns a canvas
+   */
+  drawSized(width, height, { ground, scheme, frame }) {
+    const canvas = document.createElement('canvas');
+    Object.assign(canvas, { width, height });
+    const context = canvas.getContext('2d');
+    const ratio = this.#renderer.getPixelRatio();
+    const most = 2048;
+    this.#renderer.setPixelRatio(1);
+    this.#paint(scheme);
+    this.#frame.visible = frame;
+    this.#renderer.setClearColor(ground ?? '#000', ground ? 1 : 0);
+    for (let y = 0; y < height; y += most) {
+      for (let x = 0; x < width; x += most) {
+        const part = [Math.min(most, width - x), Math.min(most, height - y), x, y];
+        this.#renderer.setSize(part[0], part[1], false);
+        this.#camera.drawPart([width, height], part,
+          () => this.#renderer.render(this.#scene, this.#camera.three));
+        context.drawImage(this.#canvas, x, y);
+      }
+    }
+    this.#frame.visible = true;
+    this.#renderer.setPixelRatio(ratio);
+    this.#paint('');
+    this.#resize();
+    return canvas;
+  }
+
+  /** Gives lines, letters and surfaces without values the colours of a scheme. */
+  #paint(scheme = this.#scheme) {
+    this.#scheme = scheme;
+    this.#ground = colourOf('stage', scheme);
+    this.#drawFrame();
+    for (const { material, userData, geometry } of this.#parts.children) {
+      if (userData.kind === 'outlines') material.color.set(colourOf('outline', scheme));
+      else if (!geometry.getAttribute('color')) material.color.set(colourOf('surface', scheme));
+    }
+    this.draw();
   }
 
   /** The surfaces as binary glTF, in one buffer. */
@@ -224,7 +310,6 @@ export class Stage {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.#renderer.setSize(clientWidth, clientHeight, false);
     this.#camera.aspect = clientWidth / clientHeight;
-    this.#camera.updateProjectionMatrix();
     this.drawNow();
   }
 }

@@ -25,6 +25,7 @@ export function defaultState(info) {
     radius: 0.08 * diagonalOf(info.box),
     centre: null,
     time: info.times[0],
+    projection: 'perspective',
     camera: null,
   };
 }
@@ -34,6 +35,7 @@ const choices = {
   indicator: ['offset', 'visual', 'numerical', 'wavelet'],
   slice: ['none', 'x', 'y', 'z', 'view'],
   lens: ['off', 'cursor', 'click'],
+  projection: ['perspective', 'parallel'],
 };
 const lists = { normal: 3, centre: 3, camera: 9 };
 
@@ -60,8 +62,8 @@ export function stateFromAddress(hash, start) {
   return state;
 }
 
-/** The address of a state: what differs from where a page begins. */
-export function addressOf(state, start) {
+/** The address of a state: what differs from where a page begins, or all of it. */
+export function addressOf(state, start = {}) {
   const short = (x) => String(Number(x.toPrecision(9)));
   const entries = [];
   for (const [key, value] of Object.entries(state)) {
@@ -73,14 +75,24 @@ export function addressOf(state, start) {
   return `#${entries.join('&')}`;
 }
 
+/** The plane of the slice, { point, normal }, or null. */
+export function planeOf({ slice, at, normal }, { box: [low, high] }) {
+  if (slice === 'none') return null;
+  if (slice === 'view') {
+    const centre = low.map((x, d) => (x + high[d]) / 2);
+    return { point: centre.map((x, d) => x + at * normal[d]), normal };
+  }
+  const along = ['x', 'y', 'z'].map((axis) => (axis === slice ? 1 : 0));
+  return { point: along.map((x) => x * at), normal: along };
+}
+
 /** A request as frame_request.hpp describes it, or null where nothing is to be drawn. */
 export function requestOf(state, info, motion) {
   const entries = [];
   if (state.surface) entries.push(`isovalue=${state.isovalue}`);
   if (state.slice === 'view') {
-    const centre = info.box[0].map((x, d) => (x + info.box[1][d]) / 2);
-    const through = centre.map((x, d) => x + state.at * state.normal[d]);
-    entries.push(`plane=${[...through, ...state.normal].join(',')}`);
+    const { point, normal } = planeOf(state, info);
+    entries.push(`plane=${[...point, ...normal].join(',')}`);
   } else if (state.slice !== 'none') {
     entries.push(`axis=${state.slice}`, `at=${state.at}`);
   }
