@@ -226,7 +226,7 @@ private:
         nestgrid::Shading s =
             what_.scale == 0 ? shading(hierarchy_, with..., options, executor_)
                              : height_field(hierarchy_, what_.scale, with..., options, executor_);
-        return {std::move(s.surface), s.counts, s.error_bound};
+        return {s, std::move(s.surface), s.counts};
     }
 
     const nestgrid::Hierarchy<Real>& hierarchy_;

@@ -66,6 +66,8 @@ void draw(const Hierarchy<Real>& hierarchy, double isovalue, double threshold,
     if (out.simplex_count > 0) out.simplices = result->surface.simplices.front().data();
     out.dimension = dimension;
     out.error_bound = result->error_bound;
+    out.range_bound = result->range_bound;
+    out.bound_says_nothing = result->bound_says_nothing() ? 1 : 0;
     out.visited = result->counts.visited;
     out.extracted = result->counts.extracted;
     out.owner = result.release();

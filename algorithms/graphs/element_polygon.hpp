@@ -37,6 +37,8 @@ public:
     /// \param nested whether all leaves below the element have its shape
     double chord(bool nested) const;
     const std::array<NodeKey, max_corners>& keys() const { return element_.keys(); }
+    /// Component 0 at a corner.
+    double u(std::size_t corner) const { return element_.u(corner); }
 
     /// Adds a triangle; contours/contour_filling.hpp calls it.
     void triangle(Number a, Number b, Number c) { surface_->add_simplex({a, b, c}, {}); }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <graphs/triangulate.hpp>
 
-#include <limits>
-
 #include <graphs/with_graph.hpp>
 
 namespace nestgrid::engine {
@@ -21,7 +19,7 @@ Shading draw(const Graph<Real>& graph, const ShadingOptions& options, const Exec
         result.cancelled = true;
     }
     drawing.report(result);
-    if (graph.criterion->insists()) result.error_bound = std::numeric_limits<double>::infinity();
+    if (graph.criterion->insists()) result.error_bound = result.range_bound;
     return result;
 }
 

@@ -131,10 +131,22 @@ void Triangulation<Real>::extract(const View& view) {
 /// what its triangles leave out.
 template <class Real>
 void Triangulation<Real>::raise_error_bound(const View& view) {
+    std::array<double, max_corners> u{};
+    for (std::size_t i = 0; i < view.corner_count(); ++i) u[i] = polygon_.u(i);
+    const Extent corners = Extent::of(std::span(u).first(view.corner_count()));
     const double corner = corner_offset(view, polygon_.keys(), *graph_.bounds);
     const bool quadrilaterals = graph_.walk->hierarchy().facts().only_shape == Shape::quadrilateral;
     const double chord = polygon_.chord(view.is_leaf() || quadrilaterals);
-    drawn_.surface.raise_error_bound((view.is_leaf() ? 0 : below_) + corner + chord);
+    const double off = (view.is_leaf() ? 0 : below_) + corner;
+    drawn_.surface.raise_error_bound(
+        std::min(off + chord, greatest_difference(corners, corners, off, *graph_.bounds)));
+}
+
+template <class Real>
+void Triangulation<Real>::report(Shading& result) const {
+    drawn_.report(result);
+    const Bounds& bounds = *graph_.bounds;
+    result.range_bound = greatest_difference({bounds.least(), bounds.greatest()}, bounds);
 }
 
 template class Triangulation<float>;

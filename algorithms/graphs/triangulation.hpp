@@ -47,7 +47,7 @@ public:
     /// \throw Cancelled where progress says so; OverLimit
     void run(const Executor& executor, const std::function<bool(const TraversalCounts&)>& progress);
     /// Puts everything but the surface into a result.
-    void report(Shading& result) const { drawn_.report(result); }
+    void report(Shading& result) const;
     /// The number of triangles that were counted.
     std::uint64_t triangles() const { return drawn_.tally.drawn(); }
 

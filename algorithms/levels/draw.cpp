@@ -170,9 +170,10 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
         drawing.report(i, results[i]);
         results[i].cancelled = cancelled;
         if (criterion.insists()) {
-            constexpr double unknown = std::numeric_limits<double>::infinity();
-            results[i].error_bound = unknown;
-            if (options.position_bounds != nullptr) results[i].position_bound = unknown;
+            results[i].error_bound = results[i].range_bound;
+            if (options.position_bounds != nullptr) {
+                results[i].position_bound = std::numeric_limits<double>::infinity();
+            }
         }
     }
     hand_over(targets, chunks, options, results);

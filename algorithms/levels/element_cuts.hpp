@@ -43,6 +43,7 @@ public:
     }
 
     const View& view() const { return *view_; }
+    const Level<Real>& level() const { return *level_; }
     const Walk<Real>& walk() const { return *walk_; }
     std::size_t attribute_count() const { return attributes_.size(); }
     const std::array<NodeKey, max_corners>& keys() const { return key_; }

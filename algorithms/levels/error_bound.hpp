@@ -2,12 +2,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <span>
 
 #include <levels/element_cuts.hpp>
 #include <levels/level_search.hpp>
 
 namespace nestgrid::engine {
+
+/// The least and the greatest of some values.
+struct Extent {
+    double least;
+    double greatest;
+
+    static Extent of(std::span<const double> values) {
+        const auto [least, greatest] = std::ranges::minmax(values);
+        return {least, greatest};
+    }
+};
+
+/// How far data may be from what is drawn in an element, whatever that is.
+/// \param drawn extent of what is drawn
+/// \param corners extent of the values at the corners of the element
+/// \param off how far the data may leave the extent of the corners
+/// \param range tells least() and greatest() of all data
+double greatest_difference(const Extent& drawn, const Extent& corners, double off,
+                           const auto& range) {
+    const double least = std::max(range.least(), corners.least - off);
+    const double greatest = std::min(range.greatest(), corners.greatest + off);
+    return std::max({0.0, greatest - drawn.least, drawn.greatest - least});
+}
+
+/// How far data may be from what is drawn anywhere.
+/// \param range tells least() and greatest() of all data
+double greatest_difference(const Extent& drawn, const auto& range) {
+    return std::max({0.0, range.greatest() - drawn.least, drawn.greatest - range.least()});
+}
 
 /// How far U may be from P_S U at the corners of an element that are interpolated.
 /// \param keys of the corners
@@ -34,9 +65,23 @@ double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& se
     const Topology& t = view.topology();
     const double bound = static_cast<double>(below) + corner_offset(view, element.keys(), search);
     if (t.corners == t.dimension + 1U) return bound;
-    const auto u = element.data(0);
-    return bound + 2 * affine_residual(std::span(element.positions()).first(t.corners),
-                                       std::span(u).first(t.corners));
+    const auto data = element.data(0);
+    const auto u = std::span(data).first(t.corners);
+    const double residual = affine_residual(std::span(element.positions()).first(t.corners), u);
+    const Extent corners = Extent::of(u);
+    const Level<Real>& level = element.level();
+    const Extent drawn = search.is_slice(level) ? corners : Extent{level.value, level.value};
+    return std::min(bound + 2 * residual,
+                    greatest_difference(drawn, corners, bound, search.bounds()));
+}
+
+/// How far U may be from a level, or on a slice from the colour of component 0, anywhere.
+template <class Real>
+double range_bound(const Level<Real>& level, const LevelSearch<Real>& search) {
+    const Bounds& bounds = search.bounds();
+    return greatest_difference(search.is_slice(level) ? Extent{bounds.least(), bounds.greatest()}
+                                                      : Extent{level.value, level.value},
+                               bounds);
 }
 
 /// How far points of an element may be from their true positions.

@@ -48,7 +48,7 @@ Isosurface<dimension> detail::join_band(std::vector<Isosurface<dimension>> level
     Isosurface<dimension>& band = levels[0];
     append_reversed(band.surface, levels[1].surface);
     band.counts.extracted += levels[1].counts.extracted;
-    band.error_bound = std::max(band.error_bound, levels[1].error_bound);
+    band.add_bounds(levels[1]);
     band.position_bound = std::max(band.position_bound, levels[1].position_bound);
     return std::move(band);
 }

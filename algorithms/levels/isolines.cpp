@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/isolines.hpp>
 
-#include <algorithm>
-
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/error.hpp>
@@ -24,7 +22,7 @@ Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> valu
         result.counts.calls = drawn[i].counts.calls;
         result.counts.visited = drawn[i].counts.visited;
         result.counts.extracted += drawn[i].counts.extracted;
-        result.error_bound = std::max(result.error_bound, drawn[i].error_bound);
+        result.add_bounds(drawn[i]);
         result.cancelled = drawn[i].cancelled;
     }
     return result;

@@ -144,7 +144,8 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& result) const {
     result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
     result.counts.extracted = surfaces_[i].extracted();
-    result.error_bound = surfaces_[i].error_bound();
+    result.range_bound = range_bound(search_->levels()[i], *search_);
+    result.error_bound = std::min(surfaces_[i].error_bound(), result.range_bound);
     result.position_bound = surfaces_[i].position_bound();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
     result.table_bytes = normals_.memory_bytes() + walks_.memory_bytes();

@@ -34,6 +34,9 @@ public:
         }
     }
 
+    double least() const { return least_; }
+    double greatest() const { return greatest_; }
+
 private:
     using Corners = std::array<double, max_corners>;  // component 0 at the corners of an element
 
@@ -53,6 +56,8 @@ private:
     std::unique_ptr<Task> task_;
     Entries* entries_;
     std::deque<Frame> frames_;
+    double least_ = infinity;
+    double greatest_ = -infinity;
 };
 
 /// Measures one element and all below it.
@@ -70,6 +75,9 @@ double Measuring::measure(const Family& family, std::size_t place, Shape shape, 
     if (member.rule == nullptr) {
         const auto values = values_.of_leaf(member.element, corners);
         for (std::size_t k = 0; k < corners; ++k) at[k] = values[k * values_.components()];
+        const auto [least, greatest] = std::ranges::minmax(std::span(at).first(corners));
+        least_ = std::min(least_, least);
+        greatest_ = std::max(greatest_, greatest);
         return 0;
     }
     const Rule& rule = *member.rule;
@@ -122,7 +130,10 @@ double Measuring::greatest_gap(const Rule& rule, Frame& frame, const Corners& at
 }  // namespace
 
 ElementDeviations::ElementDeviations(const DiscontinuousData& data) : epoch_{data.grid().epoch()} {
-    Measuring(data, entries_).run();
+    Measuring measuring(data, entries_);
+    measuring.run();
+    least_ = measuring.least();
+    greatest_ = measuring.greatest();
     entries_.shrink_to_fit();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <levels/error_bound.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/frontier.hpp>
 
@@ -17,7 +18,15 @@ PieceWalk::PieceWalk(const Walk<double>& walk, const DiscontinuousData& data,
       deviations_{options.threshold > 0 ? deviations : nullptr},
       options_{&options},
       in_front_{in_front},
-      values_(max_corners * walk.components()) {}
+      values_(max_corners * walk.components()),
+      range_{deviations} {}
+
+double PieceWalk::Range::least() const {
+    return deviations == nullptr ? -std::numeric_limits<double>::infinity() : deviations->least();
+}
+double PieceWalk::Range::greatest() const {
+    return deviations == nullptr ? std::numeric_limits<double>::infinity() : deviations->greatest();
+}
 
 void PieceWalk::run(DiscontinuousSurface& result) {
     try {
@@ -26,7 +35,8 @@ void PieceWalk::run(DiscontinuousSurface& result) {
         result.cancelled = true;
     }
     result.counts = counts_;
-    result.error_bound = error_bound_;
+    result.range_bound = greatest_difference({range_.least(), range_.greatest()}, range_);
+    result.error_bound = std::min(error_bound_, result.range_bound);
 }
 
 /// \throw Cancelled where progress says so
@@ -57,7 +67,19 @@ void PieceWalk::extract(const View& view) {
                        walk_->components());
     View valued = view;
     valued.value = values_.data();
-    error_bound_ = std::max(error_bound_, deviation_ + draw(valued, values_));
+    raise_error_bound(view, draw(valued, values_));
+}
+
+/// \param residual how far component 0, as it is drawn, is from what the corners interpolate
+void PieceWalk::raise_error_bound(const View& view, double residual) {
+    std::array<double, max_corners> u{};
+    for (std::size_t k = 0; k < view.corner_count(); ++k) {
+        u[k] = values_[k * walk_->components() + in_front_];
+    }
+    const Extent corners = Extent::of(std::span(u).first(view.corner_count()));
+    error_bound_ = std::max(
+        error_bound_,
+        std::min(deviation_ + residual, greatest_difference(corners, corners, deviation_, range_)));
 }
 
 void require_drawable(const DiscontinuousData& data, int dimension,

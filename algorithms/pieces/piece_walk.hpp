@@ -51,7 +51,15 @@ protected:
     ~PieceWalk() = default;
 
 private:
+    /// The range of component 0; infinite where no deviations are known.
+    struct Range {
+        const ElementDeviations* deviations;
+        double least() const;
+        double greatest() const;
+    };
+
     void count();
+    void raise_error_bound(const View& view, double residual);
 
     const Walk<double>* walk_;
     CornerValues corner_values_;
@@ -59,6 +67,7 @@ private:
     const DiscontinuousOptions* options_;
     std::size_t in_front_;
     std::vector<double> values_;
+    Range range_;
     std::size_t next_ = 0;  // entry of the next split element
     double deviation_ = 0;  // of the element that stops
     TraversalCounts counts_;

@@ -34,6 +34,8 @@ void expect_same(const Grid& grid, const Field& field, double isovalue, double t
     EXPECT_GT(surface.simplex_count, 0U);
     EXPECT_EQ(surface.dimension, Grid::dimension);
     EXPECT_EQ(surface.error_bound, direct.error_bound);
+    EXPECT_EQ(surface.range_bound, direct.range_bound);
+    EXPECT_EQ(surface.bound_says_nothing != 0, direct.bound_says_nothing());
     EXPECT_EQ(surface.visited, direct.counts.visited);
     EXPECT_EQ(surface.extracted, direct.counts.extracted);
     for (std::size_t v = 0; v < surface.vertex_count; ++v) {

@@ -55,8 +55,9 @@ TEST(Criteria, ThatAreNotSaturatedAreRefused) {
 
 TEST(Criteria, ThatInsistLoseTheBound) {
     const SphereOfSamples s;
-    EXPECT_EQ(s.draw(Unsaturated{EveryOther{}}).error_bound,
-              std::numeric_limits<double>::infinity());
+    const auto insisted = s.draw(Unsaturated{EveryOther{}});
+    EXPECT_EQ(insisted.error_bound, insisted.range_bound);
+    EXPECT_TRUE(insisted.bound_says_nothing());
     EXPECT_LT(s.draw(Threshold(&s.indicator, 0.1)).error_bound, 1e9);
 }
 

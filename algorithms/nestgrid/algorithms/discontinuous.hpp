@@ -35,15 +35,14 @@ struct DiscontinuousOptions {
     std::function<bool(const TraversalCounts&)> progress{};
 };
 
-/// Elements that were drawn alone.
-struct DiscontinuousSurface {
+/// Elements that were drawn alone. Component 0, as it is drawn in an element, differs by at most
+/// error_bound from the data of the leaves below it: exact where these divide the element as its
+/// interpolation does. The range_bound is the range of component 0 where deviations were measured.
+struct DiscontinuousSurface : ErrorBounds {
     /// Component k of the data at vertex v is attributes[v * components + k]. The boundary holds
     /// the edges on the boundary of the domain, of shadings only.
     Surface<3> surface;
     TraversalCounts counts;
-    /// Component 0, as it is drawn in an element, differs by at most this from the data of the
-    /// leaves below it. Exact where these divide the element as its interpolation does.
-    double error_bound = 0;
     bool cancelled = false;  ///< by options.progress; the surface is then a part
 };
 

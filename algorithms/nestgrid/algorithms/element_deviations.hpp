@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -35,11 +36,15 @@ public:
 
     std::span<const Entry> entries() const { return entries_; }
     std::uint64_t epoch() const { return epoch_; }
+    double least() const { return least_; }        ///< of component 0 at all corners of leaves
+    double greatest() const { return greatest_; }  ///< of component 0 at all corners of leaves
     std::size_t memory_bytes() const { return entries_.capacity() * sizeof(Entry); }
 
 private:
     std::vector<Entry> entries_;
     std::uint64_t epoch_;
+    double least_ = std::numeric_limits<double>::infinity();
+    double greatest_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace nestgrid

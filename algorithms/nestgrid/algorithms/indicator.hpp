@@ -51,6 +51,10 @@ public:
     /// Nodes that hang, where the grid does not say so itself; or null.
     virtual const HangingNodes* hanging() const = 0;
     virtual std::uint64_t epoch() const = 0;  ///< of the grid this was computed on
+    /// No value of component 0 is less; minus infinity where this is not known.
+    virtual double least() const { return -std::numeric_limits<double>::infinity(); }
+    /// No value of component 0 is greater; infinity where this is not known.
+    virtual double greatest() const { return std::numeric_limits<double>::infinity(); }
     /// Whether elements that stop conform on a grid without hanging nodes.
     virtual bool stops_conform() const { return false; }
     /// A level on which no element has a finer neighbour, or -1 where none is known.
@@ -249,8 +253,8 @@ public:
     /// elements of degree > 1 are curved there. The field is interpolated there all the same.
     double hanging_violation() const { return facts_.hanging_violation; }
 
-    double least() const { return facts_.least; }        ///< of the values at all nodes
-    double greatest() const { return facts_.greatest; }  ///< of the values at all nodes
+    double least() const override { return facts_.least; }        ///< of the values at all nodes
+    double greatest() const override { return facts_.greatest; }  ///< of the values at all nodes
     std::size_t node_count() const { return node_count_; }
     std::uint64_t epoch() const override { return epoch_; }
 

@@ -12,11 +12,11 @@
 
 namespace nestgrid {
 
-/// Isolines of a two-dimensional grid.
-struct Isolines {
+/// Isolines of a two-dimensional grid. On every line U differs from its value by at most
+/// error_bound; the range_bound is the greatest difference anywhere from any of the values.
+struct Isolines : ErrorBounds {
     Polylines lines;
     TraversalCounts counts;  ///< elements are counted as extracted once for each value
-    double error_bound = 0;  ///< on every line U differs from its value by at most this
     bool cancelled = false;  ///< by options.progress; the lines are then a part
 };
 

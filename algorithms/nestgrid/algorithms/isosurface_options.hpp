@@ -4,6 +4,7 @@
 // What an extraction is asked for, and what is known beside the surface.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -19,6 +20,25 @@ struct TraversalCounts {
     std::uint64_t calls = 0;      ///< calls of Inspect(): elements looked at
     std::uint64_t visited = 0;    ///< elements that passed the test of interest
     std::uint64_t extracted = 0;  ///< elements that contribute to the surface
+};
+
+/// How far what is drawn may be from the data, in the units of the data. Every result has it.
+struct ErrorBounds {
+    /// What is drawn differs from the data, interpolated on the finest grid, by at most this; never
+    /// more than range_bound.
+    double error_bound = 0;
+    /// What the least and the greatest value of the data alone promise, of any drawing whatever.
+    /// Infinity where these values are not known.
+    double range_bound = 0;
+
+    /// Whether error_bound promises no more than any drawing keeps, so that it is not worth
+    /// printing.
+    bool bound_says_nothing() const { return error_bound > 0 && error_bound >= range_bound; }
+    /// Makes these the bounds of a drawing that has a part with other bounds.
+    void add_bounds(const ErrorBounds& part) {
+        error_bound = std::max(error_bound, part.error_bound);
+        range_bound = std::max(range_bound, part.range_bound);
+    }
 };
 
 struct IsosurfaceOptions {
@@ -51,18 +71,18 @@ struct IsosurfaceOptions {
     std::function<bool(const TraversalCounts&)> progress{};
 };
 
+/// On every triangle U differs from C by at most error_bound, U being the data interpolated on the
+/// finest grid: what S projected away, and in shapes other than simplices what the flatness of the
+/// triangles adds. Exact as far as triangles lie in their elements, which curved faces of deformed
+/// elements do not quite allow. The range_bound is the greatest |U - C| anywhere; the error bound
+/// is no less under a criterion that is not saturated.
 template <int dimension>
-struct Isosurface {
+struct Isosurface : ErrorBounds {
     Surface<dimension> surface;
     TraversalCounts counts;
-    /// On every triangle U differs from C by at most this, U being the data interpolated on the
-    /// finest grid: what S projected away, and in shapes other than simplices what the flatness of
-    /// the triangles adds. Exact as far as triangles lie in their elements, which curved faces of
-    /// deformed elements do not quite allow. Infinity under a criterion that is not saturated.
-    double error_bound = 0;
     /// Every vertex is at most this far from the true position of its point, in units of length, on
     /// a grid with true positions (curved elements). 0 where options.position_bounds is null;
-    /// infinity as the error bound.
+    /// infinity under a criterion that is not saturated.
     double position_bound = 0;
     bool cancelled = false;       ///< by options.progress; the surface is then a part
     std::size_t table_bytes = 0;  ///< hash tables used while extracting

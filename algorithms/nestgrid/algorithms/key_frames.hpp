@@ -55,8 +55,8 @@ public:
     int finest_level() const override { return first().finest_level(); }
     bool one_level_a_node() const override { return first().one_level_a_node(); }
 
-    double least() const { return least_; }        ///< no value of U(t) is less
-    double greatest() const { return greatest_; }  ///< no value of U(t) is greater
+    double least() const override { return least_; }        ///< no value of U(t) is less
+    double greatest() const override { return greatest_; }  ///< no value of U(t) is greater
     /// What the rounding of values adds to bounds: of the order of 10^-5 of the greatest value
     /// where values are float, of 10^-14 where they are double, 0 where one frame counts alone.
     double rounding() const { return rounding_; }

@@ -23,14 +23,14 @@ struct ShadingOptions {
     std::function<bool(const TraversalCounts&)> progress{};
 };
 
-struct Shading {
+/// Component 0, drawn linearly on triangles, differs by at most error_bound from the data
+/// interpolated on the finest grid. The range_bound is the range of component 0; the error bound is
+/// no less under a criterion that is not saturated.
+struct Shading : ErrorBounds {
     /// Component k of the field at vertex v is attributes[v * components + k]. The triangles are
     /// oriented as the elements: counterclockwise in the plane.
     Surface<3> surface;
     TraversalCounts counts;
-    /// Component 0, drawn linearly on triangles, differs by at most this from the data interpolated
-    /// on the finest grid. Infinity under a criterion that is not saturated.
-    double error_bound = 0;
     bool cancelled = false;            ///< by options.progress; the surface is then a part
     std::size_t edge_nodes = 0;        ///< nodes of finer sides that were recorded
     std::size_t edge_nodes_bytes = 0;  ///< memory of this record

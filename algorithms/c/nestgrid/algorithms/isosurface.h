@@ -22,6 +22,9 @@ typedef struct nestgrid_surface {
     double error_bound; /* on the surface the data differ from the isovalue by at most this */
     uint64_t visited;   /* elements that passed the test of interest */
     uint64_t extracted; /* elements that contribute */
+    /* What the range of the data alone promises of any surface; error_bound is never more. */
+    double range_bound;
+    int bound_says_nothing; /* 1 where error_bound promises no more than that */
     void* owner;
 } nestgrid_surface;
 
