@@ -127,7 +127,7 @@ void series_figure(const std::string& file) {
     picture.look(0, plane);
     draw_leaves(picture, grid);
     // [series]
-    IsosurfaceSeries series(grid, field);  // the preroll, once
+    IsosurfaceSeries series(grid, field);  // computes the indicator, once
     for (int i = 0; i < 20; ++i) {
         const Surface<2>& line = series.draw(0.09 * i - 0.75, {.threshold = 0.002}).surface;
         draw(picture, line, hot(0.05 * i), 2.5);

@@ -112,7 +112,7 @@ std::size_t draw(const Frame& a, const Frame& b, const std::vector<double>& time
     const Union both(a.grid, first_values, b.grid, second_values);  // a grid like any other
     const UnionFrame first = both.frame(0);
     const UnionFrame second = both.frame(1);
-    const HierarchicalIndicator of_first(both, first);  // the only prerolls
+    const HierarchicalIndicator of_first(both, first);  // the only passes over the grids
     const HierarchicalIndicator of_second(both, second);
     for (const double t : times) {
         const std::vector<float> weights = linear_weights(std::array{a.time, b.time}, t);
