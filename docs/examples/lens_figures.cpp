@@ -15,7 +15,7 @@
 #include <nestgrid/algorithms/slice.hpp>
 
 #include "hausdorff.hpp"
-#include "plot_view.hpp"
+#include "plot.hpp"
 #include "scenes.hpp"
 
 namespace figures {
@@ -135,41 +135,27 @@ void blended_figure(const std::string& file) {
     }
     OctreeGrid<3> finer = hexahedra;
     finer.refine_uniformly();
-    Picture picture(420, 420, 2);
-    const PlotView moduli(picture, 0, {1, 4}, {0, 12}, false);
     std::printf("factor  constant  of epsilon  of the place of a lens\n");
-    const auto constant = [](double c) { return c * c / (c - 1); };
-    for (double c = 1.12; c < 3.97; c += 0.05) {
-        moduli.line({c, constant(c)}, {c + 0.05, constant(c + 0.05)}, grey);
-    }
     for (const double c : {1.125, 1.25, 1.5, 2.0, 3.0, 4.0}) {
         const Moduli measured = greatest_moduli(finer, c);
-        moduli.dot({c, measured.of_epsilon}, blue);
-        moduli.dot({c, measured.of_place}, red);
-        std::printf("%6.3f %9.2f %11.2f %11.2f\n", c, constant(c), measured.of_epsilon,
+        std::printf("%6.3f %9.2f %11.2f %11.2f\n", c, c * c / (c - 1), measured.of_epsilon,
                     measured.of_place);
     }
-    const PlotView steps(picture, 1, {0.002, 0.2}, {0.001, 0.2}, true);
+    Curve jumps{"hexahedra", {0.95, 0.65, 0.6}};
+    Curve jumps_less{"tetrahedra", {0.6, 0.75, 0.95}};
+    Curve steps{"hexahedra, 1.5", red};
+    Curve moves{"tetrahedra, 1.5", blue};
     std::printf("step    tetrahedra: threshold  blended  hexahedra: threshold  blended\n");
-    std::vector<std::array<double, 5>> rows;
-    for (const double relative : {0.16, 0.08, 0.04, 0.02, 0.01, 0.005}) {
-        rows.push_back({relative, greatest_step(tetrahedra, 1, relative),
-                        greatest_step(tetrahedra, 1.5, relative),
-                        greatest_step(hexahedra, 1, relative),
-                        greatest_step(hexahedra, 1.5, relative)});
-        const auto& row = rows.back();
-        std::printf("%5.1f %% %21.5f %8.5f %21.5f %8.5f\n", 100 * relative, row[1], row[2], row[3],
-                    row[4]);
+    for (const double step : {0.005, 0.01, 0.02, 0.04, 0.08, 0.16}) {
+        jumps_less.points.push_back({step, greatest_step(tetrahedra, 1, step)});
+        moves.points.push_back({step, greatest_step(tetrahedra, 1.5, step)});
+        jumps.points.push_back({step, greatest_step(hexahedra, 1, step)});
+        steps.points.push_back({step, greatest_step(hexahedra, 1.5, step)});
+        std::printf("%5.1f %% %21.5f %8.5f %21.5f %8.5f\n", 100 * step, jumps_less.points.back()[1],
+                    moves.points.back()[1], jumps.points.back()[1], steps.points.back()[1]);
     }
-    const std::array<Colour, 4> colours{Colour{0.6, 0.75, 0.95}, blue, {0.95, 0.65, 0.6}, red};
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            const ImagePoint at{rows[i][0], rows[i][k + 1]};
-            steps.dot(at, colours[k]);
-            if (i > 0) steps.line({rows[i - 1][0], rows[i - 1][k + 1]}, at, colours[k]);
-        }
-    }
-    picture.write(file);
+    plot_logarithmic(file, "relative change of the threshold", "distance of the surfaces",
+                     {jumps_less, jumps, steps, moves});
 }
 
 }  // namespace figures

@@ -8,8 +8,8 @@ namespace figures {
 
 /// A slice of the bucky ball in a lens at three places.
 void lens_figure(const std::string& file);
-/// Left: moduli of continuity beside C^2 / (C - 1). Right: steps of surfaces beside steps of
-/// epsilon.
+/// Plots the distances of surfaces against steps of the threshold; prints these, and moduli of
+/// continuity beside C^2 / (C - 1).
 void blended_figure(const std::string& file);
 
 }  // namespace figures
