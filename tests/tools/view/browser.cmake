@@ -22,3 +22,13 @@ add_custom_command(
   COMMENT "Installing what drives the browser")
 add_custom_target(view_test_packages ALL
                   DEPENDS ${nestgrid_browser_packages}/node_modules/.package-lock.json)
+
+# Beside the packages, where modules find them.
+function(nestgrid_browser_modules)
+  foreach(module ${ARGN})
+    configure_file(${PROJECT_SOURCE_DIR}/tests/tools/view/${module}.mjs
+                   ${nestgrid_browser_packages}/${module}.mjs COPYONLY)
+  endforeach()
+endfunction()
+nestgrid_browser_modules(axe_test checks chromium keys_test opened_page)
+configure_file(${PROJECT_SOURCE_DIR}/tools/view/page/frame.js ${nestgrid_browser_packages}/frame.js COPYONLY)

@@ -61,13 +61,12 @@ export function showLegend(legend) {
 const titleOf = ({ field, unit }) => (unit ? `${field} (${unit})` : field);
 
 /**
- * Draws the legend into a picture, its lower left corner at (x, y).
+ * Draws the legend into a picture, from its lower left corner.
  * em: the size of its text; colour: of its text
  */
-export function drawLegend(context, legend, x, y, em, colour) {
-  const height = 14 * em;
-  const width = 1.4 * em;
-  fillBar(context, x, y - height, Math.round(width), Math.round(height));
+export function drawLegend(context, legend, left, bottom, em, colour) {
+  const [x, y, width, height] = [left, bottom, 1.4 * em, 14 * em].map(Math.round);
+  fillBar(context, x, y - height, width, height);
   context.strokeStyle = context.fillStyle = colour;
   context.lineWidth = em / 13;
   context.strokeRect(x, y - height, width, height);

@@ -23,6 +23,8 @@ function takeFiles(page) {
       // The address of another file's picture says nothing about this one.
       if (drop.hidden) history.replaceState(null, '', location.pathname + location.search);
       page.begin(info);
+      // What has the focus goes with the place for files.
+      if (drop.contains(document.activeElement)) byId('canvas').focus();
       drop.hidden = true;
       panel.inert = false;
       byId('help').hidden = false;

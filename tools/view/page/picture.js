@@ -39,16 +39,8 @@ export class Picture {
       reset: does.reset,
       project: does.project,
       sized,
-      aimed: (x, y) => {
-        const hit = this.#lookAt(x, y);
-        tell(byId('cursor').textContent || 'Nothing is at the aim');
-        hovered(hit);
-      },
-      pressed: (x, y) => {
-        const hit = this.#lookAt(x, y);
-        tell(byId('cursor').textContent || 'Nothing is at the aim');
-        clicked(hit);
-      },
+      aimed: (x, y) => hovered(this.#aimAt(x, y)),
+      pressed: (x, y) => clicked(this.#aimAt(x, y)),
     });
     this.#saved = new SavedPicture(this.#stage, does.address);
     byId('screenshot').addEventListener('click', () => this.#saved.ask());
@@ -110,6 +102,12 @@ export class Picture {
       const way = from ? Math.hypot(event.clientX - from[0], event.clientY - from[1]) : 0;
       if (this.#frame && way < 5) clicked(this.#stage.pick(event.clientX, event.clientY));
     });
+  }
+
+  #aimAt(x, y) {
+    const hit = this.#lookAt(x, y);
+    tell(byId('cursor').textContent.replace('\n', ', ') || 'Nothing is at the aim');
+    return hit;
   }
 
   #lookAt(x, y) {
