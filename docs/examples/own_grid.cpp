@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A complete adapter for a format nobody has: docs/write_an_adapter.md goes through it.
+// A complete adapter: docs/write_an_adapter.md quotes this file part by part.
+// [solver]
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <map>
 #include <vector>
 
@@ -12,57 +15,92 @@
 #include <nestgrid/check_grid.hpp>
 #include <nestgrid/standard_rules.hpp>
 
-/// The solver's own: hexahedra in an array, the coarse ones first, each divided into eight or not.
 struct Solver {
     struct Cell {
-        std::array<int, 8> vertex{};  // x fastest, then y, then z
-        int first_child = -1;         // of eight in a row; -1 where it is not divided
+        std::array<std::size_t, 8> vertex{};  // x fastest, then y, then z
+        std::size_t first_child = 0;          // of eight in a row; 0 where it is not divided
     };
-    std::vector<Cell> cells;
+    std::vector<Cell> cells;  // the coarse ones first
     std::size_t coarse_cells = 0;
     std::vector<std::array<double, 3>> vertices;
-    std::vector<double> u;  // at the vertices
+    std::vector<double> u;  // the solution, at the vertices
 };
 
-// [adapter]
+// A cube, divided until cells near one corner have 1/64 of its size, and a gyroid for a solution.
+Solver solve() {
+    Solver solver;
+    std::map<std::array<double, 3>, std::size_t> known;
+    const auto cell_at = [&](const std::array<double, 3>& low, double size) {
+        Solver::Cell cell;
+        for (unsigned k = 0; k < 8; ++k) {
+            const double x = low[0] + size * (k & 1U);
+            const double y = low[1] + size * (k >> 1U & 1U);
+            const double z = low[2] + size * (k >> 2U);
+            const auto [vertex, is_new] = known.try_emplace({x, y, z}, known.size());
+            cell.vertex[k] = vertex->second;
+            if (!is_new) continue;
+            solver.vertices.push_back({x, y, z});
+            solver.u.push_back(std::sin(5 * x) * std::cos(5 * y) +
+                               std::sin(5 * y) * std::cos(5 * z) +
+                               std::sin(5 * z) * std::cos(5 * x));
+        }
+        solver.cells.push_back(cell);
+    };
+    cell_at({0, 0, 0}, 1);
+    solver.coarse_cells = 1;
+    for (std::size_t i = 0; i < solver.cells.size(); ++i) {
+        const auto low = solver.vertices[solver.cells[i].vertex[0]];
+        const double half = 0.5 * (solver.vertices[solver.cells[i].vertex[1]][0] - low[0]);
+        const double distance = std::hypot(1 - low[0], 1 - low[1], 1 - low[2]);
+        if (half <= std::max(1.0 / 128, 0.03 * distance)) continue;
+        solver.cells[i].first_child = solver.cells.size();
+        for (unsigned c = 0; c < 8; ++c) {
+            cell_at({low[0] + half * (c & 1U), low[1] + half * (c >> 1U & 1U),
+                     low[2] + half * (c >> 2U)},
+                    half);
+        }
+    }
+    return solver;
+}
+// [solver]
+
+// [grid]
 class SolverGrid {
 public:
-    using Element = int;  // any small value that finds the cell again
+    using Element = std::size_t;  // any small value that finds the cell again
     static constexpr int dimension = 3;
 
-    explicit SolverGrid(const Solver& solver)
-        : solver_{&solver}, halving_{&nestgrid::dyadic_rule(nestgrid::Shape::hexahedron)} {}
+    explicit SolverGrid(const Solver& solver) : solver_{&solver} {}
 
     std::size_t coarse_count() const { return solver_->coarse_cells; }
 
     nestgrid::CoarseElement<Element> coarse(std::size_t i) const {
         nestgrid::CoarseElement<Element> result;
-        result.element = static_cast<int>(i);
+        result.element = i;
         result.shape = nestgrid::Shape::hexahedron;
         for (std::size_t k = 0; k < 8; ++k) {
-            const int v = solver_->cells[i].vertex[k];
-            result.corners[k] = solver_->vertices[static_cast<std::size_t>(v)];
-            result.ids[k] = static_cast<std::uint64_t>(v);
+            const std::size_t vertex = solver_->cells[i].vertex[k];
+            result.corners[k] = solver_->vertices[vertex];
+            result.ids[k] = vertex;  // the same from each coarse cell that has the vertex
         }
         return result;
     }
     const nestgrid::Rule* split(const Element& e) const {
-        return cell(e).first_child < 0 ? nullptr : halving_;
+        return solver_->cells[e].first_child == 0 ? nullptr : rule_;  // nullptr: not divided
     }
     void children(const Element& e, std::span<Element> out) const {
-        for (std::size_t c = 0; c < 8; ++c) out[c] = cell(e).first_child + static_cast<int>(c);
+        for (std::size_t c = 0; c < 8; ++c) out[c] = solver_->cells[e].first_child + c;
     }
 
-    const Solver::Cell& cell(Element e) const {
-        return solver_->cells[static_cast<std::size_t>(e)];
-    }
     const Solver& solver() const { return *solver_; }
 
 private:
     const Solver* solver_;
-    const nestgrid::Rule* halving_;
+    const nestgrid::Rule* rule_ = &nestgrid::dyadic_rule(nestgrid::Shape::hexahedron);
 };
+// [grid]
 
+// [field]
 class SolverField {
 public:
     using value_type = double;
@@ -70,94 +108,55 @@ public:
     explicit SolverField(const SolverGrid& grid) : grid_{&grid} {}
 
     nestgrid::NodeMask coarse_values(std::size_t i, std::span<double> out) const {
-        for (std::size_t k = 0; k < 8; ++k) out[k] = value(static_cast<int>(i), k);
-        return 0;  // nothing is missing
+        for (std::size_t k = 0; k < 8; ++k) out[k] = value(i, k);
+        return 0;  // no value is missing
     }
-    nestgrid::NodeMask new_values(int e, nestgrid::NodeMask which, std::span<double> out) const {
+    nestgrid::NodeMask new_values(std::size_t e, nestgrid::NodeMask which,
+                                  std::span<double> out) const {
         const nestgrid::Rule& rule = *grid_->split(e);
         for (std::size_t n = 0; n < rule.new_corner.size(); ++n) {
             if ((which >> n & 1U) == 0) continue;
-            const auto [child, corner] = rule.new_corner[n];  // where new node n is a corner
-            out[n] = value(grid_->cell(e).first_child + child, corner);
+            const auto [child, corner] = rule.new_corner[n];  // new node n is a corner there
+            out[n] = value(grid_->solver().cells[e].first_child + child, corner);
         }
         return 0;
     }
 
 private:
-    double value(int e, std::size_t corner) const {
-        return grid_->solver().u[static_cast<std::size_t>(grid_->cell(e).vertex[corner])];
+    double value(std::size_t cell, std::size_t corner) const {
+        const Solver& solver = grid_->solver();
+        return solver.u[solver.cells[cell].vertex[corner]];
     }
     const SolverGrid* grid_;
 };
-// [adapter]
+// [field]
 
-namespace {
-
-/// Divides a cell; vertices are found again by where they are, as this solver happens to do it.
-void divide(Solver& solver, std::size_t at) {
-    static std::map<std::array<double, 3>, int> known;
-    if (known.empty()) {
-        for (std::size_t v = 0; v < solver.vertices.size(); ++v) {
-            known[solver.vertices[v]] = static_cast<int>(v);
-        }
-    }
-    const std::array<double, 3> low =
-        solver.vertices[static_cast<std::size_t>(solver.cells[at].vertex[0])];
-    const std::array<double, 3> high =
-        solver.vertices[static_cast<std::size_t>(solver.cells[at].vertex[7])];
-    solver.cells[at].first_child = static_cast<int>(solver.cells.size());
-    for (unsigned c = 0; c < 8; ++c) {
-        Solver::Cell child;
-        for (unsigned k = 0; k < 8; ++k) {
-            std::array<double, 3> x;
-            for (unsigned d = 0; d < 3; ++d) {
-                const unsigned halves = (c >> d & 1U) + (k >> d & 1U);
-                x[d] = low[d] + halves * 0.5 * (high[d] - low[d]);
-            }
-            const auto [entry, is_new] =
-                known.try_emplace(x, static_cast<int>(solver.vertices.size()));
-            if (is_new) solver.vertices.push_back(x);
-            child.vertex[k] = entry->second;
-        }
-        solver.cells.push_back(child);
+// [use]
+void write_obj(const nestgrid::Surface<3>& surface, const char* path) {
+    std::ofstream file(path);
+    for (const auto& [x, y, z] : surface.vertices)
+        file << "v " << x << ' ' << y << ' ' << z << '\n';
+    for (const auto& [a, b, c] : surface.simplices) {
+        file << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
     }
 }
-
-double solution(const std::array<double, 3>& x) { return std::hypot(x[0], x[1], x[2]); }
-
-Solver solve() {
-    Solver solver;
-    for (unsigned k = 0; k < 8; ++k) {
-        solver.vertices.push_back({double(k & 1U), double(k >> 1U & 1U), double(k >> 2U & 1U)});
-    }
-    solver.cells.push_back({{0, 1, 2, 3, 4, 5, 6, 7}, -1});
-    solver.coarse_cells = 1;
-    for (std::size_t at = 0; at < solver.cells.size(); ++at) {  // finer around 0.7 from the origin
-        const auto& vertex = solver.cells[at].vertex;
-        const auto& low = solver.vertices[static_cast<std::size_t>(vertex[0])];
-        const auto& high = solver.vertices[static_cast<std::size_t>(vertex[7])];
-        const bool crosses = solution(low) < 0.7 && solution(high) > 0.7;
-        if (crosses && high[0] - low[0] > 1.0 / 20) divide(solver, at);
-    }
-    for (const auto& x : solver.vertices) solver.u.push_back(solution(x));
-    return solver;
-}
-
-}  // namespace
 
 int main() {
     const Solver solver = solve();
-    // [use]
     const SolverGrid grid(solver);
     const SolverField field(grid);
     if (const auto violation = nestgrid::check_grid(grid, field)) {
         std::fprintf(stderr, "%s\n", violation->sentence.c_str());
         return 1;
     }
-    const auto result = nestgrid::isosurface(grid, field, 0.7, {.threshold = 0.001});
-    // [use]
-    const auto report = nestgrid::surface_report(result.surface);
-    std::printf("%zu cells, %zu triangles, %zu open edges inside\n", solver.cells.size(),
-                result.surface.simplices.size(), static_cast<std::size_t>(report.open_edges));
-    return report.open_edges == 0 && !result.surface.simplices.empty() ? 0 : 1;
+    std::printf("%zu cells\n", solver.cells.size());
+    for (const double threshold : {0.02, 0.0}) {
+        const auto result = nestgrid::isosurface(grid, field, 0.0, {.threshold = threshold});
+        const auto report = nestgrid::surface_report(result.surface);
+        std::printf("threshold %.2f: %zu triangles, %zu open edges, |U| <= %.2f on them\n",
+                    threshold, report.triangles, std::size_t(report.open_edges),
+                    result.error_bound);
+        write_obj(result.surface, "own_grid.obj");
+    }
 }
+// [use]
