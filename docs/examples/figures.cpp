@@ -25,6 +25,7 @@
 #include "growth_figures.hpp"
 #include "indicator_figures.hpp"
 #include "lens_figures.hpp"
+#include "own_grid_figure.hpp"
 #include "scenes.hpp"
 #include "time_figure.hpp"
 
@@ -431,6 +432,7 @@ int main(int argc, char** argv) {
         {"isosurface_growth", isosurface_growth_figure},
         {"slice_growth", slice_growth_figure},
         {"height_field", height_field_figure},
+        {"own_grid", own_grid_figure},
         {"time", time_figure}};
     const auto figure = argc == 3 ? figures.find(argv[1]) : figures.end();
     if (figure == figures.end()) {

@@ -29,10 +29,11 @@ fail() {
     failures=$((failures + 1))
 }
 
-# What the commands call head.nii.gz and part.poly.
+# What the commands call head.nii.gz, part.poly and own_grid.obj.
 "$4" "$work" || exit 1
 cp v.nii.gz head.nii.gz
 cp "$source/docs/examples/grids/cube.poly" part.poly
+"$build/docs/examples/own_grid" >out || exit 1
 
 # The commands of a page, one a line.
 commands() {
