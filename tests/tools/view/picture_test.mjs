@@ -4,7 +4,7 @@
 // A saved picture has the size, the ground, the scale, the legend and the texts that were asked for, and
 // the address in it brings the view back. Arguments: the program, the browser, a folder for pictures, a
 // volume.
-import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { gzipSync } from 'node:zlib';
 
@@ -105,6 +105,7 @@ try {
 
   // Sizes that no window has, also beyond what is drawn at once.
   const white = await save({ size: [2500, 1300], ground: 'white' });
+  copyFileSync(join(saved, 'nestgrid.png'), resolve(folder, 'saved.png'));
   check(white.width === 2500 && white.height === 1300, `${white.width} x ${white.height}`);
   check((await white.at(0, 0)).join() === '255,255,255,255', `white ground is ${await white.at(0, 0)}`);
   check((await browser.camera()).every((x, i) => Math.abs(x - camera[i]) < 1e-9), 'saving moves the camera');

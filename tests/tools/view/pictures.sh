@@ -4,7 +4,7 @@
 #
 # Makes the pictures of docs/browser.md, by the tests of the page, from a release build: of a bucky ball
 # of 129^3 samples, and of docs/examples/live. Arguments: the pictures, of docs/figures/view.png,
-# docs/figures/view_slice.png and docs/figures/view_live.png.
+# docs/figures/view_slice.png, docs/figures/view_saved.png and docs/figures/view_live.png.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 build=$root/build/release
@@ -13,11 +13,21 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 chromium=$(command -v chromium)
 
-explored() {
-    [ -e "$work/view.png" ] && return
+volume() {
+    [ -e "$work/bucky.nrrd" ] && return
     "$folder/make_bucky_balls" "$work" 129
     mv "$work/first.nrrd" "$work/bucky.nrrd"
+}
+
+explored() {
+    [ -e "$work/view.png" ] && return
+    volume
     node "$folder/page_test.mjs" "$build/tools/nestgrid" "$chromium" "$work" "$work/bucky.nrrd"
+}
+
+saved() {
+    volume
+    node "$folder/picture_test.mjs" "$build/tools/nestgrid" "$chromium" "$work" "$work/bucky.nrrd"
 }
 
 pushed() {
@@ -27,6 +37,10 @@ pushed() {
 for file in "$@"; do
     name=$(basename "$file" .png)
     [ "$name" = view ] || name=${name#view_}
-    if [ "$name" = live ]; then pushed; else explored; fi
+    case $name in
+        live) pushed ;;
+        saved) saved ;;
+        *) explored ;;
+    esac
     cp "$work/$name.png" "$file"
 done

@@ -5,7 +5,7 @@
 // slider is dragged the change is 'moving', when it is let go 'settled'.
 import { readable, readableCount } from './colours.js';
 import { diagonalOf } from './state.js';
-import { setWhy } from './status.js';
+import { setControl, setWhy } from './status.js';
 
 const byId = (id) => document.getElementById(id);
 const sliderSteps = 1000;
@@ -65,6 +65,7 @@ export class Controls {
       if (valid) change({ isovalue: value }, 'settled');
     });
     byId('play').addEventListener('click', () => this.#play());
+    byId('slice-face').addEventListener('click', () => change({ slice: 'view', at: this.#state.at }, 'settled'));
   }
 
   /** Shows a state. */
@@ -80,6 +81,7 @@ export class Controls {
     byId('triangles-controls').hidden = state.detail !== 'triangles';
     byId('threshold-controls').hidden = state.detail !== 'threshold';
     byId('slice-controls').hidden = state.slice === 'none';
+    byId('slice-face').hidden = state.slice !== 'view';
     byId('lens-controls').hidden = state.lens === 'off';
     byId('time-section').hidden = info.times.length < 2;
     this.#place('isovalue', this.#valueScale.position(state.isovalue));
@@ -93,6 +95,8 @@ export class Controls {
     for (const section of ['detail-section', 'lens-section', 'outlines-section']) {
       setWhy(section, nothing ? 'Nothing is drawn: choose the isosurface or a slice.' : '');
     }
+    const all = state.detail === 'threshold' && state.threshold === 0;
+    if (!nothing) setControl(byId('indicator'), all ? 'all detail is kept' : '');
   }
 
   #showTexts(state, info) {
