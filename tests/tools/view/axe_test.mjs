@@ -25,7 +25,7 @@ async function look(name) {
   await browser.picture(`${kind}_${name.replaceAll(' ', '_')}`);
 }
 
-/** Of the edges of controls that are seen, those below 3 : 1 against what they lie on. */
+/** Controls whose edge has less than 3 : 1 against what they lie on. */
 const faintEdges = () => page.evaluate(() => {
   const luminance = (colour) => {
     const [r, g, b] = colour.match(/[\d.]+/g).map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));

@@ -68,7 +68,7 @@ async function tabThrough() {
   }
   return page.evaluate(() => [...document.querySelectorAll('button, input, select, summary, [tabindex], a')]
     .filter((e) => e.checkVisibility() && !e.disabled)
-    // Of radio buttons Tab stops at the chosen one; arrow keys go to the others.
+    // Tab stops at the chosen radio button; arrow keys go to the others.
     .filter((e) => e.type !== 'radio' || e.checked)
     .map((e) => {
       const { width, height } = e.getBoundingClientRect();

@@ -109,7 +109,8 @@ export class Camera {
         Math.abs(corner.dot(right)) / this.#aspect, Math.abs(corner.dot(up))) / half;
       distance = Math.max(distance, beside + (this.isParallel ? 0 : corner.dot(towards)));
     }
-    this.view = [...towards.multiplyScalar(distance).toArray().map((x, d) => x + centre[d]), ...centre, 0, 0, 1];
+    const position = towards.multiplyScalar(distance).toArray().map((x, d) => x + centre[d]);
+    this.view = [...position, ...centre, 0, 0, 1];
   }
 
   /** Turns by angles, to the right and upwards, as the surface turns. */

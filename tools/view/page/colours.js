@@ -45,6 +45,17 @@ export function coloursOf(values, least, greatest) {
   return colours;
 }
 
+/** A colour of style.css under a scheme: 'light', 'dark', or '' as the page has it. */
+export function colourOf(name, scheme = '') {
+  const probe = document.createElement('i');
+  probe.className = scheme;
+  probe.style.color = `var(--${name})`;
+  document.body.append(probe);
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
+}
+
 /** Four digits, for readers. */
 export function readable(x) {
   if (x === null || !Number.isFinite(x)) return 'not known';

@@ -65,7 +65,7 @@ export class Controls {
       if (valid) change({ isovalue: value }, 'settled');
     });
     byId('play').addEventListener('click', () => this.#play());
-    byId('slice-face').addEventListener('click', () => change({ slice: 'view', at: this.#state.at }, 'settled'));
+    byId('slice-face').addEventListener('click', () => change({ slice: 'view' }, 'settled'));
   }
 
   /** Shows a state. */

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The picture as a file: the reader chooses its size, ground and what stands in it, and sees it before.
-import { readable, readableCount } from './colours.js';
+import { colourOf, readable, readableCount } from './colours.js';
 import { drawLegend, fontOf, roundStep } from './legend.js';
 import { withTexts } from './png_text.js';
-import { colourOf } from './stage.js';
 import { setControl, showMessage } from './status.js';
 
 const byId = (id) => document.getElementById(id);

@@ -6,21 +6,10 @@ import * as THREE from './three.module.js';
 import { GLTFExporter } from './GLTFExporter.js';
 import { boxEdges, planeEdges } from './box.js';
 import { Camera } from './camera.js';
-import { coloursOf } from './colours.js';
+import { colourOf, coloursOf } from './colours.js';
 import { diagonalOf } from './state.js';
 
 const axes = ['x', 'y', 'z'];
-
-/** A colour of style.css under a scheme: 'light', 'dark', or '' as the page has it. */
-export function colourOf(name, scheme = '') {
-  const probe = document.createElement('i');
-  probe.className = scheme;
-  probe.style.color = `var(--${name})`;
-  document.body.append(probe);
-  const { color } = getComputedStyle(probe);
-  probe.remove();
-  return color;
-}
 
 /** A letter that faces the reader. */
 function letter(text, colour) {
@@ -206,7 +195,7 @@ export class Stage {
       2 * (clientX - rectangle.left) / rectangle.width - 1,
       1 - 2 * (clientY - rectangle.top) / rectangle.height);
     this.#raycaster.setFromCamera(at, this.#camera.three);
-    // Of a parallel view nothing is behind the reader.
+    // Nothing is behind the reader of a parallel view.
     if (this.#camera.isParallel) {
       this.#raycaster.ray.recast(-20 * diagonalOf(this.#box));
     }
