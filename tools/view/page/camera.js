@@ -129,11 +129,6 @@ export class Camera {
     this.#orbit.dollyIn(1 / factor);
   }
 
-  /** Whether dragging turns the picture. */
-  set turns(on) {
-    this.#orbit.enabled = on;
-  }
-
   /** The direction to the reader. */
   get towardsReader() {
     return [...this.#now.position.clone().sub(this.target).normalize()];

@@ -140,11 +140,6 @@ export class Stage {
     return this.#camera.towardsReader;
   }
 
-  /** Whether dragging turns the picture. */
-  set turns(on) {
-    this.#camera.turns = on;
-  }
-
   /** Replaces the surfaces by those of a frame. The ends of the colours are null where nothing has one. */
   show(frame, least, greatest) {
     for (const part of this.#parts.children) {
