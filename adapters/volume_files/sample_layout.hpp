@@ -20,6 +20,8 @@ enum class Encoding { raw, deflated, text };
 struct SampleLayout {
     std::filesystem::path path;  ///< of the header
     std::string type{};          ///< of the samples, like uint8
+    std::string name{};          ///< of the data; empty where the header has none
+    std::string unit{};          ///< of length, like mm; empty where the header has none
     nestgrid::LatticeGeometry<3> geometry{};
     std::vector<std::filesystem::path> files{};  ///< each holds as many samples as the others
     std::uintmax_t header_bytes = 0;             ///< before everything else in each file

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include <nestgrid/error.hpp>
 
@@ -95,6 +96,19 @@ void set_nrrd_geometry(const TextHeader& header, nestgrid::LatticeGeometry<3>& g
     }
 }
 
+/// The one word that all words of a value are, quotes aside; empty where they differ.
+std::string common_word(const std::string& value) {
+    std::string text = value;
+    std::replace(text.begin(), text.end(), '"', ' ');
+    std::istringstream words(text);
+    std::string word;
+    words >> word;
+    for (std::string other; words >> other;) {
+        if (other != word) return "";
+    }
+    return word;
+}
+
 /// The first number of a list, at least `least`; 0 where there is none.
 std::intmax_t skipped(const std::vector<double>& numbers, std::intmax_t least) {
     if (numbers.empty()) return 0;
@@ -134,6 +148,8 @@ SampleLayout meta_layout(const fs::path& path) {
     SampleLayout layout{.path = path};
     layout.type = known_type(header, header.value("elementtype"), types);
     set_meta_geometry(header, layout.geometry);
+    layout.name = header.value("name");
+    layout.unit = header.value("distanceunits");
     const bool local = lower(names) == "local";
     layout.files = local ? std::vector{path} : data_files(header, names);
     layout.header_bytes = local ? header.length : 0;
@@ -176,6 +192,9 @@ SampleLayout nrrd_layout(const fs::path& path) {
     SampleLayout layout{.path = path};
     layout.type = known_type(header, lower(header.value("type")), types);
     set_nrrd_geometry(header, layout.geometry);
+    layout.name = header.value("content");
+    layout.unit = common_word(header.value("space units"));
+    if (layout.unit.empty()) layout.unit = common_word(header.value("units"));
     layout.encoding = nrrd_encoding(header);
     layout.big_endian = lower(header.value("endian")) == "big";
     std::string names = header.value("data file");
