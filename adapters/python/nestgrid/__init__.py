@@ -3,18 +3,23 @@
 """Adaptive isosurfaces, slices and lines of NumPy arrays and octrees, without cracks or copies.
 
     import nestgrid
-    volume = nestgrid.Volume(array, spacing=(1, 1, 2))
+    volume = nestgrid.Volume(array, spacing=(1, 1, 2))      # or nestgrid.load("scan.nii.gz")
     surface = volume.isosurface(0.5, max_triangles=50_000)
     surface.vertices, surface.triangles, surface.normals, surface.error_bound
+    surface.save("surface.ply")
 """
 
 from __future__ import annotations
 
-from ._fields import Field, Frames, Octree, Volume, load
+from ._arguments import InvalidType
+from ._budget import FrameBudget
+from ._fields import Field
 from ._lens import Domain, Lens, ball, box, cone, half_space, polygon, view
-from ._nestgrid import FrameBudget, GridError, InvalidInput, IoError
+from ._load import load
+from ._nestgrid import GridError, InvalidInput, IoError, __version__
 from ._results import Lines, Segments, Surface
 from ._skimage import marching_cubes
+from ._sources import Frames, Octree, Volume
 
 __all__ = [
     "Domain",
@@ -23,6 +28,7 @@ __all__ = [
     "Frames",
     "GridError",
     "InvalidInput",
+    "InvalidType",
     "IoError",
     "Lens",
     "Lines",

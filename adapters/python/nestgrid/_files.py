@@ -4,18 +4,23 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import os
+import re
 import tempfile
-from typing import BinaryIO, Callable, Sequence
+from typing import IO, Callable, Sequence
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from ._arguments import suggestion
 from ._nestgrid import InvalidInput, IoError
 
 Pieces = Sequence[tuple[str, np.ndarray]]
 
 
-def write(path: str | os.PathLike, writers: dict[str, Callable[[BinaryIO], None]]) -> None:
+def write(path: str | os.PathLike, writers: dict[str, Callable[[IO[bytes]], None]]) -> None:
     """Writes a file by the writer of its suffix.
 
     Raises InvalidInput for a suffix that has none, IoError where writing fails.
@@ -23,13 +28,14 @@ def write(path: str | os.PathLike, writers: dict[str, Callable[[BinaryIO], None]
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in writers:
-        raise InvalidInput(f"'{path}' ends in none of {', '.join(writers)}")
+        near = suggestion(suffix, writers)
+        raise InvalidInput(f"save(): '{path}' ends in none of {', '.join(writers)}{near}")
     part = None
     try:
         folder = os.path.dirname(path) or "."
         with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
             part = file.name
-            writers[suffix](file)
+            writers[suffix](file.file)
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(part, 0o666 & ~mask)
@@ -41,7 +47,14 @@ def write(path: str | os.PathLike, writers: dict[str, Callable[[BinaryIO], None]
             os.remove(part)
 
 
-def ply(file: BinaryIO, vertices: np.ndarray, normals: np.ndarray, triangles: np.ndarray) -> None:
+def put(file: IO[bytes], array: np.ndarray) -> None:
+    """Writes the bytes of an array in parts, so that signals are heard between two of them."""
+    data = np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
+    for begin in range(0, len(data), 1 << 24):
+        file.write(data[begin : begin + (1 << 24)])
+
+
+def ply(file: IO[bytes], vertices: np.ndarray, normals: np.ndarray, triangles: np.ndarray) -> None:
     """Writes a binary PLY file with positions and normals of type double."""
     names = ["x", "y", "z"] + (["nx", "ny", "nz"] if len(normals) else [])
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(vertices)}"]
@@ -49,14 +62,14 @@ def ply(file: BinaryIO, vertices: np.ndarray, normals: np.ndarray, triangles: np
     header += [f"element face {len(triangles)}", "property list uchar uint vertex_indices"]
     file.write(("\n".join(header) + "\nend_header\n").encode())
     rows = np.hstack([vertices, normals]) if len(normals) else vertices
-    file.write(np.ascontiguousarray(rows, "<f8").tobytes())
+    put(file, rows.astype("<f8", copy=False))
     faces = np.empty(len(triangles), [("count", "u1"), ("corners", "<u4", 3)])
     faces["count"] = 3
     faces["corners"] = triangles
-    file.write(faces.tobytes())
+    put(file, faces)
 
 
-def stl(file: BinaryIO, vertices: np.ndarray, triangles: np.ndarray) -> None:
+def stl(file: IO[bytes], vertices: np.ndarray, triangles: np.ndarray) -> None:
     """Writes a binary STL file, whose numbers are float."""
     corners = vertices[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -66,11 +79,88 @@ def stl(file: BinaryIO, vertices: np.ndarray, triangles: np.ndarray) -> None:
     )
     facets["normal"] = np.divide(across, length, out=np.zeros_like(across), where=length > 0)
     facets["corners"] = corners
-    file.write(b"nestgrid".ljust(80) + np.uint32(len(triangles)).tobytes() + facets.tobytes())
+    file.write(b"nestgrid".ljust(80) + np.array(len(triangles), "<u4").tobytes())
+    put(file, facets)
+
+
+def obj(
+    file: IO[bytes],
+    vertices: np.ndarray,
+    normals: np.ndarray,
+    triangles: np.ndarray | None = None,
+    lines: Sequence[np.ndarray] = (),
+) -> None:
+    """Writes a Wavefront file, which is text: triangles, or lines by the numbers of points."""
+    rows(file, "v {:.9g} {:.9g} {:.9g}\n", vertices)
+    rows(file, "vn {:.6g} {:.6g} {:.6g}\n", normals)
+    if triangles is not None:
+        form = "f {0}//{0} {1}//{1} {2}//{2}\n" if len(normals) else "f {} {} {}\n"
+        rows(file, form, triangles.astype(np.int64) + 1)
+    for line in lines:
+        file.write(("l " + " ".join(str(i + 1) for i in line.tolist()) + "\n").encode())
+
+
+def rows(file: IO[bytes], form: str, array: np.ndarray) -> None:
+    """Writes each row of an array as text."""
+    for begin in range(0, len(array), 1 << 14):
+        part = array[begin : begin + (1 << 14)].tolist()
+        file.write("".join(form.format(*row) for row in part).encode())
+
+
+def gltf(
+    file: IO[bytes],
+    vertices: np.ndarray,
+    data: Pieces,
+    indices: np.ndarray,
+) -> None:
+    """Writes glTF 2.0 with everything in one file: triangles, or segments, as indices has 3 or 2
+    columns. Numbers are float; "Normals" are those of glTF, others attributes of their own name.
+    """
+    blocks: list[np.ndarray] = []
+    views: list[dict[str, int]] = []
+    accessors: list[dict[str, object]] = []
+
+    def accessor(values: np.ndarray, kind: str, target: int, bounds: bool = False) -> int:
+        values = np.ascontiguousarray(values, "<f4" if values.dtype.kind == "f" else "<u4")
+        offset = sum(block.nbytes for block in blocks)
+        blocks.append(values)
+        views.append(
+            {"buffer": 0, "byteOffset": offset, "byteLength": values.nbytes, "target": target}
+        )
+        is_float = values.dtype.kind == "f"
+        entry: dict[str, object] = {"bufferView": len(views) - 1, "type": kind}
+        entry |= {"componentType": 5126 if is_float else 5125}
+        entry |= {"count": values.size if kind == "SCALAR" else len(values)}
+        if bounds:
+            entry |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
+        accessors.append(entry)
+        return len(accessors) - 1
+
+    scene: dict[str, object] = {"asset": {"version": "2.0", "generator": "nestgrid"}, "scene": 0}
+    if len(indices):
+        attributes = {"POSITION": accessor(vertices, "VEC3", 34962, bounds=True)}
+        for name, values in data:
+            if name == "Normals":
+                attributes["NORMAL"] = accessor(values, "VEC3", 34962)
+            else:
+                own = "_" + re.sub("[^A-Z0-9]", "_", name.upper())
+                attributes[own] = accessor(values, "SCALAR", 34962)
+        mode = 4 if indices.shape[1] == 3 else 1
+        drawn = {"attributes": attributes, "mode": mode}
+        drawn["indices"] = accessor(indices, "SCALAR", 34963)
+        content = base64.b64encode(b"".join(block.tobytes() for block in blocks)).decode()
+        size = sum(block.nbytes for block in blocks)
+        uri = "data:application/octet-stream;base64," + content
+        scene |= {"scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}]}
+        scene |= {"meshes": [{"primitives": [drawn]}], "accessors": accessors}
+        scene |= {"bufferViews": views, "buffers": [{"byteLength": size, "uri": uri}]}
+    else:
+        scene |= {"scenes": [{}]}
+    put(file, np.frombuffer(json.dumps(scene).encode(), np.uint8))
 
 
 def vtp(
-    file: BinaryIO,
+    file: IO[bytes],
     vertices: np.ndarray,
     cells: Pieces,
     point_data: Pieces = (),
@@ -90,7 +180,7 @@ def vtp(
         blocks.append(np.uint64(data.nbytes).tobytes() + data.tobytes())
         columns = data.shape[1] if data.ndim == 2 else 1
         return (
-            f'<DataArray type="{kinds[data.dtype.kind]}" Name="{name}" '
+            f'<DataArray type="{kinds[data.dtype.kind]}" Name={quoteattr(name)} '
             f'NumberOfComponents="{columns}" format="appended" offset="{offset}"/>'
         )
 
@@ -109,5 +199,5 @@ def vtp(
     ]
     file.write("\n".join(xml).encode())
     for block in blocks:
-        file.write(block)
+        put(file, np.frombuffer(block, np.uint8))
     file.write(b"</AppendedData></VTKFile>\n")

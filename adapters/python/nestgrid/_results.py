@@ -4,33 +4,140 @@
 
 from __future__ import annotations
 
+import math
 import os
-from typing import TYPE_CHECKING, Any, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, Iterable, Iterator, Sequence, TypeVar
 
 import numpy as np
 
-from . import _files
+from . import _files, _html, _nestgrid
+from ._arguments import InvalidType, numbers, several, takes, whole
+from ._arguments import path as path_kind
 
 if TYPE_CHECKING:
     import pyvista
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from . import _nestgrid
+
+Self = TypeVar("Self", bound="_Extracted")
 
 
-class _Result:
+class _Extracted:
+    """What is kept in the memory of the library, and can be copied and pickled."""
+
+    _data: Any
+    _compiled: ClassVar[Any]
+    _name: str
+    _unit: str
+
+    def __init__(self) -> None:
+        raise InvalidType(f"a {type(self).__name__} is made by the methods of fields and results")
+
+    @classmethod
+    def _of(cls: type[Self], data: Any, origin: Any) -> Self:
+        """The compiled data, with the name and unit of what they were made of."""
+        result = cls.__new__(cls)
+        result._data = data
+        result._name = origin._name
+        result._unit = origin._unit
+        return result
+
+    @classmethod
+    def _restored(cls: type[Self], state: tuple[Any, ...], name: str, unit: str) -> Self:
+        result = cls.__new__(cls)
+        result._data = cls._compiled.restored(state)
+        result._name = name
+        result._unit = unit
+        return result
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self)._restored, (self._data.state(), self._name, self._unit)
+
+    def __copy__(self: Self) -> Self:
+        """Another result on the same arrays."""
+        return type(self)._of(self._data, self)
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """Positions, float64 of shape (n, 3), in units of length."""
+        return self._data.vertices
+
+    @property
+    def name(self) -> str:
+        """The name of the data that it was made of, "" where none is known."""
+        return self._name
+
+    @property
+    def unit(self) -> str:
+        """The unit of length, such as "mm"; "" where none is known."""
+        return self._unit
+
+    def to_vtk(self) -> vtkPolyData:
+        """The same as vtkPolyData, copied."""
+        raise NotImplementedError
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """The same as pyvista.PolyData, copied. Raises ImportError where PyVista is missing."""
+        import pyvista
+
+        return pyvista.wrap(self.to_vtk())
+
+    def _size(self) -> str:
+        raise NotImplementedError
+
+    def _rows(self) -> list[tuple[str, str]]:
+        rows = [("of", self._name)] if self._name else []
+        rows.append(("size", self._size()))
+        if len(self.vertices):
+            unit = f" {self._unit}" if self._unit else ""
+            low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+            ends = [f"{a:.6g} to {b:.6g}" for a, b in zip(low, high)]
+            rows.append(("x, y, z", ", ".join(ends) + unit))
+        return rows
+
+    def __repr__(self) -> str:
+        name = f" of '{self._name}'" if self._name else ""
+        return f"<nestgrid.{type(self).__name__}{name}: {self._size()}{_between(self.vertices)}>"
+
+    def _repr_html_(self) -> str:
+        return _html.table(f"nestgrid.{type(self).__name__}", self._rows())
+
+
+def _between(vertices: np.ndarray) -> str:
+    """The box around vertices, for people."""
+    if not len(vertices):
+        return ""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    ends = [", ".join(f"{x:.4g}" for x in end) for end in (low, high)]
+    return f", from ({ends[0]}) to ({ends[1]})"
+
+
+class _Result(_Extracted):
     """Numbers that every extraction has."""
-
-    def __init__(self, data: Any) -> None:
-        self._data = data
 
     @property
     def error_bound(self) -> float:
         """The drawn function and the data, interpolated on the finest grid, differ by no more.
 
-        In the units of the data. Infinite where nothing is known.
+        In the units of the data; never more than range_bound.
         """
-        return self._data.error_bound
+        bound: float = self._data.error_bound
+        return bound
+
+    @property
+    def range_bound(self) -> float:
+        """What the least and the greatest value alone promise of any drawing.
+
+        In the units of the data: on isosurfaces the greatest |data - level| anywhere, else the
+        greatest value minus the least; infinite where these are not known.
+        """
+        bound: float = self._data.range_bound
+        return bound
+
+    @property
+    def bound_says_nothing(self) -> bool:
+        """Whether error_bound promises no more than range_bound."""
+        return bool(self._data.bound_says_nothing)
 
     @property
     def threshold(self) -> float:
@@ -43,28 +150,32 @@ class _Result:
         return self._data.counts
 
     @property
-    def vertices(self) -> np.ndarray:
-        """Positions, float64 of shape (n, 3), in the units of the spacing."""
-        return self._data.vertices
-
-    @property
     def attributes(self) -> np.ndarray:
         """Values at the vertices, float64 of shape (n, c); c is 0 where there are none."""
         return self._data.attributes
 
-    def to_pyvista(self) -> pyvista.PolyData:
-        """The same as pyvista.PolyData, copied."""
-        import pyvista
+    def _rows(self) -> list[tuple[str, str]]:
+        rows = super()._rows()
+        bound = "the bound says nothing" if self.bound_says_nothing else f"{self.error_bound:.3g}"
+        rows.append(("error at most", bound))
+        if not math.isnan(self.threshold):
+            rows.append(("threshold", f"{self.threshold:.6g}"))
+        return rows
 
-        return pyvista.wrap(self.to_vtk())
+    def _size(self) -> str:
+        if self.bound_says_nothing:
+            return f"{self._counted()}, the error bound says nothing"
+        return f"{self._counted()}, error at most {self.error_bound:.3g}"
 
-    def to_vtk(self) -> vtkPolyData:
-        """The same as vtkPolyData."""
+    def _counted(self) -> str:
         raise NotImplementedError
 
 
 class Surface(_Result):
     """A triangle surface: an isosurface, a slice, a height field or a shading."""
+
+    __module__ = "nestgrid"
+    _compiled = _nestgrid.Surface
 
     @property
     def triangles(self) -> np.ndarray:
@@ -91,50 +202,61 @@ class Surface(_Result):
 
         Raises InvalidInput where the surface was not extracted with elements=True.
         """
-        return Segments(self._data.outlines())
+        return Segments._of(self._data.outlines(), self)
 
-    def isolines(self, values: float | Iterable[float], attribute: int = 0) -> Lines:
+    @takes(values=numbers, attribute=whole(0))
+    def isolines(self, values: float | Iterable[float] | np.ndarray, attribute: int = 0) -> Lines:
         """Lines on the surface on which an attribute has the given values.
+
+        values     one number or several, in the units of the attribute
+        attribute  the column of attributes, from 0
 
         Raises InvalidInput where there is no such attribute.
         """
-        values = np.atleast_1d(np.asarray(values, float)).ravel()
-        return Lines(self._data.isolines(values, attribute))
+        return Lines._of(self._data.isolines(several(values), attribute), self)
 
     def to_vtk(self) -> vtkPolyData:
         """The same as vtkPolyData, copied, with normals and attributes as data of points."""
         cells = np.hstack([np.full((len(self.triangles), 1), 3), self.triangles])
         return _poly_data(self.vertices, "SetPolys", cells, len(cells), self._point_data())
 
-    def save(self, path: str | os.PathLike) -> None:
-        """Writes .ply, .stl or .vtp; .ply and .vtp have normals, .vtp attributes.
+    @takes(path=path_kind)
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a file, which appears when it is complete.
+
+        path  ends in .vtp, .ply, .stl, .obj or .gltf. All but .stl have normals, .vtp and .gltf
+              attributes; numbers are double in .vtp and .ply
 
         Raises InvalidInput for another suffix, IoError where writing fails.
         """
         _files.write(
             path,
             {
-                ".ply": lambda f: _files.ply(f, self.vertices, self.normals, self.triangles),
-                ".stl": lambda f: _files.stl(f, self.vertices, self.triangles),
                 ".vtp": lambda f: _files.vtp(
                     f, self.vertices, [("Polys", self.triangles)], self._point_data()
+                ),
+                ".ply": lambda f: _files.ply(f, self.vertices, self.normals, self.triangles),
+                ".stl": lambda f: _files.stl(f, self.vertices, self.triangles),
+                ".obj": lambda f: _files.obj(f, self.vertices, self.normals, self.triangles),
+                ".gltf": lambda f: _files.gltf(
+                    f, self.vertices, self._point_data(), self.triangles
                 ),
             },
         )
 
     def _point_data(self) -> list[tuple[str, np.ndarray]]:
         normals = [("Normals", self.normals)] if len(self.normals) else []
-        return normals + _columns(self.attributes)
+        return normals + _columns(self.attributes, self._name)
 
-    def __repr__(self) -> str:
-        return (
-            f"<nestgrid.Surface: {len(self.vertices)} vertices, {len(self.triangles)} triangles, "
-            f"error at most {self.error_bound:.3g}>"
-        )
+    def _counted(self) -> str:
+        return f"{len(self.vertices)} vertices, {len(self.triangles)} triangles"
 
 
 class Lines(_Result):
     """Joined lines: isolines. Iterating gives each line as an array of positions, (k, 3)."""
+
+    __module__ = "nestgrid"
+    _compiled = _nestgrid.Lines
 
     @property
     def points(self) -> np.ndarray:
@@ -162,35 +284,43 @@ class Lines(_Result):
         """The same as vtkPolyData, copied, with the value of each line as data of cells."""
         first = self.first.astype(np.int64)
         cells = np.insert(self.points.astype(np.int64), first[:-1], np.diff(first))
-        data = _poly_data(
-            self.vertices, "SetLines", cells, len(self), _columns(self.attributes)
-        )
+        attributes = _columns(self.attributes, self._name)
+        data = _poly_data(self.vertices, "SetLines", cells, len(self), attributes)
         _add_arrays(data.GetCellData(), [("value", self.values)])
         return data
 
-    def save(self, path: str | os.PathLike) -> None:
-        """Writes .vtp. Raises InvalidInput for another suffix, IoError where writing fails."""
+    @takes(path=path_kind)
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a file, which appears when it is complete.
+
+        path  ends in .vtp, .obj or .gltf; .vtp has the value of each line, .vtp and .gltf
+              attributes
+
+        Raises InvalidInput for another suffix, IoError where writing fails.
+        """
         cells = [("Lines", self.points.astype(np.int64)), ("offsets", self.first[1:].astype(int))]
-        attributes = _columns(self.attributes)
+        attributes = _columns(self.attributes, self._name)
         values = [("value", self.values)]
+        parts = [self.points[a:b] for a, b in zip(self.first[:-1], self.first[1:])]
+        none = np.zeros((0, 3))
         _files.write(
-            path, {".vtp": lambda f: _files.vtp(f, self.vertices, cells, attributes, values)}
+            path,
+            {
+                ".vtp": lambda f: _files.vtp(f, self.vertices, cells, attributes, values),
+                ".obj": lambda f: _files.obj(f, self.vertices, none, lines=parts),
+                ".gltf": lambda f: _files.gltf(f, self.vertices, attributes, _pairs(parts)),
+            },
         )
 
-    def __repr__(self) -> str:
-        return f"<nestgrid.Lines: {len(self)} lines, error at most {self.error_bound:.3g}>"
+    def _counted(self) -> str:
+        return f"{len(self)} lines of {len(self.points)} points"
 
 
-class Segments:
+class Segments(_Extracted):
     """Single segments: outlines of elements."""
 
-    def __init__(self, data: _nestgrid.Segments) -> None:
-        self._data = data
-
-    @property
-    def vertices(self) -> np.ndarray:
-        """Positions, float64 of shape (n, 3)."""
-        return self._data.vertices
+    __module__ = "nestgrid"
+    _compiled = _nestgrid.Segments
 
     @property
     def segments(self) -> np.ndarray:
@@ -202,17 +332,39 @@ class Segments:
         cells = np.hstack([np.full((len(self.segments), 1), 2), self.segments])
         return _poly_data(self.vertices, "SetLines", cells, len(cells), [])
 
-    def save(self, path: str | os.PathLike) -> None:
-        """Writes .vtp. Raises InvalidInput for another suffix, IoError where writing fails."""
+    @takes(path=path_kind)
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a file, which appears when it is complete.
+
+        path  ends in .vtp, .obj or .gltf
+
+        Raises InvalidInput for another suffix, IoError where writing fails.
+        """
         cells = [("Lines", self.segments)]
-        _files.write(path, {".vtp": lambda f: _files.vtp(f, self.vertices, cells)})
+        none = np.zeros((0, 3))
+        _files.write(
+            path,
+            {
+                ".vtp": lambda f: _files.vtp(f, self.vertices, cells),
+                ".obj": lambda f: _files.obj(f, self.vertices, none, lines=list(self.segments)),
+                ".gltf": lambda f: _files.gltf(f, self.vertices, [], self.segments),
+            },
+        )
 
-    def __repr__(self) -> str:
-        return f"<nestgrid.Segments: {len(self.segments)} segments>"
+    def _size(self) -> str:
+        return f"{len(self.segments)} segments"
 
 
-def _columns(attributes: np.ndarray) -> list[tuple[str, np.ndarray]]:
-    names = ["value", *(f"value {i}" for i in range(1, attributes.shape[1]))]
+def _pairs(lines: Sequence[np.ndarray]) -> np.ndarray:
+    """The segments of lines."""
+    pairs = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
+    return np.concatenate(pairs) if pairs else np.zeros((0, 2), np.uint32)
+
+
+def _columns(attributes: np.ndarray, name: str) -> list[tuple[str, np.ndarray]]:
+    """The attributes with names, of which the first is that of the data."""
+    name = name or "value"
+    names = [name, *(f"{name} {i}" for i in range(1, attributes.shape[1]))]
     return [(name, attributes[:, i]) for i, name in enumerate(names[: attributes.shape[1]])]
 
 

@@ -7,7 +7,7 @@
 
 #include "bind.hpp"
 #include "extract.hpp"
-#include "thread_executor.hpp"
+#include "interruptible.hpp"
 
 namespace nestgrid::python {
 
@@ -19,116 +19,176 @@ struct Domain {
 };
 
 void bind_domains(py::module_& m) {
-    py::class_<Domain>(m, "Domain",
-                       "Where a lens is fine. a | b is the union of two domains, a & b what they "
-                       "share.")
-        .def("__or__", [](const Domain& a,
-                          const Domain& b) { return Domain{union_of(a.distance, b.distance)}; })
-        .def("__and__", [](const Domain& a, const Domain& b) {
-            return Domain{intersection(a.distance, b.distance)};
-        });
-    m.def("ball", [](const Numbers& centre, double radius) {
-        if (!(radius >= 0)) throw InvalidInput("the radius of a ball is not a number >= 0");
-        return Domain{Ball{point_of(centre, "the centre"), radius}};
-    });
-    m.def("box", [](const Numbers& low, const Numbers& high) {
-        const Box box{point_of(low, "the low corner"), point_of(high, "the high corner")};
-        for (std::size_t d = 0; d < 3; ++d) {
-            if (!(box.low[d] <= box.high[d])) throw InvalidInput("the box is empty");
-        }
-        return Domain{box};
-    });
-    m.def("half_space", [](const Numbers& through, const Numbers& normal) {
-        return Domain{HalfSpace(point_of(through, "the point"), point_of(normal, "the normal"))};
-    });
-    m.def("cone", [](const Numbers& apex, const Numbers& towards, double angle) {
-        return Domain{Cone(point_of(apex, "the apex"), point_of(towards, "the direction"), angle)};
-    });
-    m.def("polygon",
-          [](const std::vector<ImagePoint>& corners) { return Domain{Polygon(corners)}; });
-    m.def("frustum", [](const Numbers& eye, const Numbers& towards, const Numbers& up, double angle,
-                        double aspect, double nearest, double farthest) {
-        return Domain{view_frustum({.eye = point_of(eye, "the eye"),
-                                    .towards = point_of(towards, "the direction"),
-                                    .up = point_of(up, "up"),
-                                    .angle = angle,
-                                    .aspect = aspect},
-                                   nearest, farthest)};
-    });
+    py::class_<Domain>(m, "Domain")
+        .def(
+            "union_with",
+            [](const Domain& a, const Domain& b) {
+                return Domain{union_of(a.distance, b.distance)};
+            },
+            py::arg("other"))
+        .def(
+            "intersection",
+            [](const Domain& a, const Domain& b) {
+                return Domain{nestgrid::intersection(a.distance, b.distance)};
+            },
+            py::arg("other"));
+    m.def(
+        "ball",
+        [](const Numbers& centre, double radius) {
+            if (!(radius >= 0)) throw InvalidInput("the radius of a ball is not a number >= 0");
+            return Domain{Ball{point_of(centre, "the centre"), radius}};
+        },
+        py::arg("centre"), py::arg("radius"));
+    m.def(
+        "box",
+        [](const Numbers& low, const Numbers& high) {
+            const Box box{point_of(low, "the low corner"), point_of(high, "the high corner")};
+            for (std::size_t d = 0; d < 3; ++d) {
+                if (!(box.low[d] <= box.high[d])) throw InvalidInput("the box is empty");
+            }
+            return Domain{box};
+        },
+        py::arg("low"), py::arg("high"));
+    m.def(
+        "half_space",
+        [](const Numbers& through, const Numbers& normal) {
+            return Domain{
+                HalfSpace(point_of(through, "the point"), point_of(normal, "the normal"))};
+        },
+        py::arg("through"), py::arg("normal"));
+    m.def(
+        "cone",
+        [](const Numbers& apex, const Numbers& towards, double angle) {
+            return Domain{
+                Cone(point_of(apex, "the apex"), point_of(towards, "the direction"), angle)};
+        },
+        py::arg("apex"), py::arg("towards"), py::arg("angle"));
+    m.def(
+        "polygon", [](const std::vector<ImagePoint>& corners) { return Domain{Polygon(corners)}; },
+        py::arg("corners"));
+    m.def(
+        "frustum",
+        [](const Numbers& eye, const Numbers& towards, const Numbers& up, double angle,
+           double aspect, double nearest, double farthest) {
+            return Domain{view_frustum({.eye = point_of(eye, "the eye"),
+                                        .towards = point_of(towards, "the direction"),
+                                        .up = point_of(up, "up"),
+                                        .angle = angle,
+                                        .aspect = aspect},
+                                       nearest, farthest)};
+        },
+        py::arg("eye"), py::arg("towards"), py::arg("up"), py::arg("angle"), py::arg("aspect"),
+        py::arg("nearest"), py::arg("farthest"));
 }
 
 void bind_requests(py::module_& m) {
     py::class_<LensRequest>(m, "Lens").def(
         py::init([](const Domain& domain, double finest, double coarsest, double slope) {
             return LensRequest{domain.distance, finest, coarsest, slope};
-        }));
+        }),
+        py::arg("domain"), py::arg("finest"), py::arg("coarsest"), py::arg("slope"));
     py::class_<Projection>(m, "Projection")
         .def(py::init([](std::optional<double> threshold, std::optional<std::uint64_t> triangles,
                          std::string indicator, double blend, std::optional<LensRequest> lens) {
-            if (triangles == std::uint64_t{0}) throw InvalidInput("max_triangles is 0");
-            return Projection{threshold, triangles.value_or(0), std::move(indicator), blend,
-                              std::move(lens)};
-        }));
+                 if (triangles == std::uint64_t{0}) throw InvalidInput("max_triangles is 0");
+                 return Projection{threshold, triangles.value_or(0), std::move(indicator), blend,
+                                   std::move(lens)};
+             }),
+             py::arg("threshold"), py::arg("max_triangles"), py::arg("indicator"), py::arg("blend"),
+             py::arg("lens"));
     const py::class_<LevelFunction, std::shared_ptr<LevelFunction>> opaque(m, "LevelFunction");
-    m.def("plane", [](const Numbers& through, const Numbers& normal) {
-        return std::shared_ptr<LevelFunction>(std::make_shared<Plane>(
-            point_of(through, "the point"), point_of(normal, "the normal")));
-    });
-    m.def("sphere", [](const Numbers& centre, double radius) {
-        return std::shared_ptr<LevelFunction>(
-            std::make_shared<Sphere>(point_of(centre, "the centre"), radius));
-    });
-    m.def("cylinder", [](const Numbers& through, const Numbers& axis, double radius) {
-        return std::shared_ptr<LevelFunction>(std::make_shared<Cylinder>(
-            point_of(through, "the point"), point_of(axis, "the axis"), radius));
+    m.def(
+        "plane",
+        [](const Numbers& through, const Numbers& normal) {
+            return std::shared_ptr<LevelFunction>(std::make_shared<Plane>(
+                point_of(through, "the point"), point_of(normal, "the normal")));
+        },
+        py::arg("through"), py::arg("normal"));
+    m.def(
+        "sphere",
+        [](const Numbers& centre, double radius) {
+            return std::shared_ptr<LevelFunction>(
+                std::make_shared<Sphere>(point_of(centre, "the centre"), radius));
+        },
+        py::arg("centre"), py::arg("radius"));
+    m.def(
+        "cylinder",
+        [](const Numbers& through, const Numbers& axis, double radius) {
+            return std::shared_ptr<LevelFunction>(std::make_shared<Cylinder>(
+                point_of(through, "the point"), point_of(axis, "the axis"), radius));
+        },
+        py::arg("through"), py::arg("axis"), py::arg("radius"));
+}
+
+using SourcePointer = std::shared_ptr<Source>;
+
+/// Draws in the background.
+/// \param draw called with a Call, gives a result
+template <class Draw>
+auto drawn(int threads, const Draw& draw) {
+    return interruptible(threads, [draw](const Call& call) {
+        auto result = std::make_shared<std::invoke_result_t<const Draw&, const Call&>>(draw(call));
+        if (call.stopped()) throw Stopped();
+        return result;
     });
 }
 
-template <class Result>
-std::shared_ptr<Result> shared(Result result) {
-    return std::make_shared<Result>(std::move(result));
-}
-
-py::array_t<double> probe_array(const Source& source, const Numbers& points,
+py::array_t<double> probe_array(const SourcePointer& source, const Numbers& points,
                                 const Projection& projection, int threads) {
     std::vector<Point> at(static_cast<std::size_t>(points.size()) / 3);
     std::copy_n(points.data(), 3 * at.size(), at.empty() ? nullptr : at.front().data());
-    const ProbeResult result = Interruptible().run(
-        [&](const auto&) { return probe_points(source, at, projection, ThreadExecutor(threads)); });
-    return py::array_t<double>(static_cast<py::ssize_t>(result.values.size()),
-                               result.values.data());
+    const auto result = drawn(threads, [source, at, projection](const Call& call) {
+        return probe_points(*source, at, projection, call);
+    });
+    return py::array_t<double>(static_cast<py::ssize_t>(result->values.size()),
+                               result->values.data());
 }
 
 void bind_draws(py::module_& m) {
-    m.def("isosurface",
-          [](const Source& source, double level, bool normals, bool cap, bool elements,
-             bool at_nodes, const Projection& projection, int threads) {
-              return shared(Interruptible().run([&](const Progress& progress) {
-                  return draw_isosurface(source, level, {normals, cap, elements, at_nodes},
-                                         projection, ThreadExecutor(threads), progress);
-              }));
-          });
-    m.def("slice", [](const Source& source, const LevelFunction& function, bool normals,
-                      bool elements, const Projection& projection, int threads) {
-        return shared(Interruptible().run([&](const Progress& progress) {
-            return draw_slice(source, function, {.normals = normals, .elements = elements},
-                              projection, ThreadExecutor(threads), progress);
-        }));
-    });
-    m.def("isolines", [](const Source& source, const std::vector<double>& values,
-                         const Projection& projection, int threads) {
-        return shared(Interruptible().run([&](const Progress& progress) {
-            return draw_isolines(source, values, projection, ThreadExecutor(threads), progress);
-        }));
-    });
-    m.def("height_field", [](const Source& source, std::optional<double> scale, double flatness,
-                             bool elements, const Projection& projection, int threads) {
-        return shared(Interruptible().run([&](const Progress& progress) {
-            return draw_height_field(source, scale, flatness, elements, projection,
-                                     ThreadExecutor(threads), progress);
-        }));
-    });
-    m.def("probe", &probe_array);
+    m.def(
+        "isosurface",
+        [](const SourcePointer& source, double level, bool normals, bool cap, bool elements,
+           bool at_nodes, const Projection& projection, int threads) {
+            const SurfaceRequest request{normals, cap, elements, at_nodes};
+            return drawn(threads, [source, level, request, projection](const Call& call) {
+                return draw_isosurface(*source, level, request, projection, call);
+            });
+        },
+        py::arg("source"), py::arg("level"), py::arg("normals"), py::arg("cap"),
+        py::arg("elements"), py::arg("at_nodes"), py::arg("projection"), py::arg("threads"));
+    m.def(
+        "slice",
+        [](const SourcePointer& source, const std::shared_ptr<LevelFunction>& function,
+           bool normals, bool elements, const Projection& projection, int threads) {
+            const SurfaceRequest request{.normals = normals, .elements = elements};
+            return drawn(threads, [source, function, request, projection](const Call& call) {
+                return draw_slice(*source, *function, request, projection, call);
+            });
+        },
+        py::arg("source"), py::arg("function"), py::arg("normals"), py::arg("elements"),
+        py::arg("projection"), py::arg("threads"));
+    m.def(
+        "isolines",
+        [](const SourcePointer& source, const std::vector<double>& values,
+           const Projection& projection, int threads) {
+            return drawn(threads, [source, values, projection](const Call& call) {
+                return draw_isolines(*source, values, projection, call);
+            });
+        },
+        py::arg("source"), py::arg("values"), py::arg("projection"), py::arg("threads"));
+    m.def(
+        "height_field",
+        [](const SourcePointer& source, std::optional<double> scale, double flatness, bool elements,
+           const Projection& projection, int threads) {
+            return drawn(
+                threads, [source, scale, flatness, elements, projection](const Call& call) {
+                    return draw_height_field(*source, scale, flatness, elements, projection, call);
+                });
+        },
+        py::arg("source"), py::arg("scale"), py::arg("flatness"), py::arg("elements"),
+        py::arg("projection"), py::arg("threads"));
+    m.def("probe", &probe_array, py::arg("source"), py::arg("points"), py::arg("projection"),
+          py::arg("threads"));
 }
 
 }  // namespace

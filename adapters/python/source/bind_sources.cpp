@@ -9,8 +9,8 @@
 #include <nestgrid/error.hpp>
 
 #include "bind.hpp"
+#include "interruptible.hpp"
 #include "source.hpp"
-#include "thread_executor.hpp"
 
 namespace nestgrid::python {
 
@@ -27,9 +27,26 @@ Point along_indices(const Numbers& numbers, std::size_t indices, double rest, co
     return x;
 }
 
+/// The axes of an array in space.
+/// \param columns the axis of each index, with as many numbers as there are indices
+/// \throw InvalidInput where it is no square matrix of that size
+std::array<Point, 3> axes_of(const Numbers& columns, std::size_t indices) {
+    const auto size = static_cast<py::ssize_t>(indices);
+    if (columns.ndim() != 2 || columns.shape(0) != size || columns.shape(1) != size) {
+        throw InvalidInput("direction is no matrix of " + std::to_string(indices) + " x " +
+                           std::to_string(indices) + " numbers");
+    }
+    std::array<Point, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (std::size_t r = 0; r < indices; ++r) {
+        for (std::size_t d = 0; d < indices; ++d) rows[r][d] = columns.data()[indices * r + d];
+    }
+    return rows;
+}
+
 /// The samples of an array, borrowed.
 /// \throw InvalidInput where they have gaps, and where the array is no volume
-Samples samples_of(const py::array& array, const Numbers& spacing, const Numbers& origin) {
+Samples samples_of(const py::array& array, const Numbers& spacing, const Numbers& origin,
+                   const Numbers& direction) {
     Samples samples;
     const auto indices = static_cast<std::size_t>(array.ndim());
     if (indices != 2 && indices != 3) {
@@ -60,36 +77,39 @@ Samples samples_of(const py::array& array, const Numbers& spacing, const Numbers
     }
     samples.spacing = along_indices(spacing, indices, 1, "spacing");
     samples.origin = along_indices(origin, indices, 0, "origin");
+    samples.direction = axes_of(direction, indices);
     samples.data = array.data();
+    samples.memory = keep(array);
     return samples;
 }
 
-/// Frames with the arrays that they borrow and the times.
 struct Frames {
-    std::vector<py::array> arrays;
     std::vector<double> times;
     std::shared_ptr<FrameSource> source;
 };
 
 std::shared_ptr<Frames> frames_of(const std::vector<py::array>& arrays,
                                   const std::vector<double>& times, const Numbers& spacing,
-                                  const Numbers& origin) {
+                                  const Numbers& origin, const Numbers& direction) {
     if (arrays.size() != times.size()) {
         throw InvalidInput("there are " + std::to_string(times.size()) + " times, but " +
                            std::to_string(arrays.size()) + " frames");
     }
     std::vector<Samples> samples;
-    for (const py::array& array : arrays) samples.push_back(samples_of(array, spacing, origin));
+    for (const py::array& array : arrays) {
+        samples.push_back(samples_of(array, spacing, origin, direction));
+    }
     auto source = make_frames(samples);
     linear_weights(times, times.front());
-    return std::make_shared<Frames>(Frames{arrays, times, std::move(source)});
+    return std::make_shared<Frames>(Frames{times, std::move(source)});
 }
 
-std::shared_ptr<Source> octree_of(const py::array_t<std::int64_t, py::array::c_style>& leaves,
-                                  const Numbers& values,
-                                  const py::array_t<std::uint8_t, py::array::c_style>& masked,
-                                  int max_level,
-                                  const std::array<std::vector<double>, 3>& coordinates) {
+using Leaves = py::array_t<std::int64_t, py::array::c_style>;
+using Masks = py::array_t<std::uint8_t, py::array::c_style>;
+
+std::shared_ptr<OctreeSource> octree_of(const Leaves& leaves, const Numbers& values,
+                                        const Masks& masked, int max_level,
+                                        const std::array<std::vector<double>, 3>& coordinates) {
     OctreeArrays arrays;
     arrays.dimension = static_cast<int>(leaves.shape(1)) - 1;
     arrays.max_level = max_level;
@@ -100,8 +120,42 @@ std::shared_ptr<Source> octree_of(const py::array_t<std::int64_t, py::array::c_s
     arrays.values = span_of(values);
     arrays.masked = span_of(masked);
     arrays.coordinates = coordinates;
-    const py::gil_scoped_release unlocked;
-    return make_octree(arrays);
+    const std::array memory{keep(leaves), keep(values), keep(masked)};
+    return interruptible(1, [arrays, memory](const Call&) {
+        return std::shared_ptr<OctreeSource>(make_octree(arrays));
+    });
+}
+
+py::tuple leaves_of(const OctreeSource& octree) {
+    const OctreeLeaves all = octree.leaves();
+    const auto columns = octree.dimension() + py::ssize_t{1};
+    const auto count = static_cast<py::ssize_t>(all.leaves.size()) / columns;
+    const auto corners = py::ssize_t{1} << octree.dimension();
+    return py::make_tuple(Leaves({count, columns}, all.leaves.data()),
+                          Numbers({count, corners}, all.values.data()),
+                          Masks(static_cast<py::ssize_t>(all.masked.size()), all.masked.data()));
+}
+
+std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int threads) {
+    const auto weights =
+        cubic ? catmull_rom_weights(frames.times, t) : linear_weights(frames.times, t);
+    return interruptible(threads, [source = frames.source, weights](const Call& call) {
+        auto field = std::shared_ptr<Source>(source->at(weights));
+        field->choose("offset", 1, call);
+        return field;
+    });
+}
+
+/// The field, or its frames, and its name.
+py::tuple loaded(const std::string& path, const std::string& array) {
+    const auto field = interruptible(1, [path, array](const Call&) {
+        return std::make_shared<LoadedField>(load_hierarchy(path, array));
+    });
+    if (field->alone) {
+        return py::make_tuple(std::shared_ptr<Source>(std::move(field->alone)), field->name);
+    }
+    const auto frames = std::make_shared<Frames>(Frames{field->times, std::move(field->frames)});
+    return py::make_tuple(frames, field->name);
 }
 
 }  // namespace
@@ -111,44 +165,31 @@ void bind_sources(py::module_& m) {
         .def_property_readonly("dimension", &Source::dimension)
         .def(
             "range",
-            [](const Source& source, int threads) {
-                return Interruptible().run(
-                    [&](const auto&) { return source.range(ThreadExecutor(threads)); });
+            [](const std::shared_ptr<Source>& source, int threads) {
+                return interruptible(threads,
+                                     [source](const Call& call) { return source->range(call); });
             },
             py::arg("threads"))
         .def("clear", &Source::clear);
+    py::class_<OctreeSource, Source, std::shared_ptr<OctreeSource>>(m, "OctreeSource")
+        .def("leaves", &leaves_of);
     m.def(
         "volume",
-        [](const py::array& array, const Numbers& spacing, const Numbers& origin) {
-            return std::shared_ptr<Source>(make_volume(samples_of(array, spacing, origin)));
+        [](const py::array& array, const Numbers& spacing, const Numbers& origin,
+           const Numbers& direction) {
+            return std::shared_ptr<Source>(
+                make_volume(samples_of(array, spacing, origin, direction)));
         },
-        py::keep_alive<0, 1>());
-    m.def("octree", &octree_of);
+        py::arg("array"), py::arg("spacing"), py::arg("origin"), py::arg("direction"));
+    m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),
+          py::arg("max_level"), py::arg("coordinates"));
     py::class_<Frames, std::shared_ptr<Frames>>(m, "Frames")
-        .def(py::init(&frames_of))
+        .def(py::init(&frames_of), py::arg("arrays"), py::arg("times"), py::arg("spacing"),
+             py::arg("origin"), py::arg("direction"))
         .def_readonly("times", &Frames::times)
         .def("clear", [](const Frames& frames) { frames.source->clear(); })
-        .def(
-            "at",
-            [](const Frames& frames, double t, bool cubic, int threads) {
-                const auto weights =
-                    cubic ? catmull_rom_weights(frames.times, t) : linear_weights(frames.times, t);
-                const py::gil_scoped_release unlocked;
-                auto source = std::shared_ptr<Source>(frames.source->at(weights));
-                source->choose("offset", 1, ThreadExecutor(threads));
-                return source;
-            },
-            py::keep_alive<0, 1>());
-    m.def("load", [](const std::string& path, const std::string& array) -> py::object {
-        LoadedField loaded;
-        {
-            const py::gil_scoped_release unlocked;
-            loaded = load_hierarchy(path, array);
-        }
-        if (loaded.alone) return py::cast(std::shared_ptr<Source>(std::move(loaded.alone)));
-        return py::cast(std::make_shared<Frames>(
-            Frames{{}, std::move(loaded.times), std::move(loaded.frames)}));
-    });
+        .def("at", &field_at, py::arg("t"), py::arg("cubic"), py::arg("threads"));
+    m.def("load", &loaded, py::arg("path"), py::arg("array"));
 }
 
 }  // namespace nestgrid::python

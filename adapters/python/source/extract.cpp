@@ -18,18 +18,18 @@ namespace {
 class Criteria {
 public:
     /// \throw InvalidInput where a number is out of range
-    Criteria(const Source& source, const Projection& projection, const Executor& executor)
+    Criteria(const Source& source, const Projection& projection, const Call& call)
         : projection_{projection} {
         if (!(projection.blend >= 1) || !std::isfinite(projection.blend)) {
             throw InvalidInput("blend is not a finite number of at least 1");
         }
         if (!(threshold() >= 0)) throw InvalidInput("the threshold is not a number >= 0");
-        chosen_ = source.choose(projection.indicator, projection.blend, executor);
+        chosen_ = source.choose(projection.indicator, projection.blend, call);
         if (!projection.lens) return;
         if (!(projection.lens->slope >= 0) || !std::isfinite(projection.lens->slope)) {
             throw InvalidInput("the slope of the lens is not a finite number >= 0");
         }
-        sizes_ = source.sizes(projection.lens->slope);
+        sizes_ = source.sizes(projection.lens->slope, call);
     }
 
     double threshold() const {
@@ -71,17 +71,22 @@ private:
     std::shared_ptr<const SweptIndicator> sizes_;  // where there is a lens
 };
 
-IsosurfaceOptions options_of(const SurfaceRequest& request, const Progress& progress) {
+/// Ends extractions between two parts of their work.
+std::function<bool(const TraversalCounts&)> progress_of(const Call& call) {
+    return [&call](const TraversalCounts&) { return !call.stopped(); };
+}
+
+IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
     return {.normals = request.normals,
             .cap = request.cap,
             .elements = request.elements,
             .at_nodes = request.at_nodes,
-            .progress = progress};
+            .progress = progress_of(call)};
 }
 
 Drawn drawn_of(Isosurface<3> result, double threshold) {
-    return {std::move(result.surface), result.counts, result.error_bound, threshold,
-            result.cancelled};
+    return {static_cast<const ErrorBounds&>(result), std::move(result.surface), result.counts,
+            threshold, result.cancelled};
 }
 
 bool is_default(const Projection& projection) {
@@ -91,96 +96,94 @@ bool is_default(const Projection& projection) {
 }  // namespace
 
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
-                      const Projection& projection, const Executor& executor,
-                      const Progress& progress) {
-    return with(source.hierarchy(), [&](const auto& hierarchy) {
+                      const Projection& projection, const Call& call) {
+    return call.with(source.hierarchy(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(3);
-        const Criteria criteria(source, projection, executor);
-        const IsosurfaceOptions options = options_of(request, progress);
+        const Criteria criteria(source, projection, call);
+        const IsosurfaceOptions options = options_of(request, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
             double threshold = criteria.threshold();
             if (projection.max_triangles > 0) {
                 threshold = criteria.with_offsets([&](const auto& offsets) {
                     return find_threshold<3>(hierarchy, isovalue, criterion_at, offsets,
-                                             projection.max_triangles, options, executor)
+                                             projection.max_triangles, options, call.executor())
                         .threshold;
                 });
             }
             return drawn_of(isosurface<3>(hierarchy, isovalue, criterion_at(threshold),
-                                          criteria.bounds(), options, executor),
+                                          criteria.bounds(), options, call.executor()),
                             threshold);
         });
     });
 }
 
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
-                 const Projection& projection, const Executor& executor, const Progress& progress) {
-    return with(source.hierarchy(), [&](const auto& hierarchy) {
-        const IsosurfaceOptions options = options_of(request, progress);
+                 const Projection& projection, const Call& call) {
+    return call.with(source.hierarchy(), [&](const auto& hierarchy) {
+        const IsosurfaceOptions options = options_of(request, call);
         const bool everything =
             projection.threshold.value_or(0) == 0 && projection.max_triangles == 0;
         if (is_default(projection) && everything) {
-            return drawn_of(slice(hierarchy, function, options, executor), 0);
+            return drawn_of(slice(hierarchy, function, options, call.executor()), 0);
         }
-        const Criteria criteria(source, projection, executor);
+        const Criteria criteria(source, projection, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
             double threshold = criteria.threshold();
             if (projection.max_triangles > 0) {
                 threshold = criteria.with_offsets([&](const auto& offsets) {
                     return find_threshold(hierarchy, function, criterion_at, offsets,
-                                          projection.max_triangles, options, executor)
+                                          projection.max_triangles, options, call.executor())
                         .threshold;
                 });
             }
             return drawn_of(slice(hierarchy, function, criterion_at(threshold), criteria.bounds(),
-                                  options, executor),
+                                  options, call.executor()),
                             threshold);
         });
     });
 }
 
 DrawnLines draw_isolines(const Source& source, std::span<const double> values,
-                         const Projection& projection, const Executor& executor,
-                         const Progress& progress) {
-    return with(source.hierarchy(), [&](const auto& hierarchy) {
+                         const Projection& projection, const Call& call) {
+    return call.with(source.hierarchy(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(2);
-        const Criteria criteria(source, projection, executor);
+        const Criteria criteria(source, projection, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
             Isolines result =
                 isolines(hierarchy, values, criterion_at(criteria.threshold()), criteria.bounds(),
-                         IsosurfaceOptions{.progress = progress}, executor);
-            return DrawnLines{std::move(result.lines), result.counts, result.error_bound,
-                              criteria.threshold(), result.cancelled};
+                         IsosurfaceOptions{.progress = progress_of(call)}, call.executor());
+            return DrawnLines{static_cast<const ErrorBounds&>(result), std::move(result.lines),
+                              result.counts, criteria.threshold(), result.cancelled};
         });
     });
 }
 
 Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
-                        bool elements, const Projection& projection, const Executor& executor,
-                        const Progress& progress) {
-    return with(source.hierarchy(), [&](const auto& hierarchy) {
+                        bool elements, const Projection& projection, const Call& call) {
+    return call.with(source.hierarchy(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(2);
-        const Criteria criteria(source, projection, executor);
+        const Criteria criteria(source, projection, call);
         const ShadingOptions options{
-            .flatness = flatness, .elements = elements, .progress = progress};
+            .flatness = flatness, .elements = elements, .progress = progress_of(call)};
         return criteria.with_criteria([&](const auto& criterion_at) {
             const auto s = criterion_at(criteria.threshold());
             Shading result =
-                scale ? height_field(hierarchy, *scale, s, criteria.bounds(), options, executor)
-                      : shading(hierarchy, s, criteria.bounds(), options, executor);
-            return Drawn{std::move(result.surface), result.counts, result.error_bound,
-                         criteria.threshold(), result.cancelled};
+                scale ? height_field(hierarchy, *scale, s, criteria.bounds(), options,
+                                     call.executor())
+                      : shading(hierarchy, s, criteria.bounds(), options, call.executor());
+            return Drawn{static_cast<const ErrorBounds&>(result), std::move(result.surface),
+                         result.counts, criteria.threshold(), result.cancelled};
         });
     });
 }
 
 ProbeResult probe_points(const Source& source, std::span<const Point> points,
-                         const Projection& projection, const Executor& executor) {
-    return with(source.hierarchy(), [&](const auto& hierarchy) {
+                         const Projection& projection, const Call& call) {
+    return call.with(source.hierarchy(), [&](const auto& hierarchy) {
         if (is_default(projection) && projection.threshold.value_or(0) == 0) {
             return probe(hierarchy, points);
         }
-        const Criteria criteria(source, projection, executor);
+        const Criteria criteria(source, projection, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
             return probe(hierarchy, points, criterion_at(criteria.threshold()), criteria.bounds());
         });

@@ -36,20 +36,15 @@ struct Projection {
     std::optional<LensRequest> lens;
 };
 
-/// Called now and then; returning false ends the extraction.
-using Progress = std::function<bool(const TraversalCounts&)>;
-
-struct Drawn {
+struct Drawn : ErrorBounds {
     Surface<3> surface;
     TraversalCounts counts;
-    double error_bound = 0;
     double threshold = 0;
     bool cancelled = false;
 };
-struct DrawnLines {
+struct DrawnLines : ErrorBounds {
     Polylines lines;
     TraversalCounts counts;
-    double error_bound = 0;
     double threshold = 0;
     bool cancelled = false;
 };
@@ -63,22 +58,19 @@ struct SurfaceRequest {
 
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
-                      const Projection& projection, const Executor& executor,
-                      const Progress& progress);
+                      const Projection& projection, const Call& call);
 /// \throw InvalidInput, GridError as slices() and find_threshold()
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
-                 const Projection& projection, const Executor& executor, const Progress& progress);
+                 const Projection& projection, const Call& call);
 /// \throw InvalidInput, GridError as isolines()
 DrawnLines draw_isolines(const Source& source, std::span<const double> values,
-                         const Projection& projection, const Executor& executor,
-                         const Progress& progress);
+                         const Projection& projection, const Call& call);
 /// \param scale nothing: the shading in the plane
 /// \throw InvalidInput, GridError as height_field()
 Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
-                        bool elements, const Projection& projection, const Executor& executor,
-                        const Progress& progress);
+                        bool elements, const Projection& projection, const Call& call);
 /// \throw InvalidInput, GridError as probe()
 ProbeResult probe_points(const Source& source, std::span<const Point> points,
-                         const Projection& projection, const Executor& executor);
+                         const Projection& projection, const Call& call);
 
 }  // namespace nestgrid::python

@@ -51,32 +51,32 @@ private:
         /// Offsets, bounds, the numerical and the wavelet indicator are sums of those of the
         /// frames; others are made of this field.
         ChosenIndicator choose(const std::string& name, double blend,
-                               const Executor& executor) const override {
+                               const Call& call) const override {
             if (name == "offset") {
-                const auto offsets = key_frames(blend, executor);
+                const auto offsets = key_frames(blend, call);
                 return {offsets, offsets, offsets.get()};
             }
-            const auto bounds = key_frames(1, executor);
+            const auto bounds = key_frames(1, call);
             if (name == "numerical" || name == "wavelet") {
                 const auto swept = sum_of_frames<SweptKeyFrames>(
-                    [&](Prerolls& frame) { return frame.swept(name, blend, executor); });
+                    [&](Prerolls& frame) { return frame.swept(name, blend, call); });
                 return {swept, bounds, bounds.get()};
             }
-            return {own_.swept(name, blend, executor), bounds, bounds.get()};
+            return {own_.swept(name, blend, call), bounds, bounds.get()};
         }
-        std::shared_ptr<const SweptIndicator> sizes(double slope) const override {
-            return frames_->prerolls_.front()->sizes(slope);
+        std::shared_ptr<const SweptIndicator> sizes(double slope, const Call& call) const override {
+            return frames_->prerolls_.front()->sizes(slope, call);
         }
-        std::array<double, 2> range(const Executor& executor) const override {
-            const auto offsets = key_frames(1, executor);
+        std::array<double, 2> range(const Call& call) const override {
+            const auto offsets = key_frames(1, call);
             return {offsets->least(), offsets->greatest()};
         }
         void clear() override { own_.clear(); }
 
     private:
-        std::shared_ptr<const KeyFrames> key_frames(double blend, const Executor& executor) const {
+        std::shared_ptr<const KeyFrames> key_frames(double blend, const Call& call) const {
             return sum_of_frames<KeyFrames>(
-                [&](Prerolls& frame) { return frame.offsets(blend, executor); });
+                [&](Prerolls& frame) { return frame.offsets(blend, call); });
         }
         /// An indicator that adds up those of the frames, with what it borrows.
         /// \param of gives the indicator of one frame, of its prerolls

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The compiled half of the package nestgrid. Its functions take all arguments; defaults, hints and
-// help are in the half that is written in Python.
+// The compiled half of the package nestgrid. Its functions take all arguments; checks, defaults,
+// hints and help are in the half that is written in Python.
 #include <nestgrid/error.hpp>
 
 #include "bind.hpp"
+#include "interruptible.hpp"
 
 namespace nestgrid::python {
 
@@ -27,8 +28,12 @@ PYBIND11_MODULE(_nestgrid, m) {
     for (const char* name : {"InvalidInput", "GridError", "IoError"}) {
         m.attr(name).attr("__module__") = "nestgrid";
     }
+    m.attr("__version__") = NESTGRID_VERSION;
     nestgrid::python::bind_sources(m);
     nestgrid::python::bind_results(m);
     nestgrid::python::bind_extraction(m);
     nestgrid::python::bind_budget(m);
+    nestgrid::python::bind_volume_files(m);
+    py::module_::import("atexit").attr("register")(
+        py::cpp_function(&nestgrid::python::wait_for_abandoned_work));
 }

@@ -80,6 +80,7 @@ public:
     }
     std::span<const std::uint32_t> element_nodes() const { return nodes_; }
     std::span<const double> values() const { return values_; }
+    OctreeLeaves leaves() const;
 
 private:
     static void check(const OctreeArrays& arrays);
@@ -291,18 +292,31 @@ void Forest<dim>::gather(std::span<const double> of_corners) {
 }
 
 template <int dim>
-class OctreeSource final : public PrerolledSource {
+OctreeLeaves Forest<dim>::leaves() const {
+    OctreeLeaves all;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+        all.leaves.insert(all.leaves.end(), low_[i].begin(), low_[i].begin() + dim);
+        all.leaves.push_back(leaves_[i].level);
+    }
+    for (const std::uint32_t node : nodes_) all.values.push_back(values_[node]);
+    all.masked = masked_;
+    return all;
+}
+
+template <int dim>
+class ForestSource final : public OctreeSource {
 public:
     using Grid = MaskedOctree<dim>;
     using Field = LinearOctreeField<Grid, double, std::uint32_t>;
 
-    explicit OctreeSource(const OctreeArrays& arrays)
+    explicit ForestSource(const OctreeArrays& arrays)
         : forest_(arrays),
           grid_(forest_.grid()),
           field_(grid_, forest_.element_nodes(), forest_.values()),
           hierarchy_(grid_, field_) {}
 
     AnyHierarchy hierarchy() const override { return &hierarchy_; }
+    OctreeLeaves leaves() const override { return forest_.leaves(); }
 
 private:
     Forest<dim> forest_;
@@ -313,9 +327,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Source> make_octree(const OctreeArrays& arrays) {
-    if (arrays.dimension == 2) return std::make_unique<OctreeSource<2>>(arrays);
-    return std::make_unique<OctreeSource<3>>(arrays);
+std::unique_ptr<OctreeSource> make_octree(const OctreeArrays& arrays) {
+    if (arrays.dimension == 2) return std::make_unique<ForestSource<2>>(arrays);
+    return std::make_unique<ForestSource<3>>(arrays);
 }
 
 }  // namespace nestgrid::python

@@ -42,33 +42,32 @@ SweptIndicator swept_indicator(const Hierarchy<Real>& hierarchy, const std::stri
 
 }  // namespace
 
-std::shared_ptr<const HierarchicalIndicator> Prerolls::offsets(double blend,
-                                                               const Executor& executor) {
+std::shared_ptr<const HierarchicalIndicator> Prerolls::offsets(double blend, const Call& call) {
     const std::scoped_lock lock(mutex_);
     return kept(offsets_, blend, [&] {
-        return with(hierarchy_, [&](const auto& hierarchy) {
-            return std::make_shared<const HierarchicalIndicator>(hierarchy, LeafErrors{}, executor,
-                                                                 Spread{.factor = blend});
+        return call.with(hierarchy_, [&](const auto& hierarchy) {
+            return std::make_shared<const HierarchicalIndicator>(
+                hierarchy, LeafErrors{}, call.executor(), Spread{.factor = blend});
         });
     });
 }
 
 std::shared_ptr<const SweptIndicator> Prerolls::swept(const std::string& name, double blend,
-                                                      const Executor& executor) {
-    const auto all = offsets(1, executor);
+                                                      const Call& call) {
+    const auto all = offsets(1, call);
     const std::scoped_lock lock(mutex_);
     return kept(swept_, {name, blend}, [&] {
-        return with(hierarchy_, [&](const auto& hierarchy) {
+        return call.with(hierarchy_, [&](const auto& hierarchy) {
             return std::make_shared<const SweptIndicator>(swept_indicator(
                 hierarchy, name, all->greatest() - all->least(), {.factor = blend}));
         });
     });
 }
 
-std::shared_ptr<const SweptIndicator> Prerolls::sizes(double slope) {
+std::shared_ptr<const SweptIndicator> Prerolls::sizes(double slope, const Call& call) {
     const std::scoped_lock lock(mutex_);
     return kept(sizes_, slope, [&] {
-        return with(hierarchy_, [&](const auto& hierarchy) {
+        return call.with(hierarchy_, [&](const auto& hierarchy) {
             return std::make_shared<const SweptIndicator>(
                 mesh_size(hierarchy, Spread{.slope = slope}));
         });

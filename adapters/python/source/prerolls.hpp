@@ -8,37 +8,29 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <variant>
 
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
+#include "call.hpp"
+
 namespace nestgrid::python {
 
-/// A hierarchy with values of either type, borrowed.
-using AnyHierarchy = std::variant<const Hierarchy<float>*, const Hierarchy<double>*>;
-
-/// Calls function(hierarchy) with the Hierarchy<float> or Hierarchy<double>.
-template <class Function>
-decltype(auto) with(const AnyHierarchy& any, Function&& function) {
-    return std::visit([&](const auto* hierarchy) -> decltype(auto) { return function(*hierarchy); },
-                      any);
-}
-
-/// Several threads may ask at once; the one that comes first computes.
+/// Several threads may ask at once; the one that comes first computes. What a call makes is kept
+/// only where the call was not stopped.
 class Prerolls {
 public:
     explicit Prerolls(const AnyHierarchy& hierarchy) : hierarchy_{hierarchy} {}
 
     /// \param blend the factor of the spread
     /// \throw InvalidInput as HierarchicalIndicator
-    std::shared_ptr<const HierarchicalIndicator> offsets(double blend, const Executor& executor);
+    std::shared_ptr<const HierarchicalIndicator> offsets(double blend, const Call& call);
     /// \param name visual, numerical, wavelet or geometry
     /// \throw InvalidInput for another name, and for geometry where the grid is not curved
     std::shared_ptr<const SweptIndicator> swept(const std::string& name, double blend,
-                                                const Executor& executor);
+                                                const Call& call);
     /// Sizes of elements, spread by a slope.
-    std::shared_ptr<const SweptIndicator> sizes(double slope);
+    std::shared_ptr<const SweptIndicator> sizes(double slope, const Call& call);
     /// Drops what is kept, as the data have changed. Extractions that run keep what they use.
     void clear();
 

@@ -10,18 +10,18 @@ Prerolls& PrerolledSource::prerolls() const {
 }
 
 ChosenIndicator PrerolledSource::choose(const std::string& name, double blend,
-                                        const Executor& executor) const {
+                                        const Call& call) const {
     if (name == "offset") {
-        const auto offsets = prerolls().offsets(blend, executor);
+        const auto offsets = prerolls().offsets(blend, call);
         return {offsets, offsets, offsets.get()};
     }
-    const auto swept = prerolls().swept(name, blend, executor);
-    const auto bounds = prerolls().offsets(1, executor);
+    const auto swept = prerolls().swept(name, blend, call);
+    const auto bounds = prerolls().offsets(1, call);
     return {swept, bounds, bounds.get()};
 }
 
-std::array<double, 2> PrerolledSource::range(const Executor& executor) const {
-    const auto offsets = prerolls().offsets(1, executor);
+std::array<double, 2> PrerolledSource::range(const Call& call) const {
+    const auto offsets = prerolls().offsets(1, call);
     return {offsets->least(), offsets->greatest()};
 }
 

@@ -32,16 +32,16 @@ public:
 
     virtual AnyHierarchy hierarchy() const = 0;
     int dimension() const {
-        return with(hierarchy(), [](const auto& each) { return each.facts().dimension; });
+        return std::visit([](const auto* each) { return each->facts().dimension; }, hierarchy());
     }
     /// \param name offset, or as Prerolls::swept()
     /// \param blend at least 1
     /// \throw InvalidInput as Prerolls
     virtual ChosenIndicator choose(const std::string& name, double blend,
-                                   const Executor& executor) const = 0;
-    virtual std::shared_ptr<const SweptIndicator> sizes(double slope) const = 0;
+                                   const Call& call) const = 0;
+    virtual std::shared_ptr<const SweptIndicator> sizes(double slope, const Call& call) const = 0;
     /// The least and the greatest value.
-    virtual std::array<double, 2> range(const Executor& executor) const = 0;
+    virtual std::array<double, 2> range(const Call& call) const = 0;
     /// Drops all prerolls: values have changed.
     virtual void clear() = 0;
 
@@ -52,12 +52,11 @@ protected:
 /// A source with prerolls of its own, which is all but one between frames.
 class PrerolledSource : public Source {
 public:
-    ChosenIndicator choose(const std::string& name, double blend,
-                           const Executor& executor) const final;
-    std::shared_ptr<const SweptIndicator> sizes(double slope) const final {
-        return prerolls().sizes(slope);
+    ChosenIndicator choose(const std::string& name, double blend, const Call& call) const final;
+    std::shared_ptr<const SweptIndicator> sizes(double slope, const Call& call) const final {
+        return prerolls().sizes(slope, call);
     }
-    std::array<double, 2> range(const Executor& executor) const final;
+    std::array<double, 2> range(const Call& call) const final;
     void clear() final { prerolls().clear(); }
 
 protected:
@@ -78,22 +77,25 @@ public:
     virtual void clear() = 0;
 };
 
-/// Samples in memory, borrowed, without gaps.
+/// Samples in memory, without gaps.
 struct Samples {
     std::string type;        ///< uint8 ... float64, as NumPy calls it
     std::vector<int> shape;  ///< 2 or 3 numbers, in the order of the indices
     std::vector<int> order;  ///< the indices, that which moves fastest in memory first
     Point spacing{1, 1, 1};  ///< along the indices
     Point origin{0, 0, 0};
+    /// Rows of the matrix whose column d is the axis of index d in space.
+    std::array<Point, 3> direction{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     const void* data = nullptr;
+    std::shared_ptr<const void> memory;  ///< keeps the data alive
 };
 
-/// The samples as the corners of bisected triangles or tetrahedra. Coordinate d of space runs along
-/// index d of the array, whatever the order in memory is.
+/// The samples as the corners of bisected triangles or tetrahedra. Index d of the array runs along
+/// column d of the direction, whatever the order in memory is.
 /// \throw InvalidInput as LatticeBisection, and for a type that no field takes
 std::unique_ptr<Source> make_volume(const Samples& samples);
 /// \param frames of one shape, order, type and place, one at least
-/// \throw InvalidInput likewise
+/// \throw InvalidInput as make_volume(), and where they differ in these
 std::shared_ptr<FrameSource> make_frames(const std::vector<Samples>& frames);
 
 /// Leaves and values of an octree or quadtree, copied.
@@ -106,14 +108,25 @@ struct OctreeArrays {
     /// Coordinates of the corners of the trees along each direction.
     std::array<std::vector<double>, 3> coordinates;
 };
+/// The leaves of an octree as they are kept, and the values at their corners.
+struct OctreeLeaves {
+    std::vector<std::int64_t> leaves;  ///< as in OctreeArrays, in another order
+    std::vector<double> values;        ///< for each corner of each
+    std::vector<std::uint8_t> masked;  ///< for each leaf, or nothing
+};
+class OctreeSource : public PrerolledSource {
+public:
+    virtual OctreeLeaves leaves() const = 0;
+};
 /// \throw InvalidInput where the leaves are no forest, or values at one node differ
-std::unique_ptr<Source> make_octree(const OctreeArrays& arrays);
+std::unique_ptr<OctreeSource> make_octree(const OctreeArrays& arrays);
 
 /// The field of a file, or its frames where it has several.
 struct LoadedField {
     std::unique_ptr<Source> alone;        ///< null where there are frames
     std::shared_ptr<FrameSource> frames;  ///< null where there is one
     std::vector<double> times;            ///< of the frames
+    std::string name;                     ///< of the field
 };
 
 /// \param array name of the field; may be empty where there is only one

@@ -53,6 +53,7 @@ template <class Family>
 LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& array) {
     LoadedField loaded;
     loaded.times = stored.times;
+    loaded.name = stored.fields[index_of(stored.fields, array)].name;
     if (stored.times.size() == 1) {
         loaded.alone = std::make_unique<Stored<Family>>(std::move(stored), array);
         return loaded;

@@ -14,7 +14,7 @@
 
 namespace nestgrid::python {
 
-/// Gives the origin, spacing and axes of samples.
+/// Gives the origin, spacing and axes of samples, the index first that moves fastest in memory.
 /// \throw InvalidInput where the array has another dimension than dim
 template <int dim>
 LatticeGeometry<dim> lattice_geometry(const Samples& samples) {
@@ -24,7 +24,9 @@ LatticeGeometry<dim> lattice_geometry(const Samples& samples) {
     for (std::size_t d = 0; d < 3; ++d) {
         const bool has_index = d < static_cast<std::size_t>(dim);
         const std::size_t index = has_index ? static_cast<std::size_t>(samples.order[d]) : d;
-        geometry.direction[index][d] = 1;
+        for (std::size_t r = 0; r < 3; ++r) {
+            geometry.direction[r][d] = samples.direction[r][index];
+        }
         geometry.spacing[d] = samples.spacing[index];
         if (has_index) geometry.samples[d] = samples.shape[index];
     }
@@ -43,13 +45,15 @@ public:
     using Grid = LatticeBisection<dim>;
 
     explicit Volume(const Samples& samples)
-        : grid_(lattice_geometry<dim>(samples)),
+        : memory_{samples.memory},
+          grid_(lattice_geometry<dim>(samples)),
           field_{lattice_field<Sample>(grid_, samples)},
           hierarchy_{erase(grid_, field_)} {}
 
     AnyHierarchy hierarchy() const override { return &hierarchy_; }
 
 private:
+    std::shared_ptr<const void> memory_;
     Grid grid_;
     LatticeField<Grid, Sample> field_;
     decltype(erase(std::declval<const Grid&>(),
@@ -63,8 +67,12 @@ std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) 
     using Field = LatticeField<Grid, Sample>;
     const auto grid = std::make_shared<const Grid>(lattice_geometry<dim>(frames.front()));
     std::vector<Field> fields;
-    for (const Samples& frame : frames) fields.push_back(lattice_field<Sample>(*grid, frame));
-    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), nullptr);
+    const auto memory = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+    for (const Samples& frame : frames) {
+        fields.push_back(lattice_field<Sample>(*grid, frame));
+        memory->push_back(frame.memory);
+    }
+    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), memory);
 }
 
 /// Calls function(Sample{}) with the type of a name.

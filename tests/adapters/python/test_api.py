@@ -91,9 +91,9 @@ def test_wrong_arguments():
         volume.isosurface(3).outlines()
     with refused("attribute"):
         volume.isosurface(3).isolines(1)
-    with refused("radius of a ball"):
+    with refused("radius is not a number >= 0"):
         volume.isosurface(3, lens=((0, 0, 0), -1))
-    with refused("slope of the lens"):
+    with refused("slope is not a number >= 0"):
         volume.isosurface(3, lens=nestgrid.Lens(nestgrid.ball((0, 0, 0), 1), slope=-1))
     with refused("even the coarsest"):
         volume.slice(plane=((1, 1, 1), (1, 0, 0)), max_triangles=1, blend=2)
@@ -161,7 +161,7 @@ def test_errors_are_those_of_python(tmp_path):
 
 def test_saving_what_cannot_be_saved(tmp_path):
     surface = nestgrid.Volume(CUBE).isosurface(3.5)
-    with refused("ends in none of .ply, .stl, .vtp"):
+    with refused("ends in none of .vtp, .ply, .stl, .obj, .gltf"):
         surface.save(tmp_path / "surface.png")
     with refused("cannot be written", nestgrid.IoError):
         surface.save(tmp_path / "nowhere" / "surface.ply")

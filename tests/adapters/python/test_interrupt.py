@@ -1,7 +1,11 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ctrl-C ends an extraction, and the volume can be used afterwards."""
+"""Ctrl-C ends every method soon, and what it was called on can be used afterwards."""
+import gc
+import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -10,41 +14,179 @@ import pytest
 
 import nestgrid
 
+SOON = 0.5  # seconds from the signal to the exception
+
 
 @pytest.fixture(scope="module")
-def volume():
-    x, y, z = np.meshgrid(*[np.linspace(0, 30, 97, dtype=np.float32)] * 3, indexing="ij")
-    result = nestgrid.Volume(np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x))
+def array():
+    """Noise, so that nothing is coarse: 257 samples along each index."""
+    return np.random.default_rng(1).random((257, 257, 257), np.float32)
+
+
+@pytest.fixture(scope="module")
+def volume(array):
+    result = nestgrid.Volume(array)
     assert result.range[0] < result.range[1]  # the preroll is done
     return result
 
 
-@pytest.fixture
-def interrupt_after():
-    """Does what Ctrl-C does, after so many seconds of processor time."""
-    before = signal.signal(signal.SIGPROF, signal.default_int_handler)
-    yield lambda seconds: signal.setitimer(signal.ITIMER_PROF, seconds)
-    signal.setitimer(signal.ITIMER_PROF, 0)
-    signal.signal(signal.SIGPROF, before)
+@pytest.fixture(scope="module")
+def surface(array):
+    """About 4 million triangles."""
+    part = nestgrid.Volume(array[:97, :97, :97].copy())
+    return part.isosurface(0.5, elements=True, normals=False)
+
+
+def interrupted(function, after=0.05):
+    """Asserts that a real SIGINT ends a call soon.
+
+    after  seconds from the call to the signal
+    """
+    sent = []
+
+    def send():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(after, send)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            function()
+            # A call that was quicker than the signal shows nothing.
+            timer.join()
+            time.sleep(0.01)
+            raise AssertionError("the call ended before the signal came")
+    finally:
+        timer.cancel()
+        timer.join()
+    waited = time.monotonic() - sent[0]
+    assert waited < SOON, f"{waited:.2f} s"
+
+
+PREROLLS = {
+    "offset": {"threshold": 0.1},
+    "visual": {"indicator": "visual", "threshold": 0.1},
+    "numerical": {"indicator": "numerical", "threshold": 0.1},
+    "wavelet": {"indicator": "wavelet", "threshold": 0.1},
+    "blend": {"blend": 2, "threshold": 0.1},
+    "lens": {"lens": ((0, 0, 0), 30)},
+}
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_keyboard_interrupt(volume, threads, interrupt_after):
-    start = time.process_time()
-    whole = volume.isosurface(0.1, threads=threads)
-    needed = time.process_time() - start
-    start = time.process_time()
-    interrupt_after(0.2 * needed)
-    with pytest.raises(KeyboardInterrupt):
-        volume.isosurface(0.1, threads=threads)
-    # Without looking for signals it would be raised after the extraction.
-    assert time.process_time() - start < 0.7 * needed
-    again = volume.isosurface(0.1, threads=threads)
-    np.testing.assert_array_equal(again.triangles, whole.triangles)
+@pytest.mark.parametrize("name", PREROLLS)
+def test_prerolls(array, name, threads):
+    volume = nestgrid.Volume(array)
+    interrupted(lambda: volume.isosurface(0.5, threads=threads, **PREROLLS[name]))
+    # What was begun is no part of what is kept.
+    expected = nestgrid.Volume(array).probe([[1.5, 2.25, 3]], 0.1)
+    np.testing.assert_array_equal(volume.probe([[1.5, 2.25, 3]], 0.1), expected)
 
 
-def test_other_threads_run_meanwhile(volume):
+POINTS = np.random.default_rng(2).random((3_000_000, 3)) * 256
+METHODS = {
+    "isosurface": lambda v: v.isosurface(0.5),
+    "max_triangles": lambda v: v.isosurface(0.5, max_triangles=2_000_000),
+    "slice": lambda v: v.slice(sphere=((128, 128, 128), 100), threshold=0.01),
+    "probe": lambda v: v.probe(POINTS, threads=1),
+}
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_methods(volume, name):
+    interrupted(lambda: METHODS[name](volume))
+
+
+def test_range(array):
+    interrupted(lambda: nestgrid.Volume(array).range)
+
+
+@pytest.mark.parametrize("name", ["isolines", "height_field"])
+def test_methods_in_two_dimensions(name):
+    flat = nestgrid.Volume(np.random.default_rng(1).random((3000, 3000), np.float32))
+    assert flat.range
+    call = {"isolines": lambda: flat.isolines([0.2, 0.5, 0.8]), "height_field": flat.height_field}
+    interrupted(call[name])
+
+
+def test_frames(array):
+    frames = nestgrid.Frames([array, array])
+    interrupted(lambda: frames.at(0.5))
+
+
+def test_octrees():
+    side = np.arange(128)
+    leaves = np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3)
+    leaves = np.hstack([leaves, np.full((len(leaves), 1), 7)])
+    values = np.random.default_rng(1).random(len(leaves))
+    interrupted(lambda: nestgrid.Octree(leaves, values))
+
+
+@pytest.mark.parametrize("name", ["report", "outlines", "isolines"])
+def test_results(surface, name):
+    call = {"report": surface.report, "outlines": surface.outlines}
+    if name == "isolines":
+        heights = nestgrid.Volume(np.random.default_rng(1).random((1500, 1500), np.float32))
+        graph = heights.height_field()
+        call["isolines"] = lambda: graph.isolines(np.linspace(0, 1, 60))
+    interrupted(call[name])
+
+
+@pytest.mark.parametrize("suffix", [".vtp", ".ply", ".stl", ".obj", ".gltf"])
+def test_save(surface, suffix, tmp_path):
+    interrupted(lambda: surface.save(tmp_path / ("x" + suffix)))
+    assert os.listdir(tmp_path) == []
+
+
+def test_marching_cubes(array):
+    interrupted(lambda: nestgrid.marching_cubes(array, 0.5))
+
+
+def test_load(tmp_path):
+    pytest.importorskip("vtkmodules.vtkIOXML")
+    path = tmp_path / "x.vti"
+    path.write_bytes(b"<VTKFile>" + b" " * 100 + b"</VTKFile>")
+    slow = tmp_path / "slow"
+    slow.write_text("#!/bin/sh\nexec sleep 20\n")
+    slow.chmod(0o755)
+    executable, sys.executable = sys.executable, str(slow)
+    try:
+        interrupted(lambda: nestgrid.load(path))
+    finally:
+        sys.executable = executable
+
+
+def test_the_end_of_python_waits_for_abandoned_work(tmp_path):
+    """Work that does not hear is left to end, also where the program ends meanwhile."""
+    program = """
+import os, signal, threading, numpy as np, nestgrid
+volume = nestgrid.Volume(np.random.default_rng(1).random((129, 129, 129), np.float32))
+surface = volume.isosurface(0.5, elements=True, normals=False)
+threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    for _ in range(20):
+        surface.report()
+except KeyboardInterrupt:
+    del surface, volume
+    print("interrupted")
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n", "")
+
+
+def test_same_result_afterwards(volume):
+    interrupted(lambda: volume.isosurface(0.5))
+    gc.collect()
+    region = {"lens": ((0, 0, 0), 20), "threshold": 0.2}
+    first = volume.isosurface(0.5, **region)
+    again = nestgrid.Volume(volume.array).isosurface(0.5, **region)
+    np.testing.assert_array_equal(first.vertices, again.vertices)
+
+
+def test_other_threads_run_meanwhile(array):
     """The lock of Python is released: another thread counts while a surface is drawn."""
+    volume = nestgrid.Volume(array[:97, :97, :97].copy())
     steps = [0]
     done = threading.Event()
 
@@ -56,7 +198,7 @@ def test_other_threads_run_meanwhile(volume):
     thread = threading.Thread(target=count)
     thread.start()
     before = steps[0]
-    volume.isosurface(0.1, threads=1)
+    volume.isosurface(0.5, threads=1)
     counted = steps[0] - before
     done.set()
     thread.join()

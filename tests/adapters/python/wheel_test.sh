@@ -19,6 +19,8 @@ library=$(echo site/nestgrid/_nestgrid.*.so)
 PYTHONPATH=$work/site "$python" - <<'EOF'
 import numpy as np, nestgrid, os
 assert nestgrid.__file__.startswith(os.getcwd()), nestgrid.__file__
+assert os.path.exists(f"site/nestgrid-{nestgrid.__version__}.dist-info"), nestgrid.__version__
+assert os.path.exists("site/nestgrid/_nestgrid.pyi")
 x, y, z = np.meshgrid(*[np.linspace(-1, 1, 17)] * 3, indexing="ij")
 surface = nestgrid.Volume(1 - np.sqrt(x * x + y * y + z * z)).isosurface(0.5)
 assert surface.report()["closed"] and len(surface.triangles) > 100

@@ -38,13 +38,16 @@ def _volume(image: vtkImageData, array: vtkDataArray) -> nestgrid.Volume:
     samples = vtk_to_numpy(array)
     if len(samples) != image.GetNumberOfPoints():
         raise nestgrid.InvalidInput(f"'{array.GetName()}' is no array of points")
-    if not image.GetDirectionMatrix().IsIdentity():
-        raise nestgrid.InvalidInput("image data whose axes are turned in space are not drawn")
     extent = image.GetExtent()
-    spacing = image.GetSpacing()
-    origin = [x + extent[2 * d] * spacing[d] for d, x in enumerate(image.GetOrigin())]
-    shape = image.GetDimensions()
-    return nestgrid.Volume(samples.reshape(shape, order="F"), spacing, origin)
+    origin = [0.0, 0.0, 0.0]
+    image.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], origin)
+    matrix = image.GetDirectionMatrix()
+    return nestgrid.Volume(
+        samples.reshape(image.GetDimensions(), order="F"),
+        image.GetSpacing(),
+        origin,
+        direction=[[matrix.GetElement(r, c) for c in range(3)] for r in range(3)],
+    )
 
 
 def _octree(grid: vtkHyperTreeGrid, array: vtkDataArray) -> nestgrid.Octree:

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One call from Python: the threads it may use, and whether it is to end.
+#pragma once
+
+#include <atomic>
+#include <variant>
+
+#include <nestgrid/hierarchy.hpp>
+
+#include "stoppable.hpp"
+#include "thread_executor.hpp"
+
+namespace nestgrid::python {
+
+/// A hierarchy with values of either type, borrowed.
+using AnyHierarchy = std::variant<const Hierarchy<float>*, const Hierarchy<double>*>;
+
+/// Invariant: once stop() was called, every algorithm that asks a hierarchy given by with(), or
+/// asks go_on(), throws Stopped. Safe for several threads.
+class Call {
+public:
+    /// \throw InvalidInput as ThreadExecutor
+    explicit Call(int threads) : executor_(threads) {}
+
+    const Executor& executor() const { return executor_; }
+    void stop() { stopped_.store(true, std::memory_order_relaxed); }
+    bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+
+    /// Calls function(hierarchy) with the Hierarchy<float> or Hierarchy<double>, which throws
+    /// Stopped when this call is to end.
+    template <class Function>
+    decltype(auto) with(const AnyHierarchy& any, const Function& function) const {
+        return std::visit(
+            [&]<class Real>(const Hierarchy<Real>* hierarchy) -> decltype(auto) {
+                const Stoppable<Real> stoppable(*hierarchy, stopped_);
+                return function(static_cast<const Hierarchy<Real>&>(stoppable));
+            },
+            any);
+    }
+
+private:
+    ThreadExecutor executor_;
+    std::atomic<bool> stopped_{false};
+};
+
+}  // namespace nestgrid::python
