@@ -71,16 +71,16 @@ def ply(file: IO[bytes], vertices: np.ndarray, normals: np.ndarray, triangles: n
 
 def stl(file: IO[bytes], vertices: np.ndarray, triangles: np.ndarray) -> None:
     """Writes a binary STL file, whose numbers are float."""
-    corners = vertices[triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    length = np.linalg.norm(across, axis=1, keepdims=True)
-    facets = np.zeros(
-        len(triangles), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")]
-    )
-    facets["normal"] = np.divide(across, length, out=np.zeros_like(across), where=length > 0)
-    facets["corners"] = corners
     file.write(b"nestgrid".ljust(80) + np.array(len(triangles), "<u4").tobytes())
-    put(file, facets)
+    facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    for begin in range(0, len(triangles), 1 << 16):
+        corners = vertices[triangles[begin : begin + (1 << 16)]]
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        length = np.linalg.norm(across, axis=1, keepdims=True)
+        facets = np.zeros(len(corners), facet)
+        facets["normal"] = np.divide(across, length, out=np.zeros_like(across), where=length > 0)
+        facets["corners"] = corners
+        put(file, facets)
 
 
 def obj(

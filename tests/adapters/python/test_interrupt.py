@@ -45,9 +45,10 @@ def interrupted(function, after=0.05):
     sent = []
 
     def send():
-        sent.append(time.monotonic())
+        sent.extend((time.monotonic(), time.process_time()))
         os.kill(os.getpid(), signal.SIGINT)
 
+    gc.collect()  # a signal that comes in a destructor is lost
     timer = threading.Timer(after, send)
     timer.start()
     try:
@@ -60,7 +61,8 @@ def interrupted(function, after=0.05):
     finally:
         timer.cancel()
         timer.join()
-    waited = time.monotonic() - sent[0]
+    # Where the machine has other work, the processor time of this process tells.
+    waited = min(time.monotonic() - sent[0], time.process_time() - sent[1])
     assert waited < SOON, f"{waited:.2f} s"
 
 
