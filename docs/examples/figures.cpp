@@ -21,6 +21,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
+#include "colour_figure.hpp"
 #include "discontinuous_figure.hpp"
 #include "growth_figures.hpp"
 #include "indicator_figures.hpp"
@@ -433,6 +434,7 @@ int main(int argc, char** argv) {
         {"slice_growth", slice_growth_figure},
         {"height_field", height_field_figure},
         {"own_grid", own_grid_figure},
+        {"refine_colours", refine_colours_figure},
         {"time", time_figure}};
     const auto figure = argc == 3 ? figures.find(argv[1]) : figures.end();
     if (figure == figures.end()) {
