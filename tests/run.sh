@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/packages.sh
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}" \
-    "${python_packages[@]}" "${python_test_packages[@]}" "${paraview_packages[@]}" \
+    "${data_packages[@]}" "${python_packages[@]}" "${python_test_packages[@]}" "${paraview_packages[@]}" \
     "${view_packages[@]}" "${wasm_packages[@]}"
 # Its Python conflicts with that of VTK.
 unpack_package python3-paraview build/paraview
