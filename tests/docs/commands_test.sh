@@ -5,12 +5,15 @@
 # Commands of the README and the pages, each line of a block of code marked "sh":
 #   nestgrid ...                        is run, with small files in the place of the reader's
 #                                       its pictures in docs/figures are shown by the same page
+#   cp /usr/share/mricron/templates/... names a volume of the Debian package mricron-data
 #   build/release/docs/examples/figures is run, and makes a figure that the same page shows
 #   other programs of build/release     are programs of this build, with a test or benchmark of their own
 #   build/python/bin/python SCRIPT      is run with the package of this build, if there is one and a
-#                                       display, and makes a figure that the same page shows
+#                                       display, and makes a figure that the same page shows,
+#                                       unless it is a benchmark, which has a test of its own
 #   cmake -B ...                        configures
 #   cmake, ctest --preset NAME          name a preset
+#   doxygen docs/reference/Doxyfile     is run by the test "reference"
 #   nestgrid view ...                   is started, and interrupted when it has printed its address
 #   bash SCRIPT PICTURE ...             name a script, and pictures that the same page shows
 # Any other command fails the test, and so does a figure that no command makes.
@@ -29,9 +32,10 @@ fail() {
     failures=$((failures + 1))
 }
 
-# What the commands call head.nii.gz, part.poly and own_grid.obj.
+# What the commands call head.nii.gz, brain.nii.gz, part.poly and own_grid.obj.
 "$4" "$work" || exit 1
 cp v.nii.gz head.nii.gz
+cp v.nii.gz brain.nii.gz
 cp "$source/docs/examples/grids/cube.poly" part.poly
 "$build/docs/examples/own_grid" >out || exit 1
 
@@ -52,21 +56,27 @@ run() {
     "$@" >out 2>&1 || fail "$page: '$*' ended with status $?: $(cat out)"
 }
 
+# The page shows a figure.
+shown_here() {
+    local place
+    place=$(realpath -m --relative-to="$(dirname "$page")" "$source/$1")
+    grep -qF "($place)" "$page" || fail "$page does not show $1"
+    echo "$1" >>made
+}
+
 # A figure, by its own command, which the page shows.
 figure() {
     local name=$1 file=$2
     run "$build/docs/examples/figures" "$name" "$work/$name.png"
     [ -s "$name.png" ] || fail "$page: figure $name was not written"
     [ -s "$source/$file" ] || fail "$page: $file is missing"
-    grep -qF "(${file#"$base/"})" "$page" || fail "$page does not show $file"
-    echo "$file" >>made
+    shown_here "$file"
 }
 
 # A figure that the program makes, which the page shows.
 picture() {
     [ -s "$source/$1" ] || fail "$page: $1 is missing"
-    grep -qF "(${1#"$base/"})" "$page" || fail "$page does not show $1"
-    echo "$1" >>made
+    shown_here "$1"
 }
 
 # Starts a server, which is to print its address and to end when it is interrupted.
@@ -112,8 +122,12 @@ python() {
         start=(bash "$source/tests/adapters/python/paraview/pvpython.sh" "$source" "$package" "$python")
         set -- "${@:4}"
     fi
-    picture "$2"
     [ -s "$source/$1" ] || fail "$page: there is no $1"
+    if [[ "$1" == tests/benchmarks/* ]]; then
+        grep -qF "/${1##*/}" "$source/tests/benchmarks/CMakeLists.txt" || fail "$page: no test runs $1"
+        return
+    fi
+    picture "$2"
     [ -n "$python" ] && command -v Xvfb >/dev/null || return 0
     PYTHONPATH=$package "${start[@]}" "$source/$1" "${2##*/}" >out 2>&1
     case $? in
@@ -127,6 +141,8 @@ check() {
     local file
     case "$1" in
     nestgrid) nestgrid "${@:2}" ;;
+    cp) [ "$2 $3" = "/usr/share/mricron/templates/ch2bet.nii.gz brain.nii.gz" ] || fail "$page: '$*'" ;;
+    doxygen) [ "$2" = docs/reference/Doxyfile ] || fail "$page: '$*' is tested by nothing" ;;
     build/python/bin/python) python "${@:2}" ;;
     build/release/docs/examples/figures) figure "$2" "$3" ;;
     build/release/docs/examples/*)
@@ -159,9 +175,7 @@ check() {
 
 : >made
 : >known
-for page in "$source"/README.md "$source"/docs/*.md; do
-    base=docs
-    [ "$page" = "$source/README.md" ] && base=.
+for page in "$source"/README.md "$source"/docs/*.md "$source"/docs/tutorial/*.md; do
     while IFS= read -r line; do
         eval "words=($line)"
         check "${words[@]}"

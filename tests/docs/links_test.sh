@@ -19,7 +19,7 @@ anchors() {
     sed -nE 's/^#+ //p' "$1" | tr '[:upper:]' '[:lower:]' | sed -E "s/[^a-z0-9 _-]//g; s/ /-/g"
 }
 
-for page in README.md CHANGELOG.md docs/*.md; do
+for page in README.md CHANGELOG.md docs/*.md docs/tutorial/*.md; do
     while IFS= read -r target; do
         case "$target" in http*) continue ;; esac
         count=$((count + 1))
@@ -31,7 +31,7 @@ for page in README.md CHANGELOG.md docs/*.md; do
         esac
     done < <(awk '/^```/ { inside = !inside } !inside' "$page" | grep -oE '\]\([^) ]+\)' | sed 's/^](//; s/)$//')
 done
-for page in docs/*.md; do
+for page in docs/*.md docs/tutorial/*.md; do
     name=${page#docs/}
     [ "$name" = index.md ] || grep -qF "($name)" docs/index.md || fail "the index does not name $name"
 done

@@ -24,7 +24,7 @@ claims() {
          name && NF { print name "\t" $0 }' "$1"
 }
 
-for page in "$source"/README.md "$source"/docs/*.md; do
+for page in "$source"/README.md "$source"/docs/*.md "$source"/docs/tutorial/*.md; do
     while IFS=$'\t' read -r name line; do
         count=$((count + 1))
         if [ ! -e "$work/$name" ]; then

@@ -1,8 +1,8 @@
-# Every "<!-- file [part] -->" in the README and docs/*.md stands before a block of code: it must be what
+# Every "<!-- file [part] -->" in the README, docs/*.md and docs/tutorial/*.md stands before a block of code: it must be what
 # lies between the lines "// [part]" ("# [part]" in Python) of the file, up to indentation. Behind "<!-- file -->" it must be a
 # part of the file.
 cmake_policy(SET CMP0007 NEW)
-file(GLOB pages ${source}/README.md ${source}/docs/*.md)
+file(GLOB pages ${source}/README.md ${source}/docs/*.md ${source}/docs/tutorial/*.md)
 set(count 0)
 foreach(page IN LISTS pages)
   file(READ ${page} text)
