@@ -173,7 +173,11 @@ try {
   const slide = async (id, pattern) => {
     await tabTo(id);
     const was = await valueText(id);
+    const position = () => page.$eval(`#${id}`, (e) => Number(e.value));
+    const from = await position();
     for (let i = 0; i < 5; ++i) await press('ArrowRight');
+    // Each key counts, also where it moves a slider by less than its value is rounded to.
+    check((await position()) === from + 5, `five keys move ${id} by ${(await position()) - from}`);
     await page.waitForFunction((name, old) => document.getElementById(name).getAttribute('aria-valuetext') !== old,
       { timeout: 5000 }, id, was).catch(() => check(false, `arrow keys do not move ${id}`));
     check(pattern.test(await valueText(id)), `${id} is read as ${await valueText(id)}`);
