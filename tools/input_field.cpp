@@ -47,6 +47,8 @@ InputField read_volumes(Input& input, const Paths& paths, const std::vector<doub
     field.leaf_elements = leaf_count(nestgrid::LatticeBisection<3>(first.geometry));
     field.geometry = first.geometry;
     field.volumes = volumes;
+    field.name_in_file = first.name;
+    field.length_unit = first.length_unit;
     return field;
 }
 

@@ -24,6 +24,8 @@ struct InputField : FrameField {
     std::function<double(std::size_t)> value{};
     std::optional<nestgrid::LatticeGeometry<3>> geometry{};  ///< of volumes
     std::shared_ptr<const std::vector<Volume>> volumes{};    ///< the files; null for others
+    std::string name_in_file{};  ///< of the samples of volumes; empty where the file gives none
+    std::string length_unit{};   ///< such as mm; empty where it is not known
 };
 
 /// Reads one or more files of one layout, whose frames must be as many as there are times. The

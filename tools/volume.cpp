@@ -12,6 +12,7 @@
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
 #include <vtkMatrix4x4.h>
+#include <vtkNIFTIImageHeader.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -68,6 +69,8 @@ std::string whole(double number) {
 struct VtkVolume {
     vtkSmartPointer<vtkImageData> image;
     nestgrid::LatticeGeometry<3> geometry;
+    std::string name{};
+    std::string length_unit{};
 };
 
 struct Reading {
@@ -135,6 +138,15 @@ void set_geometry(VtkVolume& volume) {
     for (std::size_t i = 0; i < 9; ++i) volume.geometry.direction[i / 3][i % 3] = direction[i];
 }
 
+std::string text_of(const char* text) { return text == nullptr ? "" : text; }
+
+/// The unit of length that xyzt_units of a NIfTI header has.
+std::string nifti_length_unit(int units) {
+    constexpr std::array<const char*, 4> names{"", "m", "mm", "µm"};
+    const auto code = static_cast<std::size_t>(units) & 7U;
+    return code < names.size() ? names[code] : "";
+}
+
 VtkVolume read_nifti(const Reading& reading) {
     const vtkNew<vtkNIFTIImageReader> reader;
     reading.listen(reader);
@@ -151,6 +163,8 @@ VtkVolume read_nifti(const Reading& reading) {
     const vtkMatrix4x4* matrix =
         reader->GetSFormMatrix() != nullptr ? reader->GetSFormMatrix() : reader->GetQFormMatrix();
     if (matrix != nullptr) set_direction(volume, matrix);
+    volume.name = text_of(reader->GetNIFTIHeader()->GetIntentName());
+    volume.length_unit = nifti_length_unit(reader->GetNIFTIHeader()->GetXYZTUnits());
     return volume;
 }
 
@@ -174,6 +188,9 @@ VtkVolume read_vti(const Reading& reading, const std::string& array) {
         data->SetActiveScalars(data->GetArray(0)->GetName());
     }
     set_geometry(volume);
+    if (data->GetScalars() != nullptr) volume.name = text_of(data->GetScalars()->GetName());
+    // VTK's own name for what nobody has named.
+    if (volume.name == "ImageScalars") volume.name.clear();
     return volume;
 }
 
@@ -200,10 +217,20 @@ SampleLayout raw_layout(const fs::path& path, const RawFormat& raw) {
 /// What precedes the samples in a parcel.
 struct Description {
     std::array<char, 8> type{};
+    std::array<char, 64> name{};
+    std::array<char, 16> length_unit{};
     nestgrid::LatticeGeometry<3> geometry;
 
     Description(const std::string& type_name, const nestgrid::LatticeGeometry<3>& g) : geometry{g} {
-        std::copy_n(type_name.begin(), std::min(type.size() - 1, type_name.size()), type.begin());
+        put(type_name, type);
+    }
+    /// Puts a text that a file gives, cut short, without what a terminal obeys.
+    template <std::size_t size>
+    static void put(const std::string& text, std::array<char, size>& to) {
+        const std::size_t count = std::min(size - 1, text.size());
+        std::transform(
+            text.begin(), text.begin() + static_cast<std::ptrdiff_t>(count), to.begin(),
+            [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127 ? '?' : c; });
     }
     std::size_t sample_count() const {
         std::size_t count = 1;
@@ -233,8 +260,10 @@ void check_samples(const fs::path& path, const Description& volume, const std::b
 }
 
 void read_layout(const SampleLayout& layout, std::size_t bytes, Parcel& parcel) {
-    const Description description(layout.type, layout.geometry);
-    parcel.put(std::span(&description, 1));
+    Description description(layout.type, layout.geometry);
+    Description::put(layout.name, description.name);
+    Description::put(layout.unit, description.length_unit);
+    parcel.put(std::span<const Description>(&description, 1));
     const std::span<std::byte> samples = parcel.append(bytes);
     read_samples(layout, samples);
     check_samples(layout.path, description, samples.data());
@@ -257,14 +286,16 @@ void read_with_vtk(const fs::path& path, const std::string& array, Parcel& parce
     if (type.empty()) {
         throw InvalidInput(path.string() + " has samples of a type that is not read");
     }
-    const Description description(type, volume.geometry);
+    Description description(type, volume.geometry);
+    Description::put(volume.name, description.name);
+    Description::put(volume.length_unit, description.length_unit);
     const std::size_t count = description.sample_count();
     if (static_cast<std::size_t>(scalars->GetNumberOfTuples()) != count) {
         throw IoError(path.string() + " holds fewer samples than its header says");
     }
     auto* data = static_cast<std::byte*>(scalars->GetVoidPointer(0));
     check_samples(path, description, data);
-    parcel.put(std::span(&description, 1));
+    parcel.put(std::span<const Description>(&description, 1));
     parcel.put_last_use({data, count * bytes_of(type)});
 }
 
@@ -274,6 +305,8 @@ Volume open_volume(std::shared_ptr<const Parcel> parcel) {
     const std::span<const std::byte> samples = parcel->block<std::byte>(1);
     Volume volume;
     volume.type = description.type.data();
+    volume.name = description.name.data();
+    volume.length_unit = description.length_unit.data();
     volume.geometry = description.geometry;
     const auto type = std::find_if(types.begin(), types.end(),
                                    [&](const NamedType& t) { return volume.type == t.name; });

@@ -28,7 +28,9 @@ struct Volume {
     std::shared_ptr<const void> memory;   ///< where the samples are
     vtkSmartPointer<vtkImageData> image;  ///< borrows the samples
     nestgrid::LatticeGeometry<3> geometry;
-    std::string type;  ///< of the samples, like uint8
+    std::string type;         ///< of the samples, like uint8
+    std::string name;         ///< of the samples in the file; empty where it gives none
+    std::string length_unit;  ///< such as mm; empty where the file gives none
 
     std::size_t sample_count() const;
 };

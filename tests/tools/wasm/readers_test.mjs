@@ -77,6 +77,31 @@ for (const name of names.filter((n) => n.endsWith('_text.vti'))) {
 }
 await refused(fileAt(join(vtis, 'lz4.vti')), /packed by 'vtkLZ4DataCompressor'/);
 
+// What a file calls its samples, and its unit of length.
+{
+  const bytes = readFileSync(join(volumes, 'v.nii'));
+  bytes.fill(0, 328, 344);
+  bytes.write('density', 328);
+  for (const [units, expected] of [[0, undefined], [1, 'm'], [2 | 8, 'mm'], [3, 'µm'], [7, undefined]]) {
+    bytes[123] = units;
+    const { name, lengthUnit } = await openVolume(new File([bytes], 'named.nii'));
+    assert.deepEqual([name, lengthUnit], ['density', expected], `NIfTI with units ${units}`);
+  }
+  const nrrd = (field) =>
+    new File(
+      [`NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n${field}\n\n`, '12345678'],
+      'units.nrrd',
+    );
+  for (const [field, expected] of [
+    ['space units: "mm" "mm" "mm"', 'mm'],
+    ['units: "um" "um" "um"', 'um'],
+    ['space units: "mm" "mm" "s"', ''],
+    ['# no units', ''],
+  ]) {
+    assert.equal((await openVolume(nrrd(field))).lengthUnit, expected, field);
+  }
+}
+
 // One volume in every format.
 const bytes = readFileSync(join(volumes, 'v.raw'));
 const rawFormat = { samples: [20, 24, 18], type: 'uint8', spacing: [0.5, 1, 2] };

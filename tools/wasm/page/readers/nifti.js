@@ -11,6 +11,7 @@ import {
   checkFound,
   checkedBytes,
   geometryOfSteps,
+  printable,
   swapBytes,
 } from './volume.js';
 
@@ -77,10 +78,22 @@ class Header {
   getFloat32(at) {
     return this.#view.getFloat32(at, this.littleEndian);
   }
+  getByte(at) {
+    return this.#view.getUint8(at);
+  }
+  /** The text that ends with the first 0, or has so many bytes. */
+  text(at, count) {
+    const bytes = new Uint8Array(this.#view.buffer, at, count);
+    const end = bytes.indexOf(0);
+    return new TextDecoder().decode(end < 0 ? bytes : bytes.subarray(0, end));
+  }
   get magic() {
     return this.#view.getUint32(344, false);
   }
 }
+
+/** Of xyzt_units. */
+const lengthUnits = { 1: 'm', 2: 'mm', 3: 'µm' };
 
 function samplesOf(name, header) {
   const dimensions = header.getInt16(40);
@@ -113,6 +126,8 @@ export async function openNifti(file) {
     type,
     samples,
     ...geometryOf(header),
+    name: printable(header.text(328, 16)),
+    lengthUnit: lengthUnits[header.getByte(123) & 7],
     bytes,
     async read(target) {
       await stream.skip(start - headerBytes);

@@ -11,6 +11,7 @@ import {
   checkFound,
   checkedBytes,
   geometryOfSteps,
+  printable,
   quoted,
   swapBytes,
 } from './volume.js';
@@ -90,6 +91,13 @@ function geometryOf(fields) {
   return { origin, ...geometryOfSteps([axes.slice(0, 3), axes.slice(3, 6), axes.slice(6)]) };
 }
 
+/** The unit that is listed in quotes, where it is that of every axis. */
+function lengthUnitOf(fields) {
+  const list = fields.get('space units') ?? fields.get('units') ?? '';
+  const units = new Set([...list.matchAll(/"([^"]*)"/g)].map((match) => match[1]));
+  return units.size === 1 ? printable([...units][0]) : '';
+}
+
 function packingOf(name, encoding) {
   if (encoding === 'raw') return null;
   if (encoding === 'gzip' || encoding === 'gz') return 'gzip';
@@ -126,6 +134,8 @@ export async function openNrrd(file) {
     type,
     samples,
     ...geometryOf(fields),
+    name: printable(fields.get('content') ?? ''),
+    lengthUnit: lengthUnitOf(fields),
     bytes,
     async read(target) {
       const stream = new ByteStream(

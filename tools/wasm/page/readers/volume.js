@@ -6,6 +6,7 @@
 //   samples           three counts, x first
 //   spacing, origin, direction   as in LatticeGeometry (lattice.hpp), the direction as nine numbers
 //   name              of the field, where the file has one
+//   lengthUnit        such as mm, where the file has one
 //   bytes             of all samples
 //   read(target)      fills a Uint8Array of so many bytes with the samples, least byte first
 //
@@ -39,6 +40,11 @@ const mostAlong = 2 ** 20;
 export function quoted(text) {
   const short = (text ?? '').slice(0, 40).replace(/[^ -~]/g, '?');
   return `'${short}${(text ?? '').length > 40 ? '...' : ''}'`;
+}
+
+/** A text that a file gives, cut short, without what cannot be printed. */
+export function printable(text) {
+  return text.slice(0, 63).replace(/[\0-\x1f\x7f]/g, '?');
 }
 
 /** The bytes of samples. Throws where no volume has them, and where memory does not suffice. */

@@ -195,7 +195,8 @@ export async function openVti(file) {
     type,
     ...grid,
     bytes,
-    name: array.attributes.Name,
+    // VTK's own name for what nobody has named.
+    name: array.attributes.Name === 'ImageScalars' ? '' : array.attributes.Name,
     async read(target) {
       await fill(target);
       if (bigEndian && !isText) swapBytes(target, bytesOfType[type]);
