@@ -3,33 +3,10 @@
 #include "explored_field.hpp"
 
 #include <limits>
-#include <numeric>
 
 #include <nestgrid/shape.hpp>
 
 namespace nestgrid::view {
-
-double Histogram::dividing_value() const {
-    const double total = std::accumulate(counts.begin(), counts.end(), 0.0);
-    double sum = 0;
-    for (std::size_t i = 0; i < bins; ++i) sum += static_cast<double>(i) * counts[i];
-    double below = 0;
-    double sum_below = 0;
-    double best = 0;
-    double cut = bins / 2.0;
-    for (std::size_t i = 0; i + 1 < bins; ++i) {
-        below += counts[i];
-        sum_below += static_cast<double>(i) * counts[i];
-        if (below == 0 || below == total) continue;
-        const double apart = sum_below / below - (sum - sum_below) / (total - below);
-        const double between = below * (total - below) * apart * apart;
-        if (between > best) {
-            best = between;
-            cut = static_cast<double>(i) + 1;
-        }
-    }
-    return least + cut / bins * (greatest - least);
-}
 
 template <class Real>
 std::array<Point, 2> box_of(const Hierarchy<Real>& hierarchy) {

@@ -8,6 +8,27 @@
 
 namespace nestgrid::view {
 
+namespace {
+
+/// The name of a file without what tells its format, such as .nii.gz.
+std::string stem_of(const std::filesystem::path& path) {
+    const std::filesystem::path stem = path.stem();
+    return (path.extension() == ".gz" ? stem.stem() : stem).string();
+}
+
+void describe_volumes(ExploredField& field, const std::vector<Volume>& volumes) {
+    with_samples(volumes.front(), [&]<class Sample>(std::span<const Sample> first) {
+        std::vector<std::span<const Sample>> frames;
+        for (const Volume& volume : volumes) {
+            frames.emplace_back(static_cast<const Sample*>(volume.image->GetScalarPointer()),
+                                first.size());
+        }
+        describe_samples(field, frames);
+    });
+}
+
+}  // namespace
+
 ExploredField read_explored(Input& input, const Paths& more, const std::vector<double>& times) {
     const std::filesystem::path path = input.path;
     InputField read = read_field(input, more, times);
@@ -20,7 +41,15 @@ ExploredField read_explored(Input& input, const Paths& more, const std::vector<d
             ExploredField f;
             static_cast<FrameField&>(f) = read;
             f.box = read.geometry ? box_of(*read.geometry) : box_of(*first);
-            f.histogram = histogram_of(read.value_count, read.value);
+            if (read.volumes) {
+                describe_volumes(f, *read.volumes);
+                f.name = !input.array.empty()         ? input.array
+                         : !read.name_in_file.empty() ? read.name_in_file
+                                                      : stem_of(path);
+            } else {
+                describe_values(f, read.value_count, read.value);
+            }
+            f.length_unit = read.length_unit;
             f.title = path.filename().string();
             if (!more.empty()) f.title += " … " + more.back().filename().string();
             return f;

@@ -43,7 +43,7 @@ ExploredField explored_samples(const LatticeGeometry<3>& geometry, std::span<con
     ExploredField f =
         still_field(grid, LatticeField<Grid, Sample>(*grid, samples), std::move(memory));
     f.box = box_of(geometry);
-    f.histogram = histogram_of(samples.size(), [&](std::size_t i) { return samples[i]; });
+    describe_samples(f, std::vector{samples});
     return f;
 }
 
@@ -60,8 +60,7 @@ ExploredField explored_samples(const LatticeGeometry<3>& geometry,
     for (const auto& samples : frames) fields.emplace_back(*grid, samples);
     ExploredField f = moving_field(grid, std::move(fields), std::move(times), std::move(memory));
     f.box = box_of(geometry);
-    const auto first = frames.front();
-    f.histogram = histogram_of(first.size(), [&](std::size_t i) { return first[i]; });
+    describe_samples(f, frames);
     return f;
 }
 

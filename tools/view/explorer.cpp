@@ -212,6 +212,11 @@ Explorer::Explorer(ExploredField field, const Executor& executor)
         least_ = std::min(least_, frame.least());
         greatest_ = std::max(greatest_, frame.greatest());
     }
+    if (field_.range) {
+        least_ = (*field_.range)[0];
+        greatest_ = (*field_.range)[1];
+    }
+    usual_range_ = field_.usual_range.value_or(std::array{least_, greatest_});
     preroll_seconds_ = seconds_since(start);
 }
 
@@ -221,14 +226,18 @@ std::string Explorer::info() const {
     JsonText text;
     text.open('{').key("title").string(field_.title).key("name").string(field_.name);
     text.key("least").number(least_).key("greatest").number(greatest_);
-    text.key("box").open('[');
+    text.key("usual_range").numbers(usual_range_).key("box").open('[');
     for (const Point& corner : field_.box) text.numbers(corner);
     text.close(']').key("times").numbers(field_.times);
-    text.key("isovalue").number(counted ? h.dividing_value() : (least_ + greatest_) / 2);
+    text.key("isovalue").number(field_.isovalue.value_or((least_ + greatest_) / 2));
     text.key("histogram").open('{').key("least").number(h.least);
     text.key("greatest").number(h.greatest).key("counts");
     text.numbers(counted ? std::span<const double>(h.counts) : std::span<const double>{});
-    text.close('}').key("nodes").number(static_cast<double>(offsets_.front().node_count()));
+    text.close('}').key("length_unit").string(field_.length_unit);
+    text.key("samples")
+        .number(static_cast<double>(field_.samples))
+        .key("nodes")
+        .number(static_cast<double>(offsets_.front().node_count()));
     text.key("preroll_seconds").number(preroll_seconds_);
     return text.close('}').text();
 }
@@ -278,7 +287,7 @@ const SweptIndicator& Explorer::swept_of(IndicatorName name, std::size_t frame) 
     }
     std::optional<SweptIndicator>& swept = swept_->frames[frame];
     if (swept) return *swept;
-    const double tau = 0x1p-20 * (greatest_ - least_);
+    const double tau = 0x1p-20 * (usual_range_[1] - usual_range_[0]);
     swept.emplace(std::visit(
         [&](const auto& hierarchy) {
             if (name == IndicatorName::visual) return visual_indicator(*hierarchy, {.tau = tau});
@@ -300,7 +309,7 @@ const SweptIndicator& Explorer::size_for(const Moment& moment, double slope) {
 
 double Explorer::greatest_threshold(IndicatorName indicator) const {
     if (indicator == IndicatorName::visual) return 2;
-    const double range = greatest_ - least_;
+    const double range = usual_range_[1] - usual_range_[0];
     if (!(range > 0)) return 1;
     // A gradient changes by a few ranges over the height of an element, which is a part of its
     // diameter.

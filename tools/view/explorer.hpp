@@ -41,8 +41,10 @@ public:
     /// \throw GridError as HierarchicalIndicator
     explicit Explorer(ExploredField field, const Executor& executor);
 
-    /// What a page needs to begin with, as JSON: a title, the name of the field, its range, box,
-    /// times, a histogram, an isovalue to begin with, nodes, and seconds of the preroll.
+    /// What a page needs to begin with, as JSON: a title, the name of the field, its range, that
+    /// of nearly all values (the same unless few lie far off), box,
+    /// unit of length (empty where it is not known), times, a histogram, an isovalue to begin with,
+    /// samples (0 where the field has none), nodes, and seconds of the preroll.
     std::string info() const;
 
     /// Draws a frame.
@@ -75,6 +77,7 @@ private:
     std::vector<HierarchicalIndicator> offsets_;  // of the frames
     double least_ = 0;                            // of all frames
     double greatest_ = 0;
+    std::array<double, 2> usual_range_{};  // of the values, or of nearly all
     double preroll_seconds_ = 0;
 
     /// The last indicator other than offsets: of the frames that have needed it, and between them.
