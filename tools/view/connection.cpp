@@ -49,6 +49,11 @@ bool Connection::poll_for(short events, milliseconds time) const {
     return poll(&one, 1, static_cast<int>(time.count())) > 0;
 }
 
+bool Connection::is_open() const {
+    pollfd one{socket_, POLLRDHUP, 0};
+    return poll(&one, 1, 0) <= 0 && !must_end();
+}
+
 bool Connection::must_end() const {
     if (!*stopping_) return false;
     if (!end_at_) end_at_ = Clock::now() + stopping_time;

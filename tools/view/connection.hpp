@@ -30,6 +30,9 @@ public:
     /// \return whether there is one within 10 seconds; while stopping, within 0.3 seconds
     bool wait();
 
+    /// Whether the other side still waits for an answer: it has not closed the connection.
+    bool is_open() const;
+
     bool is_readable() const override;
     bool is_writable() const override;
     /// Ends with an error where a head is too long or takes more than 5 seconds.

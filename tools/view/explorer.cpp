@@ -18,6 +18,7 @@
 
 #include "frame_reply.hpp"
 #include "surface_arrays.hpp"
+#include "watched_work.hpp"
 
 namespace nestgrid::view {
 
@@ -105,8 +106,12 @@ struct Explorer::Drawn {
 class Explorer::Drawing {
 public:
     Drawing(const FrameRequest& request, const Moment& moment, const Indicator& indicator,
-            const SweptIndicator* size, const Executor& executor)
-        : request_{request}, moment_{moment}, indicator_{&indicator}, executor_{executor} {
+            const SweptIndicator* size, const Executor& executor, WatchedSteps& steps)
+        : request_{request},
+          moment_{moment},
+          indicator_{&indicator},
+          executor_(executor, steps),
+          steps_{steps} {
         if (request.lens) {
             const LensRequest& l = *request.lens;
             lens_.emplace(size, Ball{l.centre, l.radius},
@@ -116,15 +121,17 @@ public:
     }
 
     std::vector<Part> draw(double threshold) const {
+        steps_.begin("Drawing");
         std::vector<Part> parts;
         with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
-            IsosurfaceOptions options{.elements = request_.outlines};
+            IsosurfaceOptions options = watched({.elements = request_.outlines});
             if (plane_) parts.push_back({"slice", draw_slice(hierarchy, criterion)});
             if (!request_.isovalue) return;
             const bool normals = request_.normals != NormalType::none;
             options.normals = normals && !request_.moving;
             parts.push_back({"isosurface", isosurface<3>(hierarchy, *request_.isovalue, criterion,
                                                          moment_.bounds(), options, executor_)});
+            if (parts.back().drawn.cancelled) throw FrameAbandoned{};
             if (normals && request_.moving) {
                 Surface<3>& surface = parts.back().drawn.surface;
                 surface.normals = normals_from_triangles(surface);
@@ -135,6 +142,7 @@ public:
 
     /// Whether a threshold gives no more triangles than asked for.
     bool fits(double threshold) const {
+        steps_.begin("Searching for the detail that keeps within the triangles");
         bool result = true;
         with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
             std::uint64_t most = request_.triangles;
@@ -164,16 +172,25 @@ private:
     }
     template <class Real>
     Slice draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const {
-        return slice(hierarchy, *plane_, criterion, moment_.bounds(),
-                     {.elements = request_.outlines}, executor_);
+        Slice drawn = slice(hierarchy, *plane_, criterion, moment_.bounds(),
+                            watched({.elements = request_.outlines}), executor_);
+        if (drawn.cancelled) throw FrameAbandoned{};
+        return drawn;
+    }
+    /// Options of an extraction that ends where nobody waits for it.
+    IsosurfaceOptions watched(IsosurfaceOptions options) const {
+        options.progress = [this](const TraversalCounts&) { return steps_.tell(); };
+        return options;
     }
     template <class Real>
     bool counts_at_most(std::uint64_t most, const Hierarchy<Real>& hierarchy,
                         const Criterion& criterion) const {
         const double isovalue = *request_.isovalue;
         try {
-            extract_isosurfaces<3>(hierarchy, std::span(&isovalue, 1), std::vector{Counter(most)},
-                                   criterion, moment_.bounds(), {.elements = false}, executor_);
+            const auto counted = extract_isosurfaces<3>(
+                hierarchy, std::span(&isovalue, 1), std::vector{Counter(most)}, criterion,
+                moment_.bounds(), watched({.elements = false}), executor_);
+            if (counted.front().cancelled) throw FrameAbandoned{};
         } catch (const TooMany&) {
             return false;
         }
@@ -185,7 +202,8 @@ private:
     const Indicator* indicator_;
     std::optional<Lens> lens_;
     std::optional<Plane> plane_;
-    const Executor& executor_;
+    WatchedExecutor executor_;
+    WatchedSteps& steps_;
 };
 
 Explorer::Explorer(ExploredField field, const Executor& executor)
@@ -259,12 +277,13 @@ Explorer::Moment Explorer::moment_at(const FrameRequest& request) const {
     return {field_.between(weights), 0, std::move(between), std::move(weights), nullptr};
 }
 
-const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name) {
+const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name,
+                                        WatchedSteps& steps) {
     if (name == IndicatorName::offset) {
         if (moment.between) return *moment.between;
         return *moment.offsets;
     }
-    if (!moment.between) return swept_of(name, moment.frame);
+    if (!moment.between) return swept_of(name, moment.frame, steps);
     if (name == IndicatorName::visual) {
         throw InvalidInput(
             "between frames there is no visual indicator: take another one, or the time of a "
@@ -274,13 +293,14 @@ const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name
     std::vector<float> weights;
     for (std::size_t i = 0; i < moment.weights.size(); ++i) {
         if (moment.weights[i] == 0) continue;
-        frames.push_back(&swept_of(name, i));
+        frames.push_back(&swept_of(name, i, steps));
         weights.push_back(moment.weights[i]);
     }
     return swept_->between.emplace(std::move(frames), weights);
 }
 
-const SweptIndicator& Explorer::swept_of(IndicatorName name, std::size_t frame) {
+const SweptIndicator& Explorer::swept_of(IndicatorName name, std::size_t frame,
+                                         WatchedSteps& steps) {
     if (!swept_ || swept_->name != name) {
         swept_.emplace(Swept{name, {}, {}});
         swept_->frames.resize(field_.frames.size());
@@ -288,20 +308,26 @@ const SweptIndicator& Explorer::swept_of(IndicatorName name, std::size_t frame) 
     std::optional<SweptIndicator>& swept = swept_->frames[frame];
     if (swept) return *swept;
     const double tau = 0x1p-20 * (usual_range_[1] - usual_range_[0]);
+    steps.begin("Measuring what counts as detail");
+    steps.check();
     swept.emplace(std::visit(
         [&](const auto& hierarchy) {
-            if (name == IndicatorName::visual) return visual_indicator(*hierarchy, {.tau = tau});
-            if (name == IndicatorName::numerical) return numerical_indicator(*hierarchy);
-            return wavelet_indicator(*hierarchy);
+            const WatchedHierarchy watched(*hierarchy, steps);
+            if (name == IndicatorName::visual) return visual_indicator(watched, {.tau = tau});
+            if (name == IndicatorName::numerical) return numerical_indicator(watched);
+            return wavelet_indicator(watched);
         },
         field_.frames[frame]));
     return *swept;
 }
 
-const SweptIndicator& Explorer::size_for(const Moment& moment, double slope) {
+const SweptIndicator& Explorer::size_for(const Moment& moment, double slope, WatchedSteps& steps) {
     if (!size_ || size_->spread().slope != slope) {
+        steps.begin("Measuring the sizes of elements");
         size_.emplace(std::visit(
-            [&](const auto& hierarchy) { return mesh_size(*hierarchy, Spread{.slope = slope}); },
+            [&](const auto& hierarchy) {
+                return mesh_size(WatchedHierarchy(*hierarchy, steps), Spread{.slope = slope});
+            },
             moment.hierarchy));
     }
     return *size_;
@@ -357,31 +383,39 @@ Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawin
     return drawn;
 }
 
-std::vector<std::byte> Explorer::frame(std::string_view text) {
+Explorer::Drawn Explorer::draw(const FrameRequest& request, const Drawing& drawing) {
+    if (request.triangles == 0) return {request.threshold, 1, drawing.draw(request.threshold)};
+    const std::optional<Budget> before = budget_;
+    try {
+        return draw_to_goal(request, drawing);
+    } catch (const FrameAbandoned&) {
+        budget_ = before;
+        throw;
+    }
+}
+
+std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& watch) {
     const FrameRequest request = parse_request(text);
     const auto start = Clock::now();
+    WatchedSteps steps(watch);
     const Moment moment = moment_at(request);
-    const Indicator& indicator = indicator_at(moment, request.indicator);
+    const Indicator& indicator = indicator_at(moment, request.indicator, steps);
     const SweptIndicator* const size =
-        request.lens ? &size_for(moment, request.lens->slope) : nullptr;
-    const Drawing drawing(request, moment, indicator, size, *executor_);
-    Drawn drawn{request.threshold, 1, {}};
-    if (request.triangles > 0) {
-        drawn = draw_to_goal(request, drawing);
-    } else {
-        drawn.parts = drawing.draw(request.threshold);
-    }
-    double error_bound = 0;
+        request.lens ? &size_for(moment, request.lens->slope, steps) : nullptr;
+    const Drawing drawing(request, moment, indicator, size, *executor_, steps);
+    const Drawn drawn = draw(request, drawing);
+    ErrorBounds bounds;
     double visited = 0;
     for (const Part& part : drawn.parts) {
-        error_bound = std::max(error_bound, part.drawn.error_bound);
+        bounds.add_bounds(part.drawn);
         visited += static_cast<double>(part.drawn.counts.visited);
     }
     const double seconds = seconds_since(start);
     FrameReply reply;
     reply.header.open('{').key("threshold").number(drawn.threshold);
     reply.header.key("triangles").number(static_cast<double>(drawn.triangles()));
-    reply.header.key("visited").number(visited).key("error_bound").number(error_bound);
+    reply.header.key("visited").number(visited).key("error_bound").number(bounds.error_bound);
+    reply.header.key("bound_says_nothing").boolean(bounds.bound_says_nothing());
     reply.header.key("seconds").number(seconds).key("draws").number(drawn.draws);
     reply.header.key("parts").open('[');
     for (const Part& part : drawn.parts) write_part(reply, part, request);

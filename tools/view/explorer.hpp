@@ -29,6 +29,7 @@
 
 #include "explored_field.hpp"
 #include "frame_request.hpp"
+#include "frame_watch.hpp"
 
 namespace nestgrid::view {
 
@@ -50,15 +51,18 @@ public:
     /// Draws a frame.
     /// \param request as parse_request() takes it
     /// \return the layout of frame_reply.hpp. The text has threshold, triangles, visited,
-    ///         error_bound (the greatest of the parts; null where none is known), seconds, draws
-    ///         (extractions that the frame took), and a list of parts: kind (isosurface, slice or
-    ///         outlines), triangles (segments), visited, error_bound, and arrays: positions,
-    ///         three float32 a vertex; indices, three uint32 a triangle, two a segment; normals,
-    ///         four int8 (times 1/127; the last is 0) or three float32 a vertex; values, one
-    ///         float32 a vertex
+    ///         error_bound (the greatest of the parts), bound_says_nothing
+    ///         (isosurface_options.hpp), seconds, draws (extractions that the frame took), and a
+    ///         list of parts: kind (isosurface, slice or outlines), triangles (segments), visited,
+    ///         error_bound, and arrays: positions, three float32 a vertex; indices, three uint32 a
+    ///         triangle, two a segment; normals, four int8 (times 1/127; the last is 0) or three
+    ///         float32 a vertex; values, one float32 a vertex
+    /// \param watch told what is being done; where it returns false, the next frame is drawn as if
+    ///        this one had not been asked for
+    /// \throw FrameAbandoned where it does
     /// \throw InvalidInput with one sentence where the request is malformed, asks for a time
     ///        outside the frames, or for the visual indicator between frames
-    std::vector<std::byte> frame(std::string_view request);
+    std::vector<std::byte> frame(std::string_view request, const FrameWatch& watch = {});
 
 private:
     struct Moment;
@@ -66,10 +70,11 @@ private:
     class Drawing;
 
     Moment moment_at(const FrameRequest& request) const;
-    const Indicator& indicator_at(const Moment& moment, IndicatorName name);
-    const SweptIndicator& swept_of(IndicatorName name, std::size_t frame);
-    const SweptIndicator& size_for(const Moment& moment, double slope);
+    const Indicator& indicator_at(const Moment& moment, IndicatorName name, WatchedSteps& steps);
+    const SweptIndicator& swept_of(IndicatorName name, std::size_t frame, WatchedSteps& steps);
+    const SweptIndicator& size_for(const Moment& moment, double slope, WatchedSteps& steps);
     double greatest_threshold(IndicatorName indicator) const;
+    Drawn draw(const FrameRequest& request, const Drawing& drawing);
     Drawn draw_to_goal(const FrameRequest& request, const Drawing& drawing);
 
     ExploredField field_;

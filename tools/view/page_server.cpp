@@ -121,7 +121,9 @@ private:
         Connection connection(socket, stopping_);
         bool last = false;
         while (!last && connection.wait()) {
-            const auto look = [&last](httplib::Request& request) {
+            const auto look = [&](httplib::Request& request) {
+                // For serve(). cpp-httplib asks this of clients alone.
+                request.progress = [&](auto, auto) { return connection.is_open(); };
                 last = has_body(request) || request.has_header("Expect");
                 request.headers.erase("Expect");
                 if (!last) return;
@@ -157,18 +159,22 @@ private:
             response.set_redirect("/" + token_ + "/");
         } else {
             const std::size_t query = target.find('?');
-            serve(rest.substr(slash + 1),
-                  query == std::string_view::npos ? std::string_view{} : target.substr(query + 1),
-                  response);
+            serve(
+                rest.substr(slash + 1),
+                query == std::string_view::npos ? std::string_view{} : target.substr(query + 1),
+                [&] { return request.progress(0, 0); }, response);
         }
     }
 
-    void serve(std::string_view name, std::string_view query, httplib::Response& response) const {
+    void serve(std::string_view name, std::string_view query,
+               const std::function<bool()>& is_wanted, httplib::Response& response) const {
         try {
             if (name == "info") {
                 response.set_content(source_->info(), "application/json");
+            } else if (name == "pulse") {
+                response.set_content(source_->pulse(), "application/json");
             } else if (name == "frame") {
-                const FrameSource::Bytes frame = source_->frame(query);
+                const FrameSource::Bytes frame = source_->frame(query, is_wanted);
                 response.set_content(reinterpret_cast<const char*>(frame->data()), frame->size(),
                                      "application/octet-stream");
             } else if (const auto file = files_.find(name.empty() ? "index.html" : name);
@@ -183,6 +189,8 @@ private:
             answer(response, 400, error.what());
         } catch (const GridError& error) {
             answer(response, 400, error.what());
+        } catch (const FrameAbandoned&) {
+            answer(response, 503, "Nobody waits for this frame any more.\n");
         } catch (const std::bad_alloc&) {
             answer(response, 500, "There is not enough memory for this picture.\n");
         }

@@ -225,7 +225,8 @@ std::string PushedSurfaces::info() {
         .text();
 }
 
-FrameSource::Bytes PushedSurfaces::frame(std::string_view text) {
+FrameSource::Bytes PushedSurfaces::frame(std::string_view text,
+                                         const std::function<bool()>& /*is_wanted*/) {
     const PushedRequest request = parse_pushed_request(text);
     std::shared_ptr<Frame> newest;
     {

@@ -37,7 +37,8 @@ public:
     ///         positions, indices, normals as int8 and, where there are attributes, values; and
     ///         outlines (explorer.hpp)
     /// \throw InvalidInput with one sentence where the request is malformed
-    Bytes frame(std::string_view request) override;
+    Bytes frame(std::string_view request, const std::function<bool()>& is_wanted) override;
+    std::string pulse() override { return pulse_of({}); }
     void stop() override;
 
 private:

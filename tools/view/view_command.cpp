@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -64,19 +65,51 @@ void open_browser(const std::string& address) {
     posix_spawn_file_actions_destroy(&quiet);
 }
 
+/// Calls a function at the end of a scope.
+template <class Function>
+class AtEnd {
+public:
+    explicit AtEnd(Function function) : function_{std::move(function)} {}
+    AtEnd(const AtEnd&) = delete;
+    AtEnd& operator=(const AtEnd&) = delete;
+    ~AtEnd() { function_(); }
+
+private:
+    Function function_;
+};
+
 /// Draws one frame at a time.
 class ExploredFrames final : public FrameSource {
 public:
     explicit ExploredFrames(Explorer& explorer) : explorer_{&explorer} {}
     std::string info() override { return explorer_->info(); }
-    Bytes frame(std::string_view request) override {
-        const std::scoped_lock lock(mutex_);
-        return std::make_shared<const std::vector<std::byte>>(explorer_->frame(request));
+    Bytes frame(std::string_view request, const std::function<bool()>& is_wanted) override {
+        std::unique_lock lock(drawing_, std::defer_lock);
+        while (!lock.try_lock_for(std::chrono::milliseconds{20})) {
+            if (!is_wanted()) throw FrameAbandoned{};
+        }
+        const auto watch = [&](const FrameStep& step) {
+            tell(step);
+            return is_wanted();
+        };
+        const AtEnd quiet([&] { tell({}); });
+        return std::make_shared<const std::vector<std::byte>>(explorer_->frame(request, watch));
+    }
+    std::string pulse() override {
+        const std::scoped_lock lock(telling_);
+        return pulse_of(step_);
     }
 
 private:
+    void tell(const FrameStep& step) {
+        const std::scoped_lock lock(telling_);
+        step_ = step;
+    }
+
     Explorer* explorer_;
-    std::mutex mutex_;
+    std::timed_mutex drawing_;
+    std::mutex telling_;  // of the step
+    FrameStep step_{};
 };
 
 /// Serves until the program is interrupted or asked to end.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <explored_samples.hpp>
+#include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/slice.hpp>
@@ -315,6 +316,64 @@ TEST(Info, TellsRangeBoxAndAnIsovalueThatIsMet) {
             frame_of(volume.explorer, "isovalue=" + text_of(std::stod(info.substr(at))));
         EXPECT_GT(frame.number("triangles"), 0) << field.name;
         EXPECT_NE(info.find("\"box\":[[0,0,0],[1,1,1]]"), std::string::npos) << info;
+    }
+}
+
+TEST(Info, TellsOfTheSamplesAndNotOfNodesBeyondThem) {
+    constexpr int n = 20;
+    std::vector<float> first;
+    for (int i = 0; i < n * n * n; ++i) first.push_back(static_cast<float>(i % n));
+    std::vector<float> second = first;
+    second[5] = 40;
+    const SequentialExecutor executor;
+    const std::vector<std::span<const float>> both{first, second};
+    const Explorer explorer(explored_samples(cube_of(n), both, {0, 1}), executor);
+    const std::string info = explorer.info();
+    for (const char* part : {"\"samples\":8000", "\"least\":0,\"greatest\":40"}) {
+        EXPECT_NE(info.find(part), std::string::npos) << part << " in " << info;
+    }
+}
+
+TEST(Frames, ForWhichNobodyWaitsEndAtOnceAndLeaveNoTrace) {
+    const SampledField field = field_named("gyroid", 65);
+    const TbbExecutor threads(2);
+    const SequentialExecutor one;
+    for (const Executor* executor :
+         {static_cast<const Executor*>(&one), static_cast<const Executor*>(&threads)}) {
+        const auto explored = [&] {
+            return explored_samples(cube_of(65), std::span<const float>(field.values));
+        };
+        Explorer explorer(explored(), *executor);
+        Explorer untouched(explored(), *executor);
+        for (const std::string request :
+             {"isovalue=0.1&indicator=numerical&threshold=0.1",
+              "isovalue=0.1&indicator=visual&triangles=9000", "isovalue=0.1",
+              "isovalue=0.1&triangles=9000", "axis=x&at=0.5",
+              "isovalue=0.1&lens=0.5,0.5,0.5,0.1&triangles=20000"}) {
+            for (const int patience : {0, 1, 3, 10}) {
+                int told = 0;
+                bool over = false;
+                const auto watch = [&](const FrameStep& step) {
+                    EXPECT_FALSE(over) << request << " goes on";
+                    EXPECT_STRNE(step.doing, "");
+                    EXPECT_FALSE(step.share < 0 || step.share > 1) << step.share;
+                    over = ++told > patience;
+                    return !over;
+                };
+                try {
+                    explorer.frame(request, watch);
+                    EXPECT_LE(told, patience) << request;
+                } catch (const FrameAbandoned&) {
+                    EXPECT_TRUE(over) << request;
+                }
+            }
+        }
+        const std::string next = "isovalue=0.12&triangles=9000";
+        const Frame frame = frame_of(explorer, next);
+        const Frame expected = frame_of(untouched, next);
+        EXPECT_EQ(frame.number("threshold"), expected.number("threshold"));
+        expect_same_bits(frame.array<float>("isosurface", "positions"),
+                         expected.array<float>("isosurface", "positions"), "vertices");
     }
 }
 

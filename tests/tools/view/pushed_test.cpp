@@ -219,10 +219,11 @@ TEST(Pushed, ReadersGetTheNewestSurfaceAndWaitForTheNext) {
 
 TEST(Pushed, ReadersBeyondThoseWhoMayWaitAreAnsweredAtOnce) {
     view::PushedSurfaces surfaces({}, 1);
-    auto waits = std::async(std::launch::async, [&] { return surfaces.frame("after=0"); });
+    auto waits = std::async(std::launch::async,
+                            [&] { return surfaces.frame("after=0", [] { return true; }); });
     std::this_thread::sleep_for(100ms);
     const auto start = Clock::now();
-    EXPECT_FALSE(Frame(*surfaces.frame("after=0")).has("surface"));
+    EXPECT_FALSE(Frame(*surfaces.frame("after=0", [] { return true; })).has("surface"));
     EXPECT_LT(seconds_since(start), 5);
     EXPECT_EQ(waits.wait_for(0s), std::future_status::timeout);
     surfaces.stop();
