@@ -87,6 +87,11 @@ void open_samples(const std::string& type) {
 
 }  // namespace
 
+/// Tells JavaScript what is being done, in a text that ends with 0. A share that is not known is
+/// not a number.
+extern "C" __attribute__((import_module("env"), import_name("tell"))) void nestgrid_tell(
+    const char* doing, double share);
+
 #define NESTGRID_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
 /// Frees the samples there were, and allocates these.
@@ -116,7 +121,10 @@ NESTGRID_EXPORT(frame) const std::byte* nestgrid_frame() {
     const bool done = attempt([] {
         frame = {};
         if (!explorer) throw nestgrid::InvalidInput("there is no volume yet");
-        frame = explorer->frame(text.data());
+        frame = explorer->frame(text.data(), [](const nestgrid::view::FrameStep& step) {
+            nestgrid_tell(step.doing, step.share);
+            return true;
+        });
     });
     return done ? frame.data() : nullptr;
 }

@@ -112,7 +112,7 @@ try {
     await page.$eval('#surface', (box) => box.click());
     await look(`${scheme} nothing chosen`);
     await opened.go('#isovalue=1e9');
-    await page.waitForSelector('#message:not([hidden])');
+    await page.waitForSelector('#empty:not([hidden])');
     await look(`${scheme} message`);
   }
 } catch (error) {

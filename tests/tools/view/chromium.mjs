@@ -40,6 +40,38 @@ export class Browser {
     return this.page.$eval(`#${id}`, (e) => e.textContent.trim());
   }
 
+  /** What a reader sees of an element: its text, or '' where it is hidden, empty or under something. */
+  seen(id) {
+    return this.page.evaluate((name) => {
+      const element = document.getElementById(name);
+      const { left, top, width, height } = element.getBoundingClientRect();
+      const text = element.textContent.trim();
+      if (width === 0 || height === 0 || text === '') return '';
+      const corners = [[0.5, 0.5], [0.02, 0.5], [0.98, 0.5], [0.5, 0.1], [0.5, 0.9]];
+      const lies = corners.every(([x, y]) => {
+        const found = document.elementFromPoint(left + x * width, top + y * height);
+        return element.contains(found);
+      });
+      return lies ? text : '';
+    }, id);
+  }
+
+  /** Waits until a reader sees an element that says something. \return how many milliseconds that took */
+  async awaitSeen(id, pattern, milliseconds = 10000) {
+    const begin = Date.now();
+    for (;;) {
+      if (pattern.test(await this.seen(id))) return Date.now() - begin;
+      if (Date.now() - begin > milliseconds) {
+        throw new Error(`#${id} is seen as '${await this.seen(id)}', its text is '${await this.text(id)}'`);
+      }
+      await new Promise((resolve) => { setTimeout(resolve, 20); });
+    }
+  }
+
+  async awaitHidden(id, milliseconds = 10000) {
+    await this.page.waitForSelector(`#${id}[hidden]`, { timeout: milliseconds });
+  }
+
   picture(name) {
     return this.page.screenshot({ path: join(this.pictures, `${name}.png`) });
   }

@@ -56,10 +56,10 @@ export function colourOf(name, scheme = '') {
   return color;
 }
 
-/** Four digits, for readers. */
-export function readable(x) {
+/** Four digits, for readers; 0 for what is rounding beside the range of the data. */
+export function readable(x, range = 0) {
   if (x === null || !Number.isFinite(x)) return 'not known';
-  if (x === 0) return '0';
+  if (Math.abs(x) <= 1e-7 * range) return '0';
   const size = Math.abs(x);
   if (size >= 1e6 || size < 1e-4) return x.toExponential(3).replace(/\.?0+e/, 'e');
   return String(Number(x.toPrecision(4)));
@@ -68,4 +68,9 @@ export function readable(x) {
 /** A count with commas between thousands, which screen readers take for one number. */
 export function readableCount(n) {
   return Math.round(n).toString().replace(/\B(?=(\d{3})+$)/g, ',');
+}
+
+/** A number as text with its unit, which may be '' or not known. */
+export function withUnit(text, unit) {
+  return unit ? `${text} ${unit}` : text;
 }

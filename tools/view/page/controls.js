@@ -3,7 +3,7 @@
 //
 // Sliders and selections. They show a state and say which part of it the reader changes; while a
 // slider is dragged the change is 'moving', when it is let go 'settled'.
-import { readable, readableCount } from './colours.js';
+import { readable, readableCount, withUnit } from './colours.js';
 import { diagonalOf } from './state.js';
 import { setControl, setWhy } from './status.js';
 
@@ -27,8 +27,6 @@ const rounded = (n) => {
   const unit = 10 ** Math.max(0, Math.floor(Math.log10(n)) - 1);
   return Math.round(n / unit) * unit;
 };
-
-const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 
 export class Controls {
   #change;
@@ -68,6 +66,12 @@ export class Controls {
     byId('slice-face').addEventListener('click', () => change({ slice: 'view' }, 'settled'));
   }
 
+  /** Forgets what belongs to the last field. */
+  reset() {
+    this.#stopPlaying();
+    byId('isovalue-number').setAttribute('aria-invalid', 'false');
+  }
+
   /** Shows a state. */
   show(state, info) {
     this.#state = state;
@@ -100,14 +104,15 @@ export class Controls {
   }
 
   #showTexts(state, info) {
-    byId('least').textContent = readable(info.least);
-    byId('greatest').textContent = readable(info.greatest);
+    const range = info.greatest - info.least;
+    byId('least').textContent = readable(info.least, range);
+    byId('greatest').textContent = readable(info.greatest, range);
     if (document.activeElement !== byId('isovalue-number')) {
-      byId('isovalue-number').value = readable(state.isovalue);
+      byId('isovalue-number').value = readable(state.isovalue, range);
     }
     const length = (x) => withUnit(readable(x), info.length_unit);
     const place = state.slice === 'view' ? 'distance from the centre' : state.slice;
-    this.#say('isovalue', null, withUnit(readable(state.isovalue), info.unit));
+    this.#say('isovalue', null, withUnit(readable(state.isovalue, range), info.unit));
     this.#say('triangles', 'triangles-text', `about ${readableCount(state.triangles)} triangles`);
     this.#say('threshold', 'threshold-text', this.#thresholdText(state, info));
     this.#say('slice-at', 'slice-text', `${place} ${length(state.at)}`);
@@ -202,11 +207,15 @@ export class Controls {
     if (id !== this.#held && !slider.matches(':active')) slider.value = value;
   }
 
+  #stopPlaying() {
+    clearInterval(this.#playing);
+    this.#playing = null;
+    byId('play').textContent = 'Play';
+  }
+
   #play() {
     if (this.#playing) {
-      clearInterval(this.#playing);
-      this.#playing = null;
-      byId('play').textContent = 'Play';
+      this.#stopPlaying();
       this.#change({}, 'settled');
       return;
     }

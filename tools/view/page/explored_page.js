@@ -3,14 +3,36 @@
 //
 // The page of a field: each frame is what the controls ask for.
 import { Controls } from './controls.js';
-import { readable, readableCount } from './colours.js';
+import { readable, readableCount, withUnit } from './colours.js';
 import { FrameLoop } from './frame.js';
 import { drawHistogram } from './legend.js';
 import { Picture } from './picture.js';
 import { addressOf, defaultState, planeOf, requestOf, stateFromAddress } from './state.js';
-import { showMessage, showNumbers, tell } from './status.js';
+import { showEmpty, showMessage, showNumbers, tell } from './status.js';
 
 const byId = (id) => document.getElementById(id);
+
+/** What a field is, in one sentence. */
+function describe({ samples, nodes, box: [low, high], length_unit: unit, least, greatest }) {
+  const range = greatest - least;
+  const count = samples > 0 ? `${readableCount(samples)} samples` : `${readableCount(nodes)} nodes`;
+  const size = withUnit(low.map((x, d) => readable(high[d] - x)).join(' × '), unit);
+  return `${count}, ${size}, values from ${readable(least, range)} to ${readable(greatest, range)}`;
+}
+
+/** Why a frame that has settled has not about as many triangles as were asked for; '' where it has. */
+function whyNot({ detail, triangles: goal, lens, centre }, { triangles, threshold }) {
+  if (detail !== 'triangles' || triangles === 0) return '';
+  const most = readableCount(goal);
+  if (triangles > goal) {
+    return lens !== 'off' && centre
+      ? `The lens alone takes more than ${most} triangles: make it smaller.`
+      : `No threshold gives as few as ${most} triangles.`;
+  }
+  if (threshold === 0) return triangles < 0.9 * goal ? 'This is all of the surface: the data have no more detail.' : '';
+  return triangles < 0.9 * goal
+    ? `Much detail is alike: the next finer surface has more than ${most} triangles.` : '';
+}
 
 export class ExploredPage {
   #info;
@@ -19,9 +41,18 @@ export class ExploredPage {
   #controls;
   #loop;
   #shown = null;
+  /** The states of the frame that was asked for last, and of the one in the picture. */
+  #asked = null;
+  #seen = null;
+  #interrupted = false;
   #rest = null;
+  #namesFiles;
 
-  constructor(engine) {
+  /** Called when the engine is not there any more. */
+  lost = () => {};
+
+  constructor(engine, work) {
+    this.#namesFiles = engine.takesFiles;
     this.#picture = new Picture({
       moved: () => this.#remember(),
       reset: () => this.#change({ camera: null }, 'settled'),
@@ -39,29 +70,50 @@ export class ExploredPage {
       },
     });
     this.#controls = new Controls((changes, motion) => this.#change(changes, motion));
-    this.#loop = new FrameLoop(engine, {
-      request: (motion) => requestOf(this.#state, this.#info, motion),
+    this.#loop = new FrameLoop(engine, work, {
+      request: (motion) => {
+        this.#asked = { ...this.#state };
+        return requestOf(this.#asked, this.#info, motion);
+      },
       show: (frame, how) => this.#show(frame, how),
-      fail: (error) => showMessage(error.message),
+      fail: (error) => this.#fail(error),
+      cancelled: () => this.#goBack('Drawing was cancelled. Change something to draw again.'),
     });
     addEventListener('hashchange', () => {
       if (this.#info && location.hash !== addressOf(this.#state, this.#start)) this.#restore();
     });
   }
 
+  /** Shows another field: nothing of the last one stays. */
   begin(info) {
+    this.#loop.forget();
+    clearTimeout(this.#rest);
     showMessage('');
-    this.#info = info;
+    showEmpty('');
+    this.#picture.clear();
+    showNumbers([]);
+    this.#controls.reset();
+    this.#seen = null;
+    this.#shown = null;
+    this.#interrupted = false;
+    // Sliders and colours span the usual values.
+    const [least, greatest] = info.usual_range;
+    this.#info = { ...info, least, greatest };
     this.#picture.setTitle(info.title);
-    byId('subtitle').textContent =
-      `${readableCount(info.nodes)} nodes, values from ${readable(info.least)} to ${readable(info.greatest)}`;
+    byId('subtitle').textContent = describe(info);
     document.querySelectorAll('.field-name').forEach((e) => { e.textContent = `“${info.name}”`; });
-    drawHistogram(info);
+    drawHistogram(this.#info);
     this.stage.setBox(info.box);
     this.#restore();
   }
 
-  /** The frame in the picture, with what was asked for. */
+  /** Draws what a lost engine has not drawn. */
+  resume() {
+    if (this.#interrupted) this.#loop.want('settled');
+    this.#interrupted = false;
+  }
+
+  /** The frame in the picture, null where it is empty, with what was asked for. */
   get shown() {
     return this.#shown;
   }
@@ -79,6 +131,7 @@ export class ExploredPage {
   #restore() {
     this.#state = stateFromAddress(location.hash, this.#start);
     this.#picture.project(this.#state.projection);
+    if (this.#namesFiles) this.#state.file = this.#info.title;
     this.stage.look(this.#state.camera);
     this.#showControls();
     this.#loop.want('settled');
@@ -104,29 +157,64 @@ export class ExploredPage {
     history.replaceState(null, '', addressOf(this.#state, this.#start));
   }
 
+  #fail(error) {
+    if (error.isLost) {
+      this.#interrupted = true;
+      this.lost();
+      return;
+    }
+    this.#goBack('There is no picture.');
+    showMessage(error.message);
+  }
+
+  /** Chooses what the picture shows, because what was chosen has not been drawn. */
+  #goBack(why) {
+    if (!this.#seen) {
+      showEmpty(why);
+      return;
+    }
+    this.#state = { ...this.#seen, camera: this.stage.camera };
+    this.#showControls();
+    this.#remember();
+  }
+
   #show(frame, how) {
     showMessage('');
+    this.#seen = this.#asked;
+    this.#shown = { frame, ...how };
+    if (!frame) {
+      this.#picture.clear();
+      showNumbers([]);
+      showEmpty('Nothing is chosen: switch on the isosurface, or choose a slice.');
+      return;
+    }
+    showEmpty(frame.triangles > 0 ? '' : 'There is nothing here: no data have this value.');
     const { name, least, greatest, unit = '', length_unit: lengthUnit = '' } = this.#info;
-    const bound = frame.error_bound;
+    const range = greatest - least;
+    const bound = frame.bound_says_nothing ? null : frame.error_bound;
     this.#picture.show(frame, {
       field: name, unit, lengthUnit, least, greatest, bound,
-      isovalue: this.#state.surface ? this.#state.isovalue : null,
-      plane: planeOf(this.#state, this.#info),
+      isovalue: this.#seen.surface ? this.#seen.isovalue : null,
+      plane: planeOf(this.#seen, this.#info),
     });
-    if (how.motion === 'settled') {
-      tell(`${readableCount(frame.triangles)} triangles, error at most ${readable(bound)}`);
-    }
+    this.#showNumbers(frame, bound === null ? 'the bound says nothing here' : readable(bound, range), how);
+  }
+
+  #showNumbers(frame, bound, { motion }) {
+    if (motion === 'settled') tell(`${readableCount(frame.triangles)} triangles, error at most: ${bound}`);
+    const why = motion === 'settled' ? whyNot(this.#seen, frame) : '';
+    byId('triangles-why').textContent = why;
+    byId('triangles-why').hidden = why === '';
+    const { least, greatest } = this.#info;
+    const range = this.#seen.indicator === 'visual' ? 2 : greatest - least;
     showNumbers([
       ['triangles', 'triangles', readableCount(frame.triangles)],
-      ['bound', 'error at most', readable(bound),
-        'On the surface, the data differ from its value by no more'],
-      ['threshold', 'threshold', readable(frame.threshold), 'Detail up to this is left out'],
+      ['bound', 'error at most', bound, 'On the surface, the data differ from its value by no more'],
+      ['threshold', 'threshold', readable(frame.threshold, range), 'Detail up to this is left out'],
       ['visited', 'visited', `${readableCount(frame.visited)} elements`,
         'Elements that the search entered'],
       ['ms', 'extraction', `${readable(1000 * frame.seconds)} ms`, 'Time to extract the surface'],
     ]);
-    if (frame.triangles === 0) showMessage('There is nothing here: no data have this value.');
-    this.#shown = { frame, ...how };
   }
 
   #hover(hit) {

@@ -20,50 +20,84 @@ export function decodeFrame(buffer) {
 }
 
 /**
- * Asks for one frame at a time; of what is wanted meanwhile only the newest counts.
- * request: makes the text of a request from whether the picture is still moving
- * show: takes a frame, fail: takes an Error
+ * Asks for one frame at a time; of what is wanted meanwhile only the newest counts. A frame that settles
+ * is given up for the next one, where the engine stops cheaply.
  */
 export class FrameLoop {
   #engine;
-  #request;
-  #show;
-  #fail;
-  #busy = false;
+  #work;
+  #page;
+  #asking = null;
   #wanted = null;
 
-  constructor(engine, { request, show, fail }) {
+  /**
+   * work: shows that a frame is being drawn (work.js)
+   * page: request(motion) makes the text of a request, null where nothing is to be drawn; show(frame, how)
+   *   takes the frame, or null and what was asked for; fail(error); cancelled()
+   */
+  constructor(engine, work, page) {
     this.#engine = engine;
-    this.#request = request;
-    this.#show = show;
-    this.#fail = fail;
+    this.#work = work;
+    this.#page = page;
   }
 
   /** motion: 'moving' or 'settled' */
   want(motion) {
     this.#wanted = motion;
-    if (!this.#busy) this.#run();
+    if (!this.#asking) this.#run();
+    else if (this.#asking.motion === 'settled' && this.#engine.stopsCheaply) this.#asking.end.abort();
+  }
+
+  /** Gives up what is wanted and what is being drawn. */
+  stop() {
+    this.#wanted = null;
+    this.#asking?.end.abort();
+  }
+
+  /** Takes no frame that has been asked for, and lets the engine end it where that costs nothing. */
+  forget() {
+    this.#wanted = null;
+    if (!this.#asking) return;
+    this.#asking.forgotten = true;
+    if (this.#engine.stopsCheaply) this.#asking.end.abort();
   }
 
   get idle() {
-    return !this.#busy;
+    return !this.#asking;
   }
 
   async #run() {
-    this.#busy = true;
     while (this.#wanted) {
       const motion = this.#wanted;
       this.#wanted = null;
-      const request = this.#request(motion);
-      if (!request) continue;
+      const asking = { motion, request: this.#page.request(motion), end: new AbortController() };
+      this.#asking = asking;
       try {
-        const start = performance.now();
-        const frame = decodeFrame(await this.#engine.frame(request));
-        this.#show(frame, { motion, request, milliseconds: performance.now() - start });
+        await this.#ask(asking);
       } catch (error) {
-        this.#fail(error);
+        if (!asking.end.signal.aborted && !asking.forgotten) this.#page.fail(error);
       }
     }
-    this.#busy = false;
+    this.#asking = null;
+  }
+
+  async #ask(asking) {
+    const { motion, request, end } = asking;
+    if (!request) {
+      this.#page.show(null, { motion, request });
+      return;
+    }
+    const job = this.#work.begin('Drawing', () => {
+      this.stop();
+      this.#page.cancelled();
+    });
+    try {
+      const start = performance.now();
+      const frame = decodeFrame(await this.#engine.frame(request, end.signal));
+      if (end.signal.aborted || asking.forgotten) return;
+      this.#page.show(frame, { motion, request, milliseconds: performance.now() - start });
+    } finally {
+      this.#work.end(job);
+    }
   }
 }

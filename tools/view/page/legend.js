@@ -32,7 +32,7 @@ export function ticksOf(least, greatest, mark) {
     if (shown.every((other) => Math.abs(part(other) - part(value)) > 0.09)) shown.push(value);
   }
   return shown.map((value) => ({
-    part: part(value), text: readable(value), marks: marks.includes(value) }));
+    part: part(value), text: readable(value, range), marks: marks.includes(value) }));
 }
 
 /** The next of 1, 2, 5, 10, ... from a number upwards. */

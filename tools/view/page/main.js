@@ -4,61 +4,105 @@
 // Joins an engine and the page of what it has.
 import { Engine } from './engine.js';
 import { ExploredPage } from './explored_page.js';
+import { Heartbeat } from './heartbeat.js';
 import { PushedPage } from './pushed_page.js';
 import { showMessage } from './status.js';
+import { Work } from './work.js';
 
 const byId = (id) => document.getElementById(id);
 const engine = new Engine();
+const work = new Work();
+
+/** Opens the files that a reader drops or chooses, one at a time. */
+class Files {
+  #page;
+  #opening = null;
+
+  constructor(page) {
+    this.#page = page;
+  }
+
+  /** Gives up the file that is being opened, if there is one. */
+  async open(file) {
+    if (!file) return;
+    this.#opening?.abort();
+    const opening = new AbortController();
+    this.#opening = opening;
+    showMessage('');
+    const job = work.begin(`Reading ${file.name}`, () => opening.abort());
+    try {
+      const info = await engine.open(file, opening.signal);
+      if (!opening.signal.aborted) this.#show(info, file);
+    } catch (error) {
+      if (!opening.signal.aborted) showMessage(error.message);
+    } finally {
+      work.end(job);
+    }
+  }
+
+  #show(info, file) {
+    const drop = byId('drop');
+    // The address of another file's picture says nothing about this one.
+    const meant = new URLSearchParams(location.hash.slice(1)).get('file');
+    if (drop.hidden || (meant !== null && meant !== file.name)) {
+      history.replaceState(null, '', location.pathname + location.search);
+    }
+    // What has the focus goes with the place for files.
+    if (drop.contains(document.activeElement)) byId('canvas').focus();
+    drop.hidden = true;
+    byId('panel').inert = false;
+    byId('help').hidden = false;
+    byId('choose').hidden = false;
+    this.#page.begin(info);
+  }
+}
 
 /** Lets the reader drop or choose a file, for an engine that takes files. */
 function takeFiles(page) {
   const drop = byId('drop');
-  const panel = byId('panel');
-  const open = async (file) => {
-    if (!file) return;
-    const subtitle = byId('subtitle').textContent;
-    byId('subtitle').textContent = `Reading ${file.name} …`;
-    try {
-      const info = await engine.open(file);
-      // The address of another file's picture says nothing about this one.
-      if (drop.hidden) history.replaceState(null, '', location.pathname + location.search);
-      page.begin(info);
-      // What has the focus goes with the place for files.
-      if (drop.contains(document.activeElement)) byId('canvas').focus();
-      drop.hidden = true;
-      panel.inert = false;
-      byId('help').hidden = false;
-      byId('choose').hidden = false;
-    } catch (error) {
-      byId('subtitle').textContent = subtitle;
-      showMessage(error.message);
-    }
-  };
+  const files = new Files(page);
   drop.hidden = false;
-  panel.inert = true;
+  byId('panel').inert = true;
   byId('help').hidden = true;
   byId('drop-formats').textContent = engine.formats ?? '';
-  byId('file').addEventListener('change', (event) => open(event.target.files[0]));
+  byId('file').addEventListener('change', (event) => {
+    files.open(event.target.files[0]);
+    // The same file may be chosen again.
+    event.target.value = '';
+  });
   for (const id of ['choose', 'choose-first']) {
     byId(id).addEventListener('click', () => byId('file').click());
   }
+  const hasFile = (event) => event.dataTransfer.types.includes('Files');
   document.addEventListener('dragover', (event) => {
     event.preventDefault();
-    drop.classList.add('over');
+    drop.classList.toggle('over', hasFile(event));
   });
   document.addEventListener('dragleave', () => drop.classList.remove('over'));
   document.addEventListener('drop', (event) => {
     event.preventDefault();
     drop.classList.remove('over');
-    open(event.dataTransfer.files[0]);
+    files.open(event.dataTransfer.files[0]);
   });
+}
+
+function follow(page) {
+  const heartbeat = new Heartbeat(engine, {
+    isBusy: () => !page.idle,
+    tell: (told) => work.tell(told),
+    resume: () => page.resume(),
+  });
+  page.lost = () => heartbeat.check();
+  page.ended = () => heartbeat.stop();
+  heartbeat.start();
 }
 
 try {
   const info = engine.takesFiles ? null : await engine.info();
-  const page = info?.pushed ? new PushedPage(engine) : new ExploredPage(engine);
+  const page = info?.pushed ? new PushedPage(engine) : new ExploredPage(engine, work);
   // For tests, and for the curious.
   window.nestgrid = page;
+  follow(page);
   if (info) page.begin(info);
   else takeFiles(page);
 } catch (error) {

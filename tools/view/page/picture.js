@@ -66,7 +66,7 @@ export class Picture {
    * Shows a frame.
    * scale: { field, its name; unit, lengthUnit, '' where they are not known; least, greatest, the ends
    *   of the colours, null where nothing has one; isovalue, null where the surface has none; bound, of
-   *   the error, null where it is not known; plane, { point, normal } of the slice, or null }
+   *   the error, null where it says nothing; plane, { point, normal } of the slice, or null }
    */
   show(frame, scale) {
     const { field, unit, least, greatest, isovalue } = scale;
@@ -79,6 +79,17 @@ export class Picture {
     this.#scale = scale;
     this.#saved.content = { legend, lengthUnit: scale.lengthUnit, frame };
     setWhy('save-section', frame.triangles === 0 ? 'There is no surface to save.' : '');
+  }
+
+  /** Shows nothing. */
+  clear() {
+    this.#frame = null;
+    this.#scale = null;
+    showLegend(null);
+    byId('cursor').textContent = '';
+    this.#stage.setPlane(null);
+    this.#stage.show({ parts: [] }, null, null);
+    setWhy('save-section', 'There is no surface to save.');
   }
 
   #followCursor(hovered, clicked) {
@@ -123,9 +134,10 @@ export class Picture {
     let text = place.join('   ');
     const value = hit && (hit.value ?? this.#scale.isovalue);
     if (hit && value !== null) {
-      text += `\n${this.#scale.field} = ${readable(value)}`;
+      const range = this.#scale.greatest - this.#scale.least;
+      text += `\n${this.#scale.field} = ${readable(value, range)}`;
       if (this.#scale.unit) text += ` ${this.#scale.unit}`;
-      if (this.#scale.bound !== null) text += ` ± ${readable(this.#scale.bound)}`;
+      if (this.#scale.bound !== null) text += ` ± ${readable(this.#scale.bound, range)}`;
     }
     byId('cursor').textContent = text;
   }

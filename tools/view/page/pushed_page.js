@@ -29,6 +29,10 @@ export class PushedPage {
   #shown = null;
   #asking = new AbortController();
 
+  /** Called when the solver has ended, and when it cannot be reached. */
+  ended = () => {};
+  lost = () => {};
+
   constructor(engine) {
     this.#engine = engine;
     this.#picture = new Picture({
@@ -62,6 +66,12 @@ export class PushedPage {
   get shown() {
     return this.#shown;
   }
+  /** A surface that is awaited is no work. */
+  get idle() {
+    return true;
+  }
+  /** #follow() asks again by itself. */
+  resume() {}
   get stage() {
     return this.#picture.stage;
   }
@@ -93,6 +103,7 @@ export class PushedPage {
           return;
         }
         this.#tell('lost');
+        this.lost();
         await pause(2000);
       }
     }
@@ -110,8 +121,12 @@ export class PushedPage {
       this.#number = frame.number;
       this.#show(frame);
     }
-    if (frame.ended) this.#tell('ended');
-    else this.#tell(this.#number > 0 ? 'running' : 'waiting');
+    if (frame.ended) {
+      this.#tell('ended');
+      this.ended();
+    } else {
+      this.#tell(this.#number > 0 ? 'running' : 'waiting');
+    }
     // So many readers wait that the server lets this one ask again.
     if (frame.parts.length === 0 && performance.now() - begin < 500) await pause(500);
     return !frame.ended;

@@ -27,6 +27,7 @@ export function defaultState(info) {
     time: info.times[0],
     projection: 'perspective',
     camera: null,
+    file: null,
   };
 }
 
@@ -70,7 +71,7 @@ export function addressOf(state, start = {}) {
     if (value === null || JSON.stringify(value) === JSON.stringify(start[key])) continue;
     if (Array.isArray(value)) entries.push(`${key}=${value.map(short).join(',')}`);
     else if (typeof value === 'boolean') entries.push(`${key}=${value ? 'on' : 'off'}`);
-    else entries.push(`${key}=${typeof value === 'number' ? short(value) : value}`);
+    else entries.push(`${key}=${typeof value === 'number' ? short(value) : encodeURIComponent(value)}`);
   }
   return `#${entries.join('&')}`;
 }

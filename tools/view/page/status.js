@@ -13,6 +13,23 @@ export function showMessage(text) {
   byId('message').hidden = text === '';
 }
 
+/** Says why the stage is empty; nothing where it is not. */
+export function showEmpty(text) {
+  byId('empty').textContent = text;
+  byId('empty').hidden = text === '';
+}
+
+/**
+ * Says what has become of the program behind the page, and what the reader can do.
+ * parts: elements behind the text
+ */
+export function showConnection(text, parts = []) {
+  const sentence = document.createElement('p');
+  sentence.textContent = text;
+  byId('connection').replaceChildren(sentence, ...parts);
+  byId('connection').hidden = text === '';
+}
+
 /** Has a screen reader say a text when nothing else has come for half a second. */
 export function tell(text) {
   clearTimeout(waiting);

@@ -47,9 +47,10 @@ function objection(file, { samples, type, spacing }) {
 }
 
 /**
+ * signal: an AbortSignal, which closes the dialog
  * returns a promise of { samples, type, spacing, bigEndian }, which fails where the reader cancels
  */
-export function askRawFormat(file) {
+export function askRawFormat(file, signal) {
   const dialog = document.createElement('dialog');
   dialog.id = 'raw-dialog';
   dialog.innerHTML = form;
@@ -64,6 +65,7 @@ export function askRawFormat(file) {
   dialog.addEventListener('input', check);
   document.body.append(dialog);
   dialog.showModal();
+  signal?.addEventListener('abort', () => dialog.close('cancel'));
   return new Promise((resolve, reject) => {
     dialog.addEventListener('close', () => {
       const format = formatOf(fields);

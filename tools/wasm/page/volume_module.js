@@ -4,8 +4,11 @@
 // The core as WebAssembly, with one volume. Runs in a worker and in Node alike; who makes a module
 // compiles nestgrid.wasm.
 
-/** What the core asks of its surroundings: the time. It knows no files and no environment. */
-function surroundings(memory) {
+/**
+ * What the core asks of its surroundings: the time. It knows no files and no environment.
+ * tell: tell(at, share) is told what a frame is doing, a text in memory
+ */
+function surroundings(memory, tell) {
   const unknown = 52;
   const wasi = {
     clock_time_get(clock, precision, at) {
@@ -20,19 +23,27 @@ function surroundings(memory) {
   const other = { get: (functions, name) => functions[name] ?? (() => unknown) };
   return {
     wasi_snapshot_preview1: new Proxy(wasi, other),
-    env: { emscripten_notify_memory_growth() {} },
+    env: { emscripten_notify_memory_growth() {}, tell },
   };
 }
 
 export class VolumeModule {
   #core;
 
-  /** compiled: a WebAssembly.Module. A module and its memory go when nobody holds it. */
-  static async make(compiled) {
+  /**
+   * compiled: a WebAssembly.Module. A module and its memory go when nobody holds it.
+   * tell: takes what a frame is doing while it is drawn, { doing, share }; the share is null where it
+   *   is not known
+   */
+  static async make(compiled, tell = () => {}) {
     const module = new VolumeModule();
     const instance = await WebAssembly.instantiate(
       compiled,
-      surroundings(() => module.#core.memory),
+      surroundings(
+        () => module.#core.memory,
+        (at, share) =>
+          tell({ doing: module.#text(at >>> 0), share: Number.isNaN(share) ? null : share }),
+      ),
     );
     module.#core = instance.exports;
     module.#core._initialize();

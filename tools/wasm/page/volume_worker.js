@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Reads files and draws frames beside the page. Answers each message {id, call, ...} with
-// {id, result} or {id, failure}, one after the other.
+// {id, result} or {id, failure, hasVolume}, one after the other, and tells meanwhile what it does: {told}.
 import { openVolume } from './readers/open_volume.js';
 import { VolumeModule } from './volume_module.js';
 
@@ -13,13 +13,32 @@ const compiled = fetch(new URL('nestgrid.wasm', import.meta.url))
 /** The module with the volume in the picture; another one takes its place when it is ready. */
 let module = null;
 
+const pauseOfTelling = 100;
+let lastTold = 0;
+
+function tell(told) {
+  const now = performance.now();
+  if (now - lastTold < pauseOfTelling) return;
+  lastTold = now;
+  postMessage({ told });
+}
+
 const calls = {
   async open({ file, rawFormat }) {
     const volume = await openVolume(file, rawFormat);
-    const next = await VolumeModule.make(await compiled);
+    const next = await VolumeModule.make(await compiled, tell);
     const info = await next.open(volume);
     module = next;
-    return { ...info, title: file.name, name: volume.name ?? 'value' };
+    const stem = file.name.replace(/(\.nii)?\.[^.]*$/i, '');
+    return {
+      ...info,
+      title: file.name,
+      name: volume.name || stem,
+      length_unit: volume.lengthUnit ?? '',
+    };
+  },
+  async pulse() {
+    return { doing: '', share: null };
   },
   async frame({ request }) {
     if (!module) throw new Error('there is no volume yet');
@@ -41,7 +60,7 @@ async function answer({ id, call, ...values }) {
     const result = await calls[call](values);
     postMessage({ id, result }, result instanceof ArrayBuffer ? [result] : []);
   } catch (error) {
-    postMessage({ id, failure: sentenceOf(error) });
+    postMessage({ id, failure: sentenceOf(error), hasVolume: module !== null });
   }
 }
 

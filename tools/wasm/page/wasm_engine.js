@@ -6,44 +6,111 @@ import { askRawFormat } from './raw_dialog.js';
 import { formats } from './readers/open_volume.js';
 import { rawFormatOfName } from './readers/raw.js';
 
+const nothing = { doing: '', share: null };
+
+function aborted() {
+  return new DOMException('nobody waits for this any more', 'AbortError');
+}
+
 export class WasmEngine {
   takesFiles = true;
+  // What is aborted ends with its worker, and the next one reads the file again.
+  stopsCheaply = false;
   formats = `Volumes: ${formats.join(', ')}`;
 
-  #worker = new Worker(new URL('volume_worker.js', import.meta.url), { type: 'module' });
+  #worker = null;
   #waiting = new Map();
   #calls = 0;
+  #told = nothing;
+  /** The file whose volume the worker has, or had. */
+  #opened = null;
+  #hasVolume = false;
 
   constructor() {
-    this.#worker.addEventListener('message', ({ data: { id, result, failure } }) => {
-      const { resolve, reject } = this.#waiting.get(id);
-      this.#waiting.delete(id);
-      if (failure === undefined) resolve(result);
-      else reject(new Error(failure));
-    });
-    this.#worker.addEventListener('error', () => {
-      for (const { reject } of this.#waiting.values()) {
-        reject(new Error('the part of the page that reads files has failed: load the page again'));
-      }
-      this.#waiting.clear();
-    });
+    this.#start();
   }
 
-  async open(file) {
+  async open(file, signal) {
     const isRaw = file.name.toLowerCase().endsWith('.raw');
-    const rawFormat = isRaw ? (rawFormatOfName(file.name) ?? (await askRawFormat(file))) : null;
-    return this.#call({ call: 'open', file, rawFormat });
+    const rawFormat = isRaw
+      ? (rawFormatOfName(file.name) ?? (await askRawFormat(file, signal)))
+      : null;
+    const info = await this.#call({ call: 'open', file, rawFormat }, signal);
+    this.#opened = { file, rawFormat };
+    this.#hasVolume = true;
+    return info;
   }
 
-  frame(request) {
-    return this.#call({ call: 'frame', request });
+  async frame(request, signal) {
+    if (this.#opened && !this.#hasVolume) {
+      await this.#call({ call: 'open', ...this.#opened }, signal);
+      this.#hasVolume = true;
+    }
+    return this.#call({ call: 'frame', request }, signal);
   }
 
-  #call(message) {
+  /** A worker that draws cannot be asked: it tells by itself. */
+  async pulse(signal) {
+    if (this.#waiting.size > 0) return this.#told;
+    return this.#call({ call: 'pulse' }, signal, () => {});
+  }
+
+  /** abort: what an abort does */
+  #call(message, signal, abort = () => this.#restart(aborted())) {
     return new Promise((resolve, reject) => {
       const id = this.#calls++;
-      this.#waiting.set(id, { resolve, reject });
+      const end = () => {
+        abort();
+        reject(aborted());
+        this.#waiting.delete(id);
+      };
+      const settle = (act) => (value) => {
+        signal?.removeEventListener('abort', end);
+        act(value);
+      };
+      if (signal?.aborted) {
+        reject(aborted());
+        return;
+      }
+      signal?.addEventListener('abort', end, { once: true });
+      this.#waiting.set(id, { resolve: settle(resolve), reject: settle(reject) });
       this.#worker.postMessage({ id, ...message });
     });
+  }
+
+  #start() {
+    const worker = new Worker(new URL('volume_worker.js', import.meta.url), { type: 'module' });
+    worker.addEventListener('message', ({ data }) => this.#take(data));
+    worker.addEventListener('error', () => {
+      const failed = new Error('The part of this page that reads files has failed; it begins anew.');
+      if (worker === this.#worker) this.#restart(failed);
+    });
+    this.#worker = worker;
+    this.#told = nothing;
+  }
+
+  #take({ id, result, failure, hasVolume, told }) {
+    if (told) {
+      this.#told = told;
+      return;
+    }
+    const waiting = this.#waiting.get(id);
+    this.#waiting.delete(id);
+    this.#told = nothing;
+    if (failure === undefined) waiting?.resolve(result);
+    else {
+      this.#hasVolume = hasVolume;
+      waiting?.reject(new Error(failure));
+    }
+  }
+
+  /** Ends what the worker does. The next frame opens the file again. */
+  #restart(error) {
+    this.#worker.terminate();
+    this.#hasVolume = false;
+    const waiting = [...this.#waiting.values()];
+    this.#waiting.clear();
+    this.#start();
+    for (const { reject } of waiting) reject(error);
   }
 }
