@@ -105,7 +105,6 @@ try {
 
   // Sizes that no window has, also beyond what is drawn at once.
   const white = await save({ size: [2500, 1300], ground: 'white' });
-  copyFileSync(join(saved, 'nestgrid.png'), resolve(folder, 'saved.png'));
   check(white.width === 2500 && white.height === 1300, `${white.width} x ${white.height}`);
   check((await white.at(0, 0)).join() === '255,255,255,255', `white ground is ${await white.at(0, 0)}`);
   check((await browser.camera()).every((x, i) => Math.abs(x - camera[i]) < 1e-9), 'saving moves the camera');
@@ -126,6 +125,10 @@ try {
   const text = [0x1c, 0x21, 0x28];
   const drawn = await white.run(Math.round(1300 - 1.2 * em), text);
   check(Math.abs(drawn - length / perPoint) < 0.5 * em, `the scale bar is ${drawn} points long, not ${length / perPoint}`);
+
+  // For the documentation, as large as it is shown there.
+  await save({ size: [1250, 650], ground: 'white' });
+  copyFileSync(join(saved, 'nestgrid.png'), resolve(folder, 'saved.png'));
 
   // Texts.
   for (const [keyword, wanted] of [['Software', 'nestgrid'], ['Title', volume.split('/').at(-1)]]) {
