@@ -231,7 +231,7 @@ class Field:
         return f"from {least:.6g} to {greatest:.6g}"
 
     def __repr__(self) -> str:
-        name = f" '{self.name}'" if self.name else ""
+        name = f" {self.name!r}" if self.name else ""
         return f"<nestgrid.{type(self).__name__}{name}: {self._size()}, {self._range_text()}>"
 
     def _rows(self) -> list[tuple[str, str]]:

@@ -29,7 +29,7 @@ TYPES = {
     "float": "float32",
     "double": "float64",
 }
-LENGTHS = {1: "m", 2: "mm", 3: "um"}  # of NIfTI's xyzt_units
+LENGTHS = {1: "m", 2: "mm", 3: "µm"}  # of NIfTI's xyzt_units
 
 
 class Refused(Exception):
@@ -107,6 +107,8 @@ def read_vti(path: str, array: str) -> tuple[Any, dict[str, Any]]:
     place["direction"] = [[matrix.GetElement(r, c) for c in range(3)] for r in range(3)]
     scalars = data.GetScalars()
     place["name"] = (scalars.GetName() or "") if scalars is not None else ""
+    if place["name"] == "ImageScalars":  # VTK's own name for what nobody has named
+        place["name"] = ""
     return image, place | {"unit": ""}
 
 

@@ -96,7 +96,7 @@ class _Extracted:
         return rows
 
     def __repr__(self) -> str:
-        name = f" of '{self._name}'" if self._name else ""
+        name = f" of {self._name!r}" if self._name else ""
         return f"<nestgrid.{type(self).__name__}{name}: {self._size()}{_between(self.vertices)}>"
 
     def _repr_html_(self) -> str:
