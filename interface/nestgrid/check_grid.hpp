@@ -43,11 +43,13 @@ enum class Law : std::uint8_t {
     coarse_ids,       ///< one place, one id; where CheckOptions::one_id_a_place demands it
 };
 
+/// The first mistake that was found.
 struct GridViolation {
     Law law;
     std::string sentence;
 };
 
+/// What check_grid and check_hierarchy look at.
 struct CheckOptions {
     int max_depth = 100;
     /// Relative to the size of the coarse element, for own positions.

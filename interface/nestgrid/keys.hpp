@@ -20,6 +20,7 @@
 
 namespace nestgrid {
 
+/// The key of a node, the same from every element, thread and process; 64 or 128 bits.
 #ifdef NESTGRID_WIDE_KEYS
 __extension__ using NodeKey = unsigned __int128;
 #else

@@ -33,13 +33,15 @@ enum {
 
 enum { NESTGRID_FLOAT = 0, NESTGRID_DOUBLE = 1 };
 
+/** No node, where the number of one is expected. */
 #define NESTGRID_NO_NODE UINT64_MAX
 
-/* An element is a value of its author's choice, copied bytewise. */
+/** An element is a value of its author's choice, copied bytewise. */
 typedef struct nestgrid_element {
     uint64_t word[6];
 } nestgrid_element;
 
+/** A coarse element: its shape, corners and their ids. */
 typedef struct nestgrid_coarse {
     nestgrid_element element;
     int shape;
@@ -48,7 +50,7 @@ typedef struct nestgrid_coarse {
     int orientation; /* -1 where the corners are numbered as in a mirror, else 1 */
 } nestgrid_coarse;
 
-/* A new node: the weighted mean of nodes of the rule, corners of the parent first. */
+/** A new node: the weighted mean of nodes of the rule, corners of the parent first. */
 typedef struct nestgrid_stencil {
     int count;
     int parent[8];
@@ -56,12 +58,14 @@ typedef struct nestgrid_stencil {
     int number; /* tells apart stencils of equal parents and equal order of weights */
 } nestgrid_stencil;
 
+/** A child of a rule. */
 typedef struct nestgrid_child {
     int shape;
     int corner[8]; /* nodes of the rule: corners of the parent, then new nodes */
     int orientation;
 } nestgrid_child;
 
+/** How an element is refined: its new nodes and its children. */
 typedef struct nestgrid_rule {
     const char* name;
     int shape; /* of the parent */
@@ -71,6 +75,7 @@ typedef struct nestgrid_rule {
     const nestgrid_child* children;
 } nestgrid_rule;
 
+/** The questions to a grid. */
 typedef struct nestgrid_grid {
     size_t size;
     const void* self; /* handed to every function */
@@ -138,9 +143,9 @@ typedef struct nestgrid_grid {
     int (*hanging_parents)(const void* self, uint64_t node, uint64_t out[2]);
 } nestgrid_grid;
 
-/* Values are float or double as value_type says; component c of node n goes to
- * out[n * components + c], n below count. *missing receives the nodes that could not be given, one
- * bit each. */
+/** The questions to a field. Values are float or double as value_type says; component c of node n
+ * goes to out[n * components + c], n below count. *missing receives the nodes that could not be
+ * given, one bit each. */
 typedef struct nestgrid_field {
     size_t size;
     const void* self;

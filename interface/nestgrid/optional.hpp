@@ -83,6 +83,7 @@ struct StarRow {
     bool gathers = false;
 };
 
+/// An optional operation that a grid or field offers.
 enum class Feature : unsigned {
     own_keys = 1,
     dense_keys = 2,
@@ -98,6 +99,7 @@ enum class Feature : unsigned {
 };
 inline constexpr Feature last_feature = Feature::hanging_parents;
 
+/// Whether an element is drawn.
 enum class Hidden : std::uint8_t { not_at_all, partly, wholly };
 
 }  // namespace nestgrid

@@ -100,6 +100,7 @@ struct ChildCorner {
     std::uint8_t corner = 0;
 };
 
+/// How an element is refined: its new nodes and its children. Made by make_rule.
 struct Rule {
     std::string name;
     Shape parent = Shape::point;

@@ -22,6 +22,7 @@
 
 namespace nestgrid {
 
+/// The shapes of elements.
 enum class Shape : std::uint8_t {
     point,
     segment,
@@ -39,6 +40,7 @@ inline constexpr int max_edges = 12;
 inline constexpr int max_faces = 6;
 inline constexpr int shape_count = 8;
 
+/// A face of a shape.
 struct FaceTopology {
     Shape shape = Shape::point;
     std::uint8_t corners = 0;
@@ -51,6 +53,7 @@ struct FaceTopology {
     }
 };
 
+/// The corners, edges and faces of a shape.
 struct Topology {
     std::string_view name;
     std::uint8_t dimension = 0;
@@ -157,6 +160,7 @@ constexpr double cone(const FaceTopology& face, std::span<const Point> x) {
 
 }  // namespace detail
 
+/// The corners, edges and faces of a shape, numbered as above.
 constexpr const Topology& topology(Shape shape) {
     return detail::topologies[static_cast<std::size_t>(shape)];
 }
@@ -182,6 +186,7 @@ constexpr std::uint8_t edge_between(Shape shape, std::size_t a, std::size_t b) {
     return detail::edge_numbers[static_cast<std::size_t>(shape)][a][b];
 }
 
+/// Whether a shape is a point, segment, triangle or tetrahedron.
 constexpr bool is_simplex(Shape shape) {
     return topology(shape).corners == topology(shape).dimension + 1;
 }

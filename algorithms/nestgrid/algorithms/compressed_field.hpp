@@ -21,6 +21,7 @@
 
 namespace nestgrid {
 
+/// How values are kept.
 struct CompressionOptions {
     /// 0: values are kept bit for bit. Else they become multiples of the step, off by at most half
     /// of it and the rounding of their type: exactly the values where these are multiples already.

@@ -227,11 +227,13 @@ private:
     S criterion_;
 };
 
+/// A node is interpolated where both criteria hold.
 template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
 Both<A, B> operator&&(const A& a, const B& b) {
     return {a, b};
 }
 
+/// A node is interpolated where one of the criteria holds.
 template <std::derived_from<Criterion> A, std::derived_from<Criterion> B>
 Either<A, B> operator||(const A& a, const B& b) {
     return {a, b};

@@ -21,6 +21,7 @@
 
 namespace nestgrid {
 
+/// How finely data that jump are drawn.
 struct DiscontinuousOptions {
     /// Elements stop where component 0 deviates by this at most, in the units of the data.
     double threshold = 0;

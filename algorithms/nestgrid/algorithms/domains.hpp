@@ -19,8 +19,11 @@
 
 namespace nestgrid {
 
+/// The distance of a point from a domain: 0 inside.
 using Distance = std::function<double(const Point&)>;
+/// A distance from what both domains have in common, never above the true one.
 Distance intersection(Distance a, Distance b);
+/// The distance from the nearer of two domains.
 Distance union_of(Distance a, Distance b);
 
 /// The distance from a ball.

@@ -12,6 +12,7 @@
 
 namespace nestgrid {
 
+/// Runs the tasks of an algorithm, on one thread or on several.
 class Executor {
 public:
     virtual ~Executor() = default;

@@ -17,6 +17,7 @@
 
 namespace nestgrid {
 
+/// What geometry_indicator may be told.
 struct GeometryOptions {
     Spread spread{};
 };

@@ -149,6 +149,7 @@ concept AnyHierarchy =
 
 }  // namespace detail
 
+/// How far new nodes are from the means of their parents, saturated; and what bounds it.
 class HierarchicalIndicator final : public Indicator, public Bounds {
 public:
     /// Walks the whole hierarchy; component 0 of the field counts.
@@ -196,13 +197,13 @@ public:
     /// least() and greatest() also count values of before. The grid may have been refined and
     /// coarsened, too, where nodes keep their keys; hanging nodes that it does not name are then
     /// found by a walk over all of it. The indicator stays as it was where this throws.
-    /// \param leaf_errors errors of leaves, where it was made of these
     /// \throw InvalidInput as the constructors do, and where errors of leaves are missing
     template <class Grid, class Field>
         requires(!detail::AnyHierarchy<Grid>)
     void update(const Grid& grid, const Field& field, const ChangedPlaces& changed) {
         update(erase(grid, field), changed);
     }
+    /// \param leaf_errors errors of leaves, where it was made of these
     void update(const Hierarchy<float>& hierarchy, const ChangedPlaces& changed,
                 const LeafErrors& leaf_errors = {});
     void update(const Hierarchy<double>& hierarchy, const ChangedPlaces& changed,

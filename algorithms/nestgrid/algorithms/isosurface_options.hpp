@@ -41,6 +41,7 @@ struct ErrorBounds {
     }
 };
 
+/// How finely isosurfaces and slices are drawn, and what is kept of them.
 struct IsosurfaceOptions {
     /// epsilon, in the units of the data: offsets up to it are projected away.
     double threshold = 0;

@@ -27,6 +27,7 @@
 
 namespace nestgrid {
 
+/// Indicator and bounds at any time between frames, without a new walk.
 class KeyFrames final : public Indicator, public Bounds {
 public:
     /// \param frames of one hierarchy; borrowed

@@ -25,6 +25,7 @@
 
 namespace nestgrid {
 
+/// The threshold that keeps within a number of triangles.
 struct TriangleBudget {
     double threshold = 0;
     std::uint64_t triangles = 0;  ///< of the surface at it

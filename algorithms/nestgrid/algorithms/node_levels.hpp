@@ -19,6 +19,7 @@
 
 namespace nestgrid {
 
+/// The level on which each node is made.
 class NodeLevels final : public Indicator {
 public:
     /// Walks the whole hierarchy.

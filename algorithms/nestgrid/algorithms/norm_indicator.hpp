@@ -16,12 +16,14 @@
 
 namespace nestgrid {
 
+/// How the offsets of several components become one number.
 enum class OffsetNorm : std::uint8_t {
     sum,       ///< of the absolute values
     euclid,    ///< the root of the sum of squares: of a tensor Frobenius' norm
     greatest,  ///< of the absolute values
 };
 
+/// Which components norm_indicator counts, and how.
 struct NormOptions {
     /// One for each component, above 0, in its units; infinite for components that do not count.
     /// By default all are 1, so that thresholds are in the units of the data.

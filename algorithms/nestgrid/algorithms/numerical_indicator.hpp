@@ -16,6 +16,7 @@
 
 namespace nestgrid {
 
+/// What numerical_indicator may be told.
 struct NumericalOptions {
     Spread spread{};
 };

@@ -17,6 +17,7 @@
 
 namespace nestgrid {
 
+/// Values at points.
 struct ProbeResult {
     std::size_t components = 1;
     /// P_S U: component c at point i is values[i * components + c]; not a number outside the grid.

@@ -10,6 +10,7 @@
 
 namespace nestgrid {
 
+/// Values along a line.
 struct LineProbe : ProbeResult {
     std::vector<Point> points;
     std::vector<double> distance;  ///< from the first point, in units of the grid

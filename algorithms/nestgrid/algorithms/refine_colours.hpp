@@ -21,6 +21,7 @@
 
 namespace nestgrid {
 
+/// What refine_colours did, and how far colours are off.
 struct ColourRefinement {
     std::size_t split = 0;  ///< sides
     /// Nothing is split for this: the greatest difference that was met at a probed point.

@@ -24,6 +24,7 @@
 
 namespace nestgrid {
 
+/// A part of space that is drawn finely.
 class Region final : public Indicator {
 public:
     /// An empty region.

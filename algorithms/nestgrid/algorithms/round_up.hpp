@@ -75,6 +75,7 @@ inline std::uint16_t bfloat16_below(double x) {
     return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(positive) >> 16U);
 }
 
+/// The number that has these bits.
 inline float bfloat16_value(std::uint16_t bits) {
     return std::bit_cast<float>(std::uint32_t{bits} << 16U);
 }

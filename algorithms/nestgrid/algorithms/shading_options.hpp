@@ -11,6 +11,7 @@
 
 namespace nestgrid {
 
+/// How finely shadings and height fields are drawn, and what is kept of them.
 struct ShadingOptions {
     /// epsilon, in the units of the data: offsets up to it are projected away. At least 0.
     double threshold = 0;

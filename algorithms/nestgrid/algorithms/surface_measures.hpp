@@ -28,6 +28,7 @@ struct SurfaceMeasures {
     std::vector<double> integrals;  ///< of each attribute (component 1 ... of the field)
 };
 
+/// The measures of all components of a surface.
 struct SurfaceMeasurement {
     std::vector<SurfaceMeasures> components;  ///< in the order of their first triangles
     std::vector<std::uint32_t> component_of;  ///< per triangle

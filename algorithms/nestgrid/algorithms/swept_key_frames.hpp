@@ -27,6 +27,7 @@
 
 namespace nestgrid {
 
+/// An indicator at any time between frames, without a new walk.
 class SweptKeyFrames final : public Indicator {
 public:
     /// \param frames of one measure and one hierarchy; borrowed

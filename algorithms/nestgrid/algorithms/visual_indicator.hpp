@@ -19,6 +19,7 @@
 
 namespace nestgrid {
 
+/// What visual_indicator may be told.
 struct VisualOptions {
     /// Below it differences of the data are noise, in their units: not negative. By default 2^-20
     /// of the range of the data, which takes a second walk to find.

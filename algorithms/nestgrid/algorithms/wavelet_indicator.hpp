@@ -17,11 +17,13 @@
 
 namespace nestgrid {
 
+/// How a coefficient becomes a number.
 enum class WaveletNorm : std::uint8_t {
     amplitude,  ///< |d|, in units of the data
     square,     ///< |d| times the root of the integral of the hat function at the node
 };
 
+/// What wavelet_indicator may be told.
 struct WaveletOptions {
     WaveletNorm norm = WaveletNorm::amplitude;
     Spread spread{};

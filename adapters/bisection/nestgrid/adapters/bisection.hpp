@@ -191,6 +191,7 @@ concept WalkedInPatches = std::same_as<Sample, float> || std::same_as<Sample, do
     std::same_as<Sample, std::int32_t> || std::same_as<Sample, std::uint32_t> ||
     std::same_as<Sample, std::int64_t> || std::same_as<Sample, std::uint64_t>;
 
+/// The engine walks this grid in patches.
 template <int dim, WalkedInPatches Sample>
 bool knows_patches(const LatticeBisection<dim>&, const LatticeField<LatticeBisection<dim>, Sample>&,
                    const HierarchyFacts&) {

@@ -22,6 +22,7 @@
 
 namespace nestgrid {
 
+/// The family of simplices that are halved: what StoredGrid asks of it.
 template <int dim>
 struct Bisection {
     static_assert(dim == 2 || dim == 3);

@@ -10,6 +10,7 @@
 
 namespace nestgrid {
 
+/// What is looked for in a coarse grid, and what is allowed.
 struct CoarseChecks {
     /// Two nodes at one place are meant: the two sides of a slit, a periodic image.
     bool slits = false;

@@ -34,6 +34,7 @@ struct SharedFace {
     CoarseFace face;
     bool turned = false;  ///< both elements run through it in the same sense
 };
+/// Elements as vertices of a graph, joined where they have a face in common.
 using DualGraph =
     boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
                           boost::property<boost::vertex_color_t, boost::default_color_type,

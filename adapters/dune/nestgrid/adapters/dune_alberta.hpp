@@ -14,6 +14,7 @@ class AlbertaGrid;
 
 namespace nestgrid {
 
+/// What DuneGrid knows of ALBERTA's bisections.
 template <int dim>
 struct DuneTraits<Dune::AlbertaGrid<dim, dim>> : DuneDefaults<Dune::AlbertaGrid<dim, dim>> {
     static constexpr int max_children = 2;

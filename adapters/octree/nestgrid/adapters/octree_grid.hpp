@@ -10,6 +10,7 @@
 
 namespace nestgrid {
 
+/// The family of quadrilaterals and hexahedra in halves: what StoredGrid asks of it.
 template <int dim>
 struct Octree {
     static_assert(dim == 2 || dim == 3);

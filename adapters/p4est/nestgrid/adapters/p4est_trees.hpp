@@ -43,6 +43,7 @@ struct P4estTypes {
     static constexpr auto& face_corners = p4est_face_corners;
 };
 
+/// The names of p8est.
 template <>
 struct P4estTypes<3> {
     using Forest = p8est_t;
@@ -62,6 +63,7 @@ struct P4estNode {
     std::array<std::int32_t, 3> x{};
 };
 
+/// The trees of a forest with their corners and ids.
 template <int dim>
 class P4estTrees {
 public:

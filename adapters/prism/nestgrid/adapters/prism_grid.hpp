@@ -15,6 +15,7 @@
 
 namespace nestgrid {
 
+/// The family of prisms in eight parts: what StoredGrid asks of it.
 struct Prism {
     static constexpr int dimension = 3;
     static constexpr int max_corners = 6;

@@ -44,6 +44,7 @@ struct StoredRule {
     std::vector<std::uint8_t> carrier;  ///< corners that each new node depends on, one bit each
 };
 
+/// The elements between a refined element and its children, as a tree.
 struct Pattern {
     struct Target {
         bool exit = false;

@@ -38,6 +38,7 @@ struct HierarchyHeader {
     int corners = 0;  ///< of an element at most: Family::max_corners
 };
 
+/// What a .nestgrid file held.
 template <class Family>
 struct StoredHierarchy {
     StoredGrid<Family> grid;
@@ -50,6 +51,7 @@ struct StoredHierarchy {
     }
 };
 
+/// What a .nestgrid file holds beside the grid.
 struct StoredFileOptions {
     std::vector<double> times{0};  ///< of the frames, finite and ascending
     /// How values are encoded; nothing: as they are. Nodes that hang lose their values, and have

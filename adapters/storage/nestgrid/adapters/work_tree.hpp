@@ -30,6 +30,7 @@ enum class Mark : std::int8_t {
 
 inline constexpr std::uint32_t no_node = 0xFFFFFFFFU;
 
+/// The tree of a bisection while it is refined.
 template <int corners>
 class WorkTree {
 public:

@@ -15,6 +15,7 @@
 
 namespace nestgrid {
 
+/// Runs tasks on the threads of oneTBB.
 class TbbExecutor final : public Executor {
 public:
     /// \param threads how many to use, though no more than oneTBB would; 0: all of these

@@ -9,6 +9,7 @@
 
 namespace nestgrid {
 
+/// How TetGen fills a surface.
 struct TetgenOptions {
     /// TetGen's switches (its manual, chapter 4) p q a Y O S T o z with their numbers, such as
     /// "pq1.4a0.1": quality 1.4, tetrahedra of a volume of 0.1 at most.

@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-/* An indexed surface: triangles on grids of dimension 3, segments on those of dimension 2. */
+/** An indexed surface: triangles on grids of dimension 3, segments on those of dimension 2. */
 typedef struct nestgrid_surface {
     size_t vertex_count;
     const double* vertices; /* 3 per vertex */
@@ -28,7 +28,7 @@ typedef struct nestgrid_surface {
     void* owner;
 } nestgrid_surface;
 
-/* The isosurface of a field of one component under the hierarchical indicator with the given
+/** The isosurface of a field of one component under the hierarchical indicator with the given
  * threshold, in units of the data. Returns 0, or another number and a sentence in `message`, which
  * has room for message_size characters and may be NULL; the surface is then empty. Free the result
  * with nestgrid_surface_free. */
@@ -36,9 +36,10 @@ int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_field* field, 
                         double threshold, nestgrid_surface* out, char* message,
                         size_t message_size);
 
+/** Frees what nestgrid_isosurface has returned. */
 void nestgrid_surface_free(nestgrid_surface* surface);
 
-/* Walks the hierarchy: 0 where it keeps the contract, else another number and the first violation
+/** Walks the hierarchy: 0 where it keeps the contract, else another number and the first violation
  * as a sentence in `message`. */
 int nestgrid_check_grid(const nestgrid_grid* grid, const nestgrid_field* field, char* message,
                         size_t message_size);
