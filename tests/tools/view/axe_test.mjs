@@ -111,6 +111,16 @@ try {
     await opened.go('#surface=on');
     await page.$eval('#surface', (box) => box.click());
     await look(`${scheme} nothing chosen`);
+    if (!opened.takesFiles) {
+      // A program that is stopped while a frame is under way.
+      await opened.go('');
+      opened.program.kill('SIGSTOP');
+      await page.$eval('#isovalue', (slider) => { slider.value = '400'; slider.dispatchEvent(new Event('change')); });
+      await new Promise((done) => { setTimeout(done, 3000); });
+      await look(`${scheme} at work`);
+      opened.program.kill('SIGCONT');
+      await opened.settled();
+    }
     await opened.go('#isovalue=1e9');
     await page.waitForSelector('#empty:not([hidden])');
     await look(`${scheme} message`);
