@@ -122,8 +122,7 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         fill_gaps(i);
         surfaces_[i].builder().flush();
-        surfaces_[i].set_normals();
-        if (options_->at_nodes && !surfaces_[i].counts_only()) surfaces_[i].merge_at_nodes();
+        surfaces_[i].finish(options_->at_nodes && !surfaces_[i].counts_only());
     }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <surfaces/merge_at_nodes.hpp>
+#include <surfaces/settle_normals.hpp>
 
 namespace nestgrid::engine {
 
@@ -19,10 +20,10 @@ void LevelSurface<dimension>::begin(Builder builder, NodeGradients* gradients, b
     numbers_.clear();
     within_.begin_again(0);
     where_.clear();
-    areas_.clear();
+    simplices_.clear();
     at_nodes_.clear();
     is_at_node_.clear();
-    sums_areas_ = gradients != nullptr && builder_.target() == nullptr;
+    keeps_simplices_ = gradients != nullptr && builder_.target() == nullptr;
     extracted_ = 0;
     error_bound_ = 0;
     position_bound_ = 0;
@@ -40,7 +41,6 @@ auto LevelSurface<dimension>::add(const SurfaceCut& cut) -> Number {
     if (gradients_ != nullptr) {
         where_.push_back(
             {gradients_->slot(cut.node[0]), gradients_->slot(cut.node[1]), cut.fraction});
-        if (sums_areas_) areas_.push_back({0, 0, 0});
     }
     return number;
 }
@@ -51,7 +51,6 @@ auto LevelSurface<dimension>::add_unnamed(std::span<const Point> x,
     const Number first = builder_.next_vertex();
     if (none - first < x.size()) throw_too_many_vertices();
     if (gradients_ != nullptr) where_.resize(where_.size() + x.size(), {none, none, 0.0});
-    if (sums_areas_) areas_.resize(areas_.size() + x.size(), {0, 0, 0});
     builder_.add_vertices(x, attributes);
     return first;
 }
@@ -104,19 +103,11 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
                     std::span(at_nodes.attributes).subspan(i * stride, stride));
     }
     builder_.add_part(surface, number);
-    if (!sums_areas_) return;
+    if (!keeps_simplices_) return;
     for (auto simplex : surface.simplices) {
         for (Number& v : simplex) v = number[v];
-        sum_area(simplex);
+        simplices_.push_back(simplex);
     }
-}
-
-/// Twice the area vector of a triangle; 0 in two dimensions.
-template <int dimension>
-Point LevelSurface<dimension>::area(const Simplex& corners) const {
-    if constexpr (dimension == 2) return {0, 0, 0};
-    const Point x = position(corners[0]);
-    return cross(position(corners[1]) - x, position(corners[dimension - 1]) - x);
 }
 
 /// The gradient at a vertex, interpolated between its nodes; 0 where neither node has a gradient.
@@ -130,41 +121,31 @@ Point LevelSurface<dimension>::gradient_at(const Where& where) const {
     return (1 - where.fraction) * a + where.fraction * b;
 }
 
-/// Adds to the normal of each flat vertex the area vectors of the triangles around the vertex.
+/// Unit normals; 0 where no gradient is known, or where it is 0.
 template <int dimension>
-void LevelSurface<dimension>::add_areas(const std::vector<bool>& flat,
-                                        std::vector<Point>& normals) const {
-    for (std::size_t v = 0; sums_areas_ && v < flat.size(); ++v) {
-        if (flat[v]) normals[v] = areas_[v];
-    }
-    if (sums_areas_) return;
-    for (const Simplex& simplex : builder_.target()->simplices) {
-        if (std::ranges::none_of(simplex, [&](Number v) { return flat[v]; })) continue;
-        const Point n = area(simplex);
-        for (const Number v : simplex) {
-            if (flat[v]) normals[v] = normals[v] + n;
-        }
-    }
-}
-
-template <int dimension>
-void LevelSurface<dimension>::set_normals() {
-    if (gradients_ == nullptr) return;
+std::vector<Point> LevelSurface<dimension>::normals_from_gradients() const {
     std::vector<Point> normals;
     normals.reserve(where_.size());
-    std::vector<bool> flat;  // vertices without a gradient
-    flat.reserve(where_.size());
     for (const Where& where : where_) {
         const Point g = gradient_at(where);
-        flat.push_back(!(norm(g) > 0));
-        normals.push_back(flat.back() ? Point{0, 0, 0} : -1.0 * g);
+        const double length = norm(g);
+        normals.push_back(length > 0 ? (-1 / length) * g : Point{0, 0, 0});
     }
-    if (std::ranges::find(flat, true) != flat.end()) add_areas(flat, normals);
-    for (Point& n : normals) {
-        const double length = norm(n);
-        if (length > 0) n = (1 / length) * n;
+    return normals;
+}
+
+template <>
+void LevelSurface<2>::settle(std::vector<Point>&) const {}
+template <>
+void LevelSurface<3>::settle(std::vector<Point>& normals) const {
+    if (const Surface<3>* const surface = builder_.target()) {
+        settle_normals(surface->simplices, surface->vertices, normals);
+        return;
     }
-    builder_.set_normals(std::move(normals));
+    std::vector<Point> x(normals.size());
+    for (Number v = 0; v < x.size(); ++v) x[v] = position(v);
+    const std::vector<Simplex> simplices(simplices_.begin(), simplices_.end());
+    settle_normals(simplices, x, normals);
 }
 
 template <>
@@ -172,6 +153,20 @@ void LevelSurface<2>::merge_at_nodes() {}
 template <>
 void LevelSurface<3>::merge_at_nodes() {
     builder_.change([&](Surface<3>& surface) { engine::merge_at_nodes(surface, at_nodes_); });
+}
+
+template <int dimension>
+void LevelSurface<dimension>::finish(bool merges_at_nodes) {
+    std::vector<Point> normals;
+    if (gradients_ != nullptr) normals = normals_from_gradients();
+    if (merges_at_nodes) {
+        builder_.set_normals(std::move(normals));
+        merge_at_nodes();
+        builder_.change([&](auto& surface) { normals = std::move(surface.normals); });
+    }
+    if (gradients_ == nullptr) return;
+    settle(normals);
+    builder_.set_normals(std::move(normals));
 }
 
 template class LevelSurface<2>;

@@ -34,7 +34,7 @@ public:
     /// Makes no normals, because another LevelSurface makes those of this part.
     void leave_normals() {
         gradients_ = nullptr;
-        sums_areas_ = false;
+        keeps_simplices_ = false;
     }
     /// Only counts from now on. The caller must drop simplices by forget_element().
     void count_only() { counts_only_ = true; }
@@ -80,7 +80,7 @@ public:
 
     NESTGRID_INLINE void add_simplex(const Simplex& corners, std::span<const Point> reference) {
         builder_.add_simplex(corners, reference);
-        if (sums_areas_) sum_area(corners);
+        if (keeps_simplices_) simplices_.push_back(corners);
     }
     /// Appends a part. Numbers its vertices in their order; those that earlier parts have keep
     /// their numbers.
@@ -101,9 +101,6 @@ public:
                                     attributes.end());
     }
     const VerticesAtNodes& at_nodes() const { return at_nodes_; }
-    /// Merges the vertices at each node (merge_at_nodes.hpp). Requires that everything is drawn,
-    /// normals included, into a surface of triangles.
-    void merge_at_nodes();
 
     /// Counts elements that contribute to the surface.
     void add_extracted(std::uint64_t more) { extracted_ += more; }
@@ -114,11 +111,12 @@ public:
     void raise_position_bound(double bound) { position_bound_ = std::max(position_bound_, bound); }
     double position_bound() const { return position_bound_; }
 
-    /// Makes the normals. Requires that everything is drawn.
-    void set_normals();
+    /// Makes the normals, and merges the vertices at each node (merge_at_nodes.hpp), as far as each
+    /// is wanted. Requires that everything is drawn; merging requires a surface of triangles.
+    void finish(bool merges_at_nodes);
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
-               areas_.capacity() * sizeof(Point) + at_nodes_.node.capacity() * sizeof(NodePlace);
+               simplices_.size() * sizeof(Simplex) + at_nodes_.node.capacity() * sizeof(NodePlace);
     }
 
 private:
@@ -128,13 +126,10 @@ private:
         double fraction;
     };
 
-    Point area(const Simplex& corners) const;
-    void sum_area(const Simplex& corners) {
-        const Point n = area(corners);
-        for (const Number v : corners) areas_[v] = areas_[v] + n;
-    }
-    void add_areas(const std::vector<bool>& flat, std::vector<Point>& normals) const;
     Point gradient_at(const Where& where) const;
+    std::vector<Point> normals_from_gradients() const;
+    void settle(std::vector<Point>& normals) const;
+    void merge_at_nodes();
 
     Builder builder_;
     VertexNumbers numbers_;
@@ -142,12 +137,12 @@ private:
     NodeGradients* gradients_ = nullptr;
     std::deque<Where> where_;  // by vertex, where normals are wanted
     VerticesAtNodes at_nodes_;
-    std::vector<bool> is_at_node_;  // by vertex: whether it is among at_nodes_
-    std::vector<Point> areas_;  // area vectors around each vertex, where a sink takes the simplices
+    std::vector<bool> is_at_node_;   // by vertex: whether it is among at_nodes_
+    std::deque<Simplex> simplices_;  // all of them, where a sink takes them and normals are wanted
     std::uint64_t extracted_ = 0;
     double error_bound_ = 0;
     double position_bound_ = 0;
-    bool sums_areas_ = false;
+    bool keeps_simplices_ = false;
     bool verifies_ = false;
     bool counts_only_ = false;
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <surfaces/widest_direction.hpp>
+
 namespace nestgrid::engine {
 
 namespace {
@@ -51,6 +53,23 @@ bool NodeClasses::join_neighbours(std::span<const NumberedTriangle> triangles) {
     return any;
 }
 
+/// Whether no direction is in front of all triangles between a vertex and its link. Triangles
+/// without a direction of their own do not count.
+bool NodeClasses::is_folded(Vertex v, VertexLink link) const {
+    std::vector<Point> directions;
+    Point sum{0, 0, 0};
+    for (const OppositeSide& side : link) {
+        const Point& a = position(side.edge[0]);
+        const Point& b = position(side.edge[1]);
+        if (are_collinear(position(v), a, b)) continue;
+        const Point n = cross(a - position(v), b - position(v));
+        sum = sum + n;
+        directions.push_back((1 / norm(n)) * n);
+    }
+    if (directions.empty() || least_cosine(sum, directions) > 0) return false;
+    return widest_direction(directions).cosine <= 0;
+}
+
 bool NodeClasses::take_offenders_apart(const VertexLinks& links) {
     std::vector<Vertex> offenders;
     links.for_each([&](Vertex v, VertexLink link) {
@@ -65,7 +84,8 @@ bool NodeClasses::take_offenders_apart(const VertexLinks& links) {
                 if (!merged_[v] && !merged_[at]) offenders.push_back(side.edge[1 - end]);
             }
         }
-        if (!shares && merged_[v] && !is_one_fan(link)) offenders.push_back(v);
+        if (shares || !merged_[v]) return;
+        if (!is_one_fan(link) || is_folded(v, link)) offenders.push_back(v);
     });
     bool any = false;
     for (const Vertex v : offenders) {

@@ -51,13 +51,15 @@ public:
     /// \return whether there were any
     bool join_neighbours(std::span<const NumberedTriangle> triangles);
     /// Takes the classes apart at which the surface is no manifold: where two triangles run along
-    /// an edge the same way, and where the triangles around a vertex are not one fan.
+    /// an edge the same way, and where the triangles around a vertex are not one fan. Also those
+    /// whose fan is folded, so that no normal agrees with all of its triangles.
     /// \param links of all vertices that stand for classes, at least
     /// \return whether there were any
     bool take_offenders_apart(const VertexLinks& links);
 
 private:
     NodeKey key(Vertex v) const { return at_nodes_.node[entry_[v]].key; }
+    bool is_folded(Vertex v, VertexLink link) const;
 
     const Surface<3>& surface_;
     const VerticesAtNodes& at_nodes_;

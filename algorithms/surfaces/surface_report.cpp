@@ -126,17 +126,23 @@ void count_vertices(const Surface<3>& surface, SurfaceReport& report) {
     }
 }
 
-/// Fills in the area and the degenerate triangles, and returns the volume.
+/// Fills in the areas and the degenerate triangles, and returns the volume.
 double measure(const Surface<3>& surface, SurfaceReport& report) {
+    const bool has_normals = surface.normals.size() == surface.vertices.size();
     const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
     double volume = 0;
     for (const auto& t : surface.simplices) {
         const Point a = surface.vertices[t[0]] - origin;
         const Point b = surface.vertices[t[1]] - origin;
         const Point c = surface.vertices[t[2]] - origin;
-        const double area = norm(cross(b - a, c - a)) / 2;
+        const Point n = cross(b - a, c - a);
+        const double area = norm(n) / 2;
         if (area == 0) ++report.degenerate_triangles;
         report.area += area;
+        for (const std::uint32_t v : t) {
+            const bool behind = has_normals && dot(surface.normals[v], n) < 0;
+            report.area_behind += behind ? area / 3 : 0;
+        }
         volume += dot(a, cross(b, c)) / 6;
     }
     return volume;
