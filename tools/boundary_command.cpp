@@ -19,14 +19,19 @@ struct Options {
 
 Command add_boundary(CLI::App& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* boundary = program.add_subcommand("boundary", "draw the boundary, coloured");
-    add_input_options(*boundary, o->input);
+    CLI::App* boundary =
+        program.add_subcommand("boundary", "draw the boundary of a grid in space, coloured");
+    boundary->footer(
+        "Examples:\n"
+        "  nestgrid boundary part.nestgrid --outlines --image part.png\n");
+    add_input(*boundary, o->input);
     add_surface_options(*boundary, o->surface);
-    add_lens_options(*boundary, o->lens);
-    add_time_options(*boundary, o->time);
     boundary->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
     add_colour_option(*boundary, o->colour_tolerance);
-    return {boundary, [o] {
+    add_time_options(*boundary, o->time);
+    add_lens_options(*boundary, o->lens);
+    add_read_options(*boundary, o->input);
+    return {boundary, [o](Report& report) {
                 const nestgrid::detail::Everywhere everywhere;
                 draw_coloured(o->input, o->surface,
                               {.function = &everywhere,
@@ -35,6 +40,6 @@ Command add_boundary(CLI::App& program) {
                                .empty = "the hierarchy has no boundary",
                                .lens = parse(o->lens),
                                .colour_tolerance = o->colour_tolerance},
-                              o->time);
+                              o->time, report);
             }};
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "input_file.hpp"
 #include "surface_file.hpp"
 #include "text_file.hpp"
 
@@ -61,14 +62,16 @@ void write_collection(const fs::path& path, const std::vector<CollectionPart>& p
     write_text(text, path);
 }
 
-void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces,
-                    const fs::path& path) {
+void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces, const fs::path& path,
+                    Report& report) {
     std::vector<CollectionPart> parts;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         parts.push_back({numbered(path, i, surfaces.size()), static_cast<double>(i + 1)});
         write_surface(surfaces[i], parts.back().path);
+        report.wrote(parts.back().path, contents_of(surfaces[i]));
     }
-    if (parts.size() > 1 && path.extension() == ".vtp") {
+    if (parts.size() > 1 && ending_of(path) == ".vtp") {
         write_collection(collection_path(path), parts);
+        report.wrote(collection_path(path), {{"files", parts.size()}});
     }
 }

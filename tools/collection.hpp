@@ -8,6 +8,8 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
+#include "report.hpp"
+
 /// One of several surfaces in files beside each other.
 struct CollectionPart {
     std::filesystem::path path;
@@ -22,7 +24,7 @@ std::filesystem::path collection_path(const std::filesystem::path& surfaces);
 void write_collection(const std::filesystem::path& path, const std::vector<CollectionPart>& parts);
 
 /// Writes one surface into a file; several into files with numbers (numbered()), and a list of them
-/// where they are .vtp.
+/// where they are .vtp. The report names all of them.
 /// \throw nestgrid::IoError
 void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces,
-                    const std::filesystem::path& path);
+                    const std::filesystem::path& path, Report& report);

@@ -37,6 +37,7 @@ using nestgrid::operator-;
 /// One surface and what it cost.
 struct Drawn {
     std::optional<double> time;  ///< where it is between frames
+    std::uint64_t budget = 0;    ///< 0: none
     double threshold = 0;
     nestgrid::Slice slice;  ///< or an isosurface without one
     nestgrid::SurfaceReport report;
@@ -50,6 +51,7 @@ struct Drawn {
 struct DrawnField {
     std::string name;        ///< of the colours
     std::string input_name;  ///< of the field that isosurfaces are of
+    std::string length_unit;  ///< empty where it is unknown
     double least = std::numeric_limits<double>::infinity();  ///< of the colours
     double greatest = -std::numeric_limits<double>::infinity();
     double preroll_seconds = 0;
@@ -109,7 +111,7 @@ public:
     void draw_all(const Take& take) {
         const bool unlimited = options_.thresholds.empty() && options_.budgets.empty();
         if (unlimited && !what_.lens && !what_.isovalue) {
-            take(draw(0, [&](Drawn& d) { d.slice = draw_exactly(); }));
+            take(draw(0, 0, [&](Drawn& d) { d.slice = draw_exactly(); }));
             return;
         }
         const ChosenIndicator& indicators = moment_.indicators();
@@ -119,20 +121,23 @@ public:
         }
         if (unlimited) set_default_threshold(thresholds, what_.lens.has_value());
         indicators.with_criteria([&](const auto& criterion_at) {
-            const auto take_at = [&](double threshold) {
-                take(draw(threshold, [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
+            const auto take_at = [&](std::uint64_t budget, double threshold) {
+                take(draw(budget, threshold,
+                          [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
             };
             for (const std::int64_t budget : options_.budgets) {
-                take_at(threshold_for(static_cast<std::uint64_t>(budget), criterion_at));
+                const auto most = static_cast<std::uint64_t>(budget);
+                take_at(most, threshold_for(most, criterion_at));
             }
-            for (const ThresholdText& t : thresholds) take_at(indicators.threshold(t));
+            for (const ThresholdText& t : thresholds) take_at(0, indicators.threshold(t));
         });
     }
 
 private:
     template <class Draw>
-    Drawn draw(double threshold, const Draw& draw_into) {
+    Drawn draw(std::uint64_t budget, double threshold, const Draw& draw_into) {
         Drawn drawn;
+        drawn.budget = budget;
         drawn.time = moment_.time();
         drawn.threshold = threshold;
         const double start = now();
@@ -236,43 +241,56 @@ private:
     const nestgrid::Executor& executor_;
 };
 
-void print(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
-    if (d.time) line("time", *d.time);
-    line("threshold", d.threshold);
-    line("inspect_calls", std::size_t{d.slice.counts.calls});
-    line("visited", std::size_t{d.slice.counts.visited});
-    line("extracted", std::size_t{d.slice.counts.extracted});
-    line("triangles", d.report.triangles);
-    line("vertices", d.report.vertices);
-    line("least_value", field.least);
-    line("greatest_value", field.greatest);
-    line("error_bound", d.slice.error_bound);
-    line("open_edges", d.report.open_edges);
-    line("boundary_edges", d.report.boundary_edges);
-    line("area", d.report.area);
-    for (std::size_t i = 0; i < d.isolines.count(); ++i) {
-        std::printf("%-22s %.6g, %s, length %.6g\n", "isoline", d.isolines.value[i],
-                    d.isolines.closed(i) ? "ring" : "open", d.isolines.length(i));
-    }
+/// What everybody wants to know of a surface comes first.
+Row row_of(const Drawn& d, const ColouredSurface& what) {
+    Row row = begin_row(d.time, d.budget, d.threshold);
+    row.add("triangles", d.report.triangles).add("vertices", d.report.vertices);
+    row.add("error_bound", bound_of(d.slice)).add("open_edges", d.report.open_edges);
+    row.add("area", d.report.area).add("seconds", d.seconds);
     if (what.isovalue && what.function != nullptr) {
-        line("isosurface_triangles", d.isosurface_report.triangles);
-        line("isosurface_open_edges", d.isosurface_report.open_edges);
-        line("isosurface_area", d.isosurface_report.area);
+        row.add("isosurface_triangles", d.isosurface_report.triangles);
+        row.add("isosurface_open_edges", d.isosurface_report.open_edges);
+        row.add("isosurface_area", d.isosurface_report.area);
     }
-    line("preroll_seconds", field.preroll_seconds);
-    line("seconds", d.seconds);
+    row.add("boundary_edges", d.report.boundary_edges);
+    row.add("inspect_calls", d.slice.counts.calls).add("visited", d.slice.counts.visited);
+    return row.add("extracted", d.slice.counts.extracted);
 }
 
-void print_table(const DrawnField& field) {
-    const bool timed = field.surfaces.front().time.has_value();
-    if (timed) std::printf("%10s ", "time");
-    std::printf("%10s %10s %10s %12s %10s %10s\n", "threshold", "triangles", "visited",
-                "error_bound", "open_edges", "seconds");
+/// One row for each value: how many lines have it, and their lengths together.
+void report_isolines(const Drawn& d, const std::vector<double>& values, Report& report) {
+    for (const double value : values) {
+        std::uint64_t rings = 0;
+        std::uint64_t open = 0;
+        double length = 0;
+        for (std::size_t i = 0; i < d.isolines.count(); ++i) {
+            if (d.isolines.value[i] != value) continue;
+            ++(d.isolines.closed(i) ? rings : open);
+            length += d.isolines.length(i);
+        }
+        Row row = begin_row(d.time, d.budget, d.threshold);
+        row.add("isoline", value).add("rings", rings).add("open_lines", open);
+        report.add_row("isolines", row.add("length", length), keys_of(d.time, d.budget) + 1);
+    }
+}
+
+void report_drawn(const DrawnField& field, const ColouredSurface& what, Report& report) {
+    report_field(field.name, field.length_unit, report);
+    report.add("least_value", field.least);
+    report.add("greatest_value", field.greatest);
+    if (field.preroll_seconds > 0) report.add("preroll_seconds", field.preroll_seconds);
+    std::uint64_t triangles = 0;
+    double seconds = 0;
     for (const Drawn& d : field.surfaces) {
-        if (timed) std::printf("%10.6g ", *d.time);
-        std::printf("%10.4g %10zu %10llu %12.4g %10zu %10.4g\n", d.threshold, d.report.triangles,
-                    static_cast<unsigned long long>(d.slice.counts.visited), d.slice.error_bound,
-                    d.report.open_edges, d.seconds);
+        report.add_row("surfaces", row_of(d, what), keys_of(d.time, d.budget));
+        report_isolines(d, field.values, report);
+        triangles += d.report.triangles + d.isosurface_report.triangles;
+        seconds += d.seconds;
+    }
+    report_sum(field.surfaces.size(), triangles, "triangles", seconds, report);
+    if (std::ranges::any_of(field.surfaces,
+                            [](const Drawn& d) { return d.slice.bound_says_nothing(); })) {
+        say_nothing_bounded(report);
     }
 }
 
@@ -390,16 +408,20 @@ vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, bool lines_alone) {
     return append->GetOutput();
 }
 
-void write(const SurfaceOptions& options, const DrawnField& field, const ColouredSurface& what) {
+void write(const SurfaceOptions& options, const DrawnField& field, const ColouredSurface& what,
+           Report& report) {
     std::vector<Panel> panels;
     std::vector<vtkSmartPointer<vtkPolyData>> written;
     for (std::size_t i = 0; i < field.surfaces.size(); ++i) {
         panels.push_back(make_panel(field.surfaces[i], field, what));
         if (options.output.empty()) continue;
         written.push_back(data_of(panels[i], !field.values.empty()));
+        describe(written.back(), field.length_unit);
     }
-    if (!written.empty()) write_surfaces(written, options.output);
-    if (!options.image.empty()) write_picture(panels, options.image);
+    if (!written.empty()) write_surfaces(written, options.output, report);
+    if (options.image.empty()) return;
+    write_picture(panels, options.image);
+    report.wrote(options.image, {{"surfaces", panels.size()}});
 }
 
 void require_triangles(const Drawn& d, const ColouredSurface& what) {
@@ -408,9 +430,10 @@ void require_triangles(const Drawn& d, const ColouredSurface& what) {
 
 /// Draws the surfaces at all moments.
 /// \param film takes the surfaces, which are then dropped; or null
+/// \param tell told how many surfaces are drawn
 void draw_moments(const Moments& moments, const SurfaceOptions& options,
-                  const ColouredSurface& what, const std::string& by, Film* film,
-                  DrawnField& field) {
+                  const ColouredSurface& what, const std::string& by, Film* film, DrawnField& field,
+                  const std::function<void(std::size_t)>& tell) {
     std::optional<Expression> expression;
     const bool by_another = what.isovalue && what.function == nullptr;
     field.values = what.values;
@@ -420,6 +443,7 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
         const FramePrerolls& all = moments.prerolls();
         field.values = values_between(all.least(), all.greatest(), what.value_count);
     }
+    tell(0);
     moments.for_each([&](const Moment& moment) {
         moment.visit([&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy) {
             Drawing<Real> drawing(hierarchy, moment, options, what, moments.executor());
@@ -434,15 +458,18 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
                 if (field.surfaces.empty() && !may_vanish) require_triangles(d, what);
                 if (film != nullptr) {
                     draw_isolines(d, field.values);
-                    film->add(data_of(make_panel(d, field, what), !field.values.empty()), *d.time);
+                    const auto data = data_of(make_panel(d, field, what), !field.values.empty());
+                    describe(data, field.length_unit);
+                    film->add(data, *d.time);
                     d.slice.surface = {};
                     d.isosurface = {};
                 }
                 field.surfaces.push_back(std::move(d));
+                tell(field.surfaces.size());
             });
         });
     });
-    if (film != nullptr) return film->finish();
+    if (film != nullptr) return;
     if (what.value_count > 0) {
         field.values = values_between(field.least, field.greatest, what.value_count);
     }
@@ -451,16 +478,16 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
 
 }  // namespace
 
-void add_colour_option(CLI::App& command, double& tolerance) {
-    command
+CLI::Option* add_colour_option(CLI::App& command, double& tolerance) {
+    return command
         .add_option("--colour-tolerance", tolerance,
-                    "split triangles until colours follow the data within this, in units of the "
-                    "data")
+                    "split triangles until colours follow the data within this")
+        ->type_name("NUMBER")
         ->check(positive_number);
 }
 
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what,
-                   const TimeOptions& time) {
+                   const TimeOptions& time, Report& report) {
     check(options);
     check(time, input.path);
     check_film(time, options);
@@ -469,26 +496,29 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
     }
     for (const std::string& text : options.thresholds) parse_threshold(text);
     DrawnField field;
-    {
-        ProgressLine progress;
-        progress.show("reading");
-        std::optional<Film> film;
-        if (time.frames) film.emplace(options.output);
-        const std::filesystem::path path = input.path;
-        const InputField read = read_field(input, time.more, time.times);
-        progress.show("drawing");
-        const Moments moments(read, time, path, options.projection, what.lens, options.threads);
-        field.input_name = read.name;
-        const bool by_another = what.isovalue && what.function == nullptr;
-        field.name = by_another ? input.by : read.name;
-        draw_moments(moments, options, what, input.by, film ? &*film : nullptr, field);
-        field.preroll_seconds = moments.preroll_seconds();
-        progress.show("writing");
-        if (!film) write(options, field, what);
-    }
-    if (field.surfaces.size() == 1) {
-        print(field.surfaces.front(), field, what);
+    ProgressLine progress;
+    progress.show("reading");
+    std::optional<Film> film;
+    if (time.frames) film.emplace(options.output);
+    const std::filesystem::path path = input.path;
+    const InputField read = read_field(input, time.more, time.times);
+    const Moments moments(read, time, path, options.projection, what.lens, options.threads);
+    field.input_name = read.name;
+    field.length_unit = read.length_unit;
+    const bool by_another = what.isovalue && what.function == nullptr;
+    field.name = by_another ? input.by : read.name;
+    const std::size_t expected =
+        time.frames ? static_cast<std::size_t>(*time.frames)
+                    : std::max<std::size_t>(1, options.thresholds.size() + options.budgets.size());
+    draw_moments(moments, options, what, input.by, film ? &*film : nullptr, field,
+                 [&](std::size_t done) { progress.show("drawing", done, expected); });
+    field.preroll_seconds = moments.preroll_seconds();
+    progress.show("writing");
+    if (film) {
+        film->finish(report);
     } else {
-        print_table(field);
+        write(options, field, what, report);
     }
+    report_drawn(field, what, report);
+    say_what_was_kept(options, report);
 }

@@ -32,10 +32,10 @@ struct ColouredSurface {
 };
 
 /// Adds the option for ColouredSurface::colour_tolerance.
-void add_colour_option(CLI::App& command, double& tolerance);
+CLI::Option* add_colour_option(CLI::App& command, double& tolerance);
 
 /// Draws, writes, paints and prints the surface at each threshold or budget, of the field or at
 /// times between its frames.
 /// \throw nestgrid::IoError, nestgrid::InvalidInput, nestgrid::GridError
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what,
-                   const TimeOptions& time);
+                   const TimeOptions& time, Report& report);

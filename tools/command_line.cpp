@@ -4,13 +4,18 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include <nestgrid/error.hpp>
 
+#include "input_file.hpp"
+#include "suggestion.hpp"
 #include "surface_file.hpp"
+#include "text_header.hpp"
 
 namespace fs = std::filesystem;
 
@@ -21,32 +26,106 @@ std::string positive_number(const std::string& text) {
     return "'" + text + "' is no positive finite number";
 }
 
+CLI::Validator one_of(std::vector<std::string> words, std::map<std::string, std::string> synonyms) {
+    std::string known;
+    for (const std::string& word : words) known += (known.empty() ? "" : ",") + word;
+    const auto check = [words = std::move(words),
+                        synonyms = std::move(synonyms)](const std::string& text) -> std::string {
+        if (std::ranges::find(words, text) != words.end()) return "";
+        const auto synonym = synonyms.find(lower(text));
+        return "'" + text + "' is none of " + listed(words) +
+               (synonym == synonyms.end() ? did_you_mean(text, words)
+                                          : ": did you mean '" + synonym->second + "'?");
+    };
+    return {check, "{" + known + "}"};
+}
+
 void add_read_limit(CLI::App& command, double& seconds) {
     command
         .add_option("--read-limit", seconds,
-                    "seconds after which a file is refused that is still being read; default: 60 "
-                    "and one for each MB, ten times that for .poly and .smesh")
+                    "refuse a file that takes longer to read [60 and one for each MB; ten times "
+                    "that for .poly and .smesh]")
+        ->type_name("SECONDS")
+        ->group("Input")
         ->check(positive_number);
 }
 
-void add_input_options(CLI::App& command, Input& input) {
+void add_input(CLI::App& command, Input& input) {
+    input.command = &command;
     command
         .add_option("INPUT", input.path,
-                    ".vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz, .raw or .nestgrid")
+                    ".vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz, .raw, .nestgrid, or a grey "
+                    "picture")
         ->required();
-    command.add_option("--array", input.array,
-                       "point data array of a .vti file, field of a .nestgrid");
-    command.add_option("--dims", input.raw.dims, "samples of a .raw file along x,y,z")
+}
+
+void add_array_option(CLI::App& command, Input& input) {
+    command
+        .add_option("--array", input.array,
+                    "the point data array of a .vti, the field of a .nestgrid")
+        ->type_name("NAME")
+        ->group("Input");
+}
+
+void add_read_options(CLI::App& command, Input& input) {
+    add_array_option(command, input);
+    command.add_option("--dims", input.raw.dims, "samples of a .raw file in each direction")
+        ->type_name("NX,NY,NZ")
+        ->group("Input")
         ->delimiter(',');
-    command.add_option("--type", input.raw.type,
-                       "their type: uint8, int8, uint16, int16, uint32, int32, uint64, int64, "
-                       "float32, float64");
-    command.add_option("--endian", input.endian, "their byte order")
-        ->check(CLI::IsMember({"little", "big"}))
+    command.add_option("--type", input.raw.type, "their type: uint8 ... int64, float32 or float64")
+        ->type_name("TYPE")
+        ->group("Input")
+        ->check(one_of({"uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64",
+                        "float32", "float64"},
+                       {{"float", "float32"},
+                        {"double", "float64"},
+                        {"uchar", "uint8"},
+                        {"byte", "uint8"},
+                        {"char", "int8"},
+                        {"ushort", "uint16"},
+                        {"short", "int16"},
+                        {"uint", "uint32"},
+                        {"int", "int32"},
+                        {"ulong", "uint64"},
+                        {"long", "int64"}}));
+    command.add_option("--endian", input.endian, "their byte order, little or big")
+        ->type_name("ORDER")
+        ->group("Input")
+        ->check(one_of({"little", "big"}))
         ->capture_default_str();
-    command.add_option("--spacing", input.raw.spacing, "their distances along x,y,z")
+    command.add_option("--spacing", input.raw.spacing, "their distances [1,1,1]")
+        ->type_name("X,Y,Z")
+        ->group("Input")
         ->delimiter(',');
     add_read_limit(command, input.read_limit);
+}
+
+void refuse_options(const CLI::App& command, const std::vector<std::string>& names,
+                    const std::string& why) {
+    for (const std::string& name : names) {
+        const CLI::Option* option = command.get_option_no_throw(name);
+        if (option == nullptr || option->count() == 0) continue;
+        throw nestgrid::InvalidInput(name + " " + why);
+    }
+}
+
+void check(const Input& input) {
+    if (input.command == nullptr) return;
+    const std::string format = ending_of(input.path);
+    const std::string name = "'" + input.path.string() + "'";
+    if (format != ".raw") {
+        refuse_options(*input.command, {"--dims", "--type", "--endian", "--spacing"},
+                       "is for .raw files: " + name + " says it itself");
+    }
+    if (format != ".vti" && format != ".nestgrid") {
+        refuse_options(*input.command, {"--array"},
+                       "is for .vti and .nestgrid files: " + name + " has one array only");
+    }
+    if (format == ".nestgrid") {
+        refuse_options(*input.command, {"--read-limit"},
+                       "is for files that foreign code reads, not for .nestgrid");
+    }
 }
 
 Volume read_volume(Input& input) {
@@ -55,24 +134,28 @@ Volume read_volume(Input& input) {
 }
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options) {
+    options.command = &command;
     command
         .add_option("--threshold", options.thresholds,
-                    "detail up to this is projected away: in units of --indicator, or in percent "
-                    "of the range of the data (2%); give it again for several")
+                    "leave out detail up to this, in units of the data or in percent of their "
+                    "range; again for several surfaces [0]")
+        ->type_name("NUMBER[%]")
         ->take_all();
     command
-        .add_option(
-            "--max-triangles", options.budgets,
-            "in the place of a threshold: the least one, in units of --indicator, that gives "
-            "no more triangles, or segments of lines in the plane; give it again for "
-            "several")
+        .add_option("--max-triangles", options.budgets,
+                    "or so much detail that the surface keeps within this; again for several")
+        ->type_name("COUNT")
         ->take_all()
         ->excludes("--threshold");
+    command.add_option("-o,--output", options.output, "write .vtp, .ply, .stl, .obj or .gltf")
+        ->type_name("FILE");
+    command.add_option("--image", options.image, "draw a picture, .png")->type_name("FILE");
     add_projection_options(command, options.projection);
-    command.add_option("--threads", options.threads,
-                       "how many to use; default: all. The surface does not depend on it");
-    command.add_option("-o,--output", options.output, ".vtp, .ply, .stl, .obj or .gltf");
-    command.add_option("--image", options.image, "a picture, .png");
+    command
+        .add_option("--threads", options.threads,
+                    "how many to use; the surface is the same with any [all]")
+        ->type_name("COUNT")
+        ->group("Further");
 }
 
 void check(const SurfaceOptions& options) {
@@ -81,22 +164,49 @@ void check(const SurfaceOptions& options) {
     }
     check(options.projection);
     if (options.threads < 0) throw nestgrid::InvalidInput("--threads is negative");
-    if (!options.output.empty()) check_output(options.output);
-    if (options.image.empty()) return;
-    check_output(options.image);
-    if (options.image.extension() != ".png") {
-        throw nestgrid::IoError("'" + options.image.string() + "' is no name of a .png picture");
+    if (!options.output.empty()) check_output(options.output, surface_formats);
+    if (!options.image.empty()) check_output(options.image, {".png"});
+    if (options.command == nullptr) return;
+    if (options.output.empty() && options.image.empty()) {
+        refuse_options(*options.command, {"--outlines"},
+                       "is about what is kept: give an --output or an --image");
+    }
+    if (options.thresholds.empty() && options.budgets.empty()) {
+        require_threshold(*options.command);
     }
 }
 
-ProgressLine::ProgressLine() : terminal_{isatty(STDERR_FILENO) == 1} {}
+void say_what_was_kept(const SurfaceOptions& options, Report& report) {
+    if (!options.output.empty() || !options.image.empty()) return;
+    report.say("nothing was kept: give -o FILE or --image FILE");
+}
+
+ProgressLine::ProgressLine()
+    : terminal_{isatty(STDERR_FILENO) == 1}, start_{std::chrono::steady_clock::now()} {}
 ProgressLine::~ProgressLine() {
     if (terminal_) std::fprintf(stderr, "\r\033[K");
 }
 void ProgressLine::show(const std::string& text) {
     if (!terminal_) return;
-    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    std::fprintf(stderr, "\r\033[K%s%s", share_.c_str(), text.c_str());
     std::fflush(stderr);
+}
+
+void ProgressLine::show(const std::string& text, std::size_t done, std::size_t total) {
+    const auto now = std::chrono::steady_clock::now();
+    if (done == 0) start_ = now;
+    std::array<char, 80> share{};
+    const double part = static_cast<double>(done) / static_cast<double>(total);
+    const double left =
+        std::chrono::duration<double>(now - start_).count() * (1 - part) / (done == 0 ? 1 : part);
+    if (done == 0) {
+        std::snprintf(share.data(), share.size(), "0 of %zu: ", total);
+    } else {
+        std::snprintf(share.data(), share.size(), "%zu of %zu, %.0f %%, %.0f s left: ", done, total,
+                      100 * part, std::ceil(left));
+    }
+    share_ = total > 1 ? share.data() : "";
+    show(text);
 }
 
 fs::path numbered(const fs::path& path, std::size_t number, std::size_t count) {

@@ -4,21 +4,28 @@
 // The subcommands of the program, and the options that several of them have.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "projection.hpp"
+#include "report.hpp"
 #include "volume.hpp"
 
 /// A subcommand: its options, and what it does once they are parsed.
 struct Command {
     CLI::App* options;
-    std::function<void()> run;
+    std::function<void(Report&)> run;
 };
+
+/// \throw nestgrid::InvalidInput where one of the options is given: "--name why"
+void refuse_options(const CLI::App& command, const std::vector<std::string>& names,
+                    const std::string& why);
 
 // Each adds one subcommand to the program.
 Command add_isosurface(CLI::App& program);
@@ -36,6 +43,11 @@ Command add_view(CLI::App& program);
 /// A check for options: what is wrong with the text of a positive finite number, or nothing.
 std::string positive_number(const std::string& text);
 
+/// A check for options: the text must be one of these words.
+/// \param synonyms words that others use, each with the one that it means here
+CLI::Validator one_of(std::vector<std::string> words,
+                      std::map<std::string, std::string> synonyms = {});
+
 /// A file with a field.
 struct Input {
     std::filesystem::path path;
@@ -44,9 +56,16 @@ struct Input {
     RawFormat raw;
     std::string endian = "little";
     double read_limit = 0;
+    const CLI::App* command = nullptr;  ///< that it is an option of
 };
-void add_input_options(CLI::App& command, Input& input);
+/// Adds INPUT; the options that say how it is read follow at the end of a command.
+void add_input(CLI::App& command, Input& input);
+void add_array_option(CLI::App& command, Input& input);
+/// Adds all of them, those of bare samples in space, too.
+void add_read_options(CLI::App& command, Input& input);
 void add_read_limit(CLI::App& command, double& seconds);
+/// \throw nestgrid::InvalidInput for an option that means nothing for a file of this format
+void check(const Input& input);
 Volume read_volume(Input& input);
 
 /// How finely a surface is drawn, and where it goes.
@@ -57,12 +76,16 @@ struct SurfaceOptions {
     int threads = 0;
     std::filesystem::path output;
     std::filesystem::path image;
+    const CLI::App* command = nullptr;  ///< that they are options of
 };
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
 /// \throw nestgrid::InvalidInput for a number that is out of range, and for options that exclude
 ///        each other
 /// \throw nestgrid::IoError where a file cannot be written
 void check(const SurfaceOptions& options);
+
+/// Says that nothing was kept where there is neither an output nor a picture.
+void say_what_was_kept(const SurfaceOptions& options, Report& report);
 
 /// Overwrites one line on a terminal; does nothing elsewhere.
 class ProgressLine {
@@ -72,9 +95,15 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
     ~ProgressLine();
     void show(const std::string& text);
+    /// The same, behind the share that is done of several like pieces of work, and the time that
+    /// the others will take.
+    /// \param done of `total` pieces; the first call has 0
+    void show(const std::string& text, std::size_t done, std::size_t total);
 
 private:
     bool terminal_;
+    std::string share_;
+    std::chrono::steady_clock::time_point start_;
 };
 
 /// out.vtp for one surface; out-1.vtp, out-2.vtp, ... for several.

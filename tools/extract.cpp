@@ -44,7 +44,7 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Cri
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
     e.counts = result.counts;
-    e.error_bound = result.error_bound;
+    e.bounds = result;
     e.stack_bytes = result.stack_bytes;
     if constexpr (dimension == 3) {
         e.report = nestgrid::surface_report(result.surface);
@@ -79,22 +79,28 @@ void with_criteria(const ChosenIndicator& indicators, const std::optional<nestgr
     });
 }
 
+void tell_share(const ExtractionRun& run, const ExtractionRequest& request) {
+    if (request.share) request.share(run.surfaces.size(), run.expected);
+}
+
 /// Draws all surfaces at one moment, at thresholds and budgets.
 template <int dimension, class Real>
 void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& moment,
                     const std::optional<nestgrid::Region>& region,
                     const nestgrid::Executor& executor, const ExtractionRequest& request,
-                    ExtractionRun& run) {
+                    const InputField& field, ExtractionRun& run) {
     const ChosenIndicator& indicators = moment.indicators();
     const auto draw = [&](const auto& criterion_at, Extraction e) {
         e.time = moment.time();
         extract_one<dimension>(hierarchy, criterion_at(e.threshold), indicators.bounds(), executor,
                                request, e);
+        if (e.surface) describe(e.surface, field.length_unit, {{field.name, request.isovalue}});
         run.surfaces.push_back(std::move(e));
         if (request.drawn) request.drawn(run.surfaces.back());
     };
     with_criteria(indicators, region, request, [&](const auto& criterion_at) {
         for (const std::uint64_t budget : request.budgets) {
+            tell_share(run, request);
             Extraction e;
             e.budget = budget;
             const double start = now();
@@ -108,6 +114,7 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
             draw(criterion_at, std::move(e));
         }
         for (const ThresholdText& t : request.thresholds) {
+            tell_share(run, request);
             Extraction e;
             e.threshold = indicators.threshold(t);
             draw(criterion_at, std::move(e));
@@ -144,14 +151,18 @@ ExtractionRun extract(const InputField& field, const TimeOptions& time,
                                field.frames.front());
     run.nodes = field.nodes;
     run.leaf_elements = field.leaf_elements;
+    const std::size_t moment_count = time.frames ? static_cast<std::size_t>(*time.frames) : 1;
+    run.expected = moment_count * (request.budgets.size() + request.thresholds.size());
     preroll(moments, request, run);
     const auto region = box_region(request, run.dimension, field);
     moments.for_each([&](const Moment& moment) {
         moment.visit([&](const auto& hierarchy) {
             if (run.dimension == 3) {
-                extract_moment<3>(hierarchy, moment, region, moments.executor(), request, run);
+                extract_moment<3>(hierarchy, moment, region, moments.executor(), request, field,
+                                  run);
             } else {
-                extract_moment<2>(hierarchy, moment, region, moments.executor(), request, run);
+                extract_moment<2>(hierarchy, moment, region, moments.executor(), request, field,
+                                  run);
             }
         });
     });

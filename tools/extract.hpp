@@ -37,6 +37,8 @@ struct ExtractionRequest {
     bool at_nodes = false;
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
+    /// Told how many of all surfaces are drawn; or empty.
+    std::function<void(std::size_t done, std::size_t total)> share{};
     /// Takes each surface as soon as it is drawn, and need not leave it; or empty.
     std::function<void(Extraction&)> drawn{};
 };
@@ -50,7 +52,7 @@ struct Extraction {
     double search_seconds = 0;
     vtkSmartPointer<vtkPolyData> surface;  ///< where it is kept
     nestgrid::TraversalCounts counts;
-    double error_bound = 0;
+    nestgrid::ErrorBounds bounds;
     std::size_t stack_bytes = 0;
     nestgrid::SurfaceReport report;  ///< of isolines: vertices, and segments as triangles
     double seconds = 0;
@@ -66,6 +68,7 @@ struct ExtractionRun {
     double preroll_seconds = 0;
     std::size_t preroll_peak_bytes = 0;
     std::size_t preroll_kept_bytes = 0;
+    std::size_t expected = 1;  ///< how many surfaces will be drawn
     std::vector<Extraction> surfaces;
 };
 

@@ -25,9 +25,14 @@ void Film::add(vtkPolyData* surface, double time) {
         path_.parent_path() / (path_.stem().string() + digits.data() + path_.extension().string());
     write_surface(surface, path);
     pictures_.push_back({path, time});
+    contents_.push_back(contents_of(surface));
 }
 
-void Film::finish() {
+void Film::finish(Report& report) {
     write_collection(collection_path(path_), pictures_);
     finished_ = true;
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+        report.wrote(pictures_[i].path, contents_[i]);
+    }
+    report.wrote(collection_path(path_), {{"files", pictures_.size()}});
 }

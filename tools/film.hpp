@@ -25,11 +25,13 @@ public:
     /// \throw nestgrid::IoError
     void add(vtkPolyData* surface, double time);
     /// Writes the list. To be called once, after the last surface.
+    /// \param report takes the names of all files
     /// \throw nestgrid::IoError
-    void finish();
+    void finish(Report& report);
 
 private:
     std::filesystem::path path_;
     std::vector<CollectionPart> pictures_;
+    std::vector<std::vector<std::pair<std::string, std::uint64_t>>> contents_;
     bool finished_ = false;
 };

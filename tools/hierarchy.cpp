@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "suggestion.hpp"
+
 using nestgrid::InvalidInput;
 
 const nestgrid::NamedField* find_field(const std::vector<nestgrid::NamedField>& fields,
@@ -18,13 +20,15 @@ const nestgrid::NamedField& field_named(const std::vector<nestgrid::NamedField>&
     if (fields.empty()) throw InvalidInput("the hierarchy has no field; give --field to mesh");
     if (name.empty() && fields.size() == 1) return fields.front();
     if (const auto* field = find_field(fields, name)) return *field;
-    std::string known;
-    for (const nestgrid::NamedField& f : fields) {
-        known += (known.empty() ? "'" : ", '") + f.name + "'";
-    }
-    throw InvalidInput(name.empty() ? "there are several fields, choose one by --array: " + known
-                                    : "there is no field '" + name + "', only " + known);
+    std::vector<std::string> known;
+    for (const nestgrid::NamedField& f : fields) known.push_back(f.name);
+    throw InvalidInput(name.empty()
+                           ? "there are several fields, choose one by --array: " + listed(known)
+                           : "there is no field '" + name + "', only " + listed(known) +
+                                 did_you_mean(name, known));
 }
+
+bool is_hierarchy(const std::filesystem::path& path) { return ending_of(path) == ".nestgrid"; }
 
 void require_hierarchy_name(const std::filesystem::path& path) {
     if (is_hierarchy(path)) return;

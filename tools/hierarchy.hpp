@@ -16,6 +16,8 @@
 #include <nestgrid/adapters/red_green.hpp>
 #include <nestgrid/adapters/stored_file.hpp>
 
+#include "input_file.hpp"
+
 // What is compiled once for all families, in stored_families.cpp.
 #define NESTGRID_STORED_FAMILY(prefix, ...)                                          \
     prefix template nestgrid::StoredHierarchy<__VA_ARGS__> nestgrid::read_hierarchy( \
@@ -36,9 +38,7 @@
 NESTGRID_STORED_FAMILIES(extern)
 
 /// Whether a file is called like a hierarchy.
-inline bool is_hierarchy(const std::filesystem::path& path) {
-    return path.extension() == ".nestgrid";
-}
+bool is_hierarchy(const std::filesystem::path& path);
 
 /// \throw nestgrid::IoError unless a file is called like a hierarchy
 void require_hierarchy_name(const std::filesystem::path& path);
@@ -49,6 +49,7 @@ template <class Function>
 void with_hierarchy(const std::filesystem::path& path, Function&& function,
                     nestgrid::Encoded encoded = nestgrid::Encoded::decode) {
     using namespace nestgrid;
+    require_file(path);
     const HierarchyHeader header = read_hierarchy_header(path);
     const auto tried = [&]<class Family>() {
         if (header.family != Family::name || header.dimension != Family::dimension ||

@@ -6,11 +6,15 @@
 
 namespace {
 
-void run_info(Input& input) {
+void run_info(Input& input, Report& report) {
+    check(input);
     if (is_hierarchy(input.path)) {
-        print_info(hierarchy_info(input.path));
+        refuse_options(*input.command, {"--array"}, "chooses nothing: all fields are described");
+        report_info(hierarchy_info(input.path), report);
+    } else if (is_raster(input.path)) {
+        report_info(read_raster(input.path, input.read_limit), report);
     } else {
-        print_info(read_volume(input));
+        report_info(read_volume(input), report);
     }
 }
 
@@ -18,7 +22,12 @@ void run_info(Input& input) {
 
 Command add_info(CLI::App& program) {
     auto input = std::make_shared<Input>();
-    CLI::App* info = program.add_subcommand("info", "describe a volume or a hierarchy");
-    add_input_options(*info, *input);
-    return {info, [input] { run_info(*input); }};
+    CLI::App* info = program.add_subcommand("info", "describe a volume, a picture or a hierarchy");
+    info->footer(
+        "Examples:\n"
+        "  nestgrid info head.nii.gz\n"
+        "  nestgrid info ct.raw --dims 20,24,18 --type uint8 --spacing 0.5,1,2\n");
+    add_input(*info, *input);
+    add_read_options(*info, *input);
+    return {info, [input](Report& report) { run_info(*input, report); }};
 }

@@ -49,6 +49,7 @@ InputField read_volumes(Input& input, const Paths& paths, const std::vector<doub
     field.volumes = volumes;
     field.name_in_file = first.name;
     field.length_unit = first.length_unit;
+    if (!first.name.empty()) field.name = first.name;
     return field;
 }
 
@@ -69,12 +70,11 @@ InputField read_rasters(const Input& input, const Paths& paths, const std::vecto
 }  // namespace
 
 InputField read_field(Input& input, const Paths& more, const std::vector<double>& times) {
+    check(input);
     Paths paths{input.path};
     paths.insert(paths.end(), more.begin(), more.end());
     if (is_hierarchy(input.path)) return read_hierarchies(input, paths, times);
     const std::vector<double> all = times_of_frames(times, times_of_files(paths.size()));
     const bool pictures = is_raster(input.path);
-    InputField field = pictures ? read_rasters(input, paths, all) : read_volumes(input, paths, all);
-    if (!input.array.empty()) field.name = input.array;
-    return field;
+    return pictures ? read_rasters(input, paths, all) : read_volumes(input, paths, all);
 }

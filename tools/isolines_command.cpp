@@ -22,7 +22,7 @@ struct Options {
     int count = 0;
 };
 
-void run_isolines(Options& o) {
+void run_isolines(Options& o, Report& report) {
     if (o.values.empty() == (o.count == 0)) {
         throw nestgrid::InvalidInput("isolines need either --values or --count");
     }
@@ -50,7 +50,7 @@ void run_isolines(Options& o) {
          .values = o.values,
          .value_count = o.count,
          .lens = parse(o.lens)},
-        o.time);
+        o.time, report);
 }
 
 }  // namespace
@@ -58,23 +58,32 @@ void run_isolines(Options& o) {
 Command add_isolines(CLI::App& program) {
     auto o = std::make_shared<Options>();
     CLI::App* isolines = program.add_subcommand(
-        "isolines", "draw isolines on a slice, on an isosurface, or in a grid of dimension 2");
-    add_input_options(*isolines, o->input);
+        "isolines", "draw isolines on a slice, on an isosurface, or in the plane");
+    isolines->footer(
+        "Examples:\n"
+        "  nestgrid isolines head.nii.gz --axis z --at 30 --count 8 -o lines.vtp\n"
+        "  nestgrid isolines hills.png --values 60,90,120 --image lines.png\n");
+    add_input(*isolines, o->input);
     isolines->add_option("--values", o->values, "their values, in units of the data")
+        ->type_name("V,V,...")
         ->delimiter(',');
-    isolines->add_option("--count", o->count, "so many values, evenly within the range");
+    isolines->add_option("--count", o->count, "or so many values, evenly within the range")
+        ->type_name("COUNT");
     add_slice_options(*isolines, o->slice);
-    CLI::Option* on_surface = isolines->add_option(
-        "--on-surface", o->isovalue,
-        "on the isosurface with this value, in units of the data, in the place of a slice");
-    CLI::Option* by = isolines->add_option(
-        "--by", o->input.by,
-        "what the isolines on it are of: another field of a .nestgrid file, or an expression in x, "
-        "y and z");
+    CLI::Option* on_surface =
+        isolines->add_option("--on-surface", o->isovalue, "the isosurface with this value")
+            ->type_name("NUMBER");
+    CLI::Option* by =
+        isolines
+            ->add_option("--by", o->input.by,
+                         "lines on it by another field of a .nestgrid, or by an expression in x, y "
+                         "and z")
+            ->type_name("NAME");
     by->needs(on_surface);
     on_surface->needs(by);
     add_surface_options(*isolines, o->surface);
-    add_lens_options(*isolines, o->lens);
     add_time_options(*isolines, o->time);
-    return {isolines, [o] { run_isolines(*o); }};
+    add_lens_options(*isolines, o->lens);
+    add_read_options(*isolines, o->input);
+    return {isolines, [o](Report& report) { run_isolines(*o, report); }};
 }

@@ -8,6 +8,7 @@
 #include "command_line.hpp"
 #include "extract.hpp"
 #include "film.hpp"
+#include "input_file.hpp"
 #include "picture.hpp"
 #include "print.hpp"
 
@@ -44,13 +45,10 @@ FineBox fine_box(const Options& o) {
     return box;
 }
 
-void run_isosurface(Options& o) {
+ExtractionRequest request_of(const Options& o) {
     ExtractionRequest request{
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
-    SurfaceOptions& s = o.surface;
-    check(s);
-    check(o.time, o.input.path);
-    check_film(o.time, s);
+    const SurfaceOptions& s = o.surface;
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
     request.projection = s.projection;
@@ -63,14 +61,67 @@ void run_isosurface(Options& o) {
     if (s.budgets.empty()) set_default_threshold(request.thresholds, request.lens.has_value());
     if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
     request.keep_surfaces = !s.output.empty() || !s.image.empty();
+    return request;
+}
+
+/// Options that this field or this file leaves without effect.
+void check_for(const Options& o, const InputField& field) {
+    const CLI::App& command = *o.surface.command;
+    if (!field.volumes || o.time.in_use()) {
+        refuse_options(command, {"--against-vtk"}, "is for one volume");
+    }
+    const int dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
+                                     field.frames.front());
+    if (dimension == 2) {
+        refuse_options(command, {"--cap", "--no-normals"}, "is for surfaces, not for isolines");
+    }
+    const std::string format = ending_of(o.surface.output);
+    if (o.surface.image.empty() && format == ".stl") {
+        refuse_options(command, {"--no-normals"}, "changes no " + format + " file");
+    }
+}
+
+/// Writes and paints the surfaces that were kept.
+void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progress,
+          Seconds& seconds, Report& report) {
+    std::vector<Panel> panels;
+    std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
+    for (const Extraction& e : run.surfaces) {
+        if (!e.surface) return;
+        surfaces.push_back(e.surface);
+        panels.push_back({e.surface, caption(e)});
+    }
+    if (!s.output.empty()) {
+        progress.show("writing");
+        const double start = now();
+        write_surfaces(surfaces, s.output, report);
+        seconds.write = now() - start;
+    }
+    if (!s.image.empty()) {
+        progress.show("painting");
+        const double start = now();
+        write_picture(panels, s.image);
+        seconds.draw = now() - start;
+        report.wrote(s.image, {{"surfaces", panels.size()}});
+    }
+}
+
+void run_isosurface(Options& o, Report& report) {
+    check(o.surface);
+    check(o.time, o.input.path);
+    check_film(o.time, o.surface);
+    ExtractionRequest request = request_of(o);
     Seconds seconds;
     std::optional<ProgressLine> progress(std::in_place);
     request.progress = [&](const std::string& text) { progress->show(text); };
+    request.share = [&](std::size_t done, std::size_t total) {
+        progress->show("drawing", done, total);
+    };
     progress->show("reading");
-    double start = now();
+    const double start = now();
     std::optional<Film> film;
     if (o.time.frames) {
-        film.emplace(s.output);
+        film.emplace(o.surface.output);
         request.drawn = [&film](Extraction& e) {
             film->add(e.surface, *e.time);
             e.surface = nullptr;
@@ -78,72 +129,67 @@ void run_isosurface(Options& o) {
     }
     const fs::path path = o.input.path;
     const InputField field = read_field(o.input, o.time.more, o.time.times);
-    if (o.against_vtk && (!field.volumes || o.time.in_use())) {
-        throw nestgrid::InvalidInput("--against-vtk is for one volume");
-    }
+    check_for(o, field);
     seconds.read = now() - start;
     const ExtractionRun run = extract(field, o.time, path, request);
-    if (film) film->finish();
-
-    start = now();
-    std::vector<Panel> panels;
-    std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
-    for (const Extraction& e : run.surfaces) {
-        if (!e.surface) break;
-        surfaces.push_back(e.surface);
-        panels.push_back({e.surface, caption(e)});
-    }
-    if (!s.output.empty() && !surfaces.empty()) {
-        progress->show("writing");
-        write_surfaces(surfaces, s.output);
-    }
-    seconds.write = now() - start;
-    start = now();
-    if (!s.image.empty()) {
-        progress->show("drawing");
-        write_picture(panels, s.image);
-    }
-    seconds.draw = now() - start;
+    if (film) film->finish(report);
+    keep(run, o.surface, *progress, seconds, report);
     std::optional<Contour> contour;
     if (o.against_vtk) {
         progress->show("contouring with VTK");
         contour = contour_with_vtk(field.volumes->front(), o.value);
     }
     progress.reset();
-    if (o.time.in_use()) {
-        print_times(run, o.value);
-    } else if (run.surfaces.size() == 1 && !contour) {
-        print_result(run, o.value, seconds);
-    } else {
-        print_table(run, o.value, seconds, contour);
-    }
+    report_field(field.name, field.length_unit, report);
+    report_surfaces(run, o.value, seconds, contour, report);
+    say_what_was_kept(o.surface, report);
+}
+
+void add_box_options(CLI::App& command, Options& o) {
+    CLI::Option* box =
+        command.add_option("--box", o.box, "a box with a threshold of its own, --box-threshold")
+            ->type_name("X,X,Y,Y,Z,Z")
+            ->group("Detail")
+            ->delimiter(',')
+            ->expected(6);
+    command.add_option("--box-threshold", o.box_threshold, "in units of --threshold [0]")
+        ->type_name("NUMBER")
+        ->group("Detail")
+        ->needs(box);
 }
 
 }  // namespace
 
 Command add_isosurface(CLI::App& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* isosurface = program.add_subcommand("isosurface", "extract an adaptive isosurface");
-    add_input_options(*isosurface, o->input);
-    isosurface->add_option("--value", o->value, "the isovalue, in units of the data")->required();
+    CLI::App* isosurface = program.add_subcommand("isosurface", "draw where the data have a value");
+    isosurface->footer(
+        "Examples:\n"
+        "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
+        "  nestgrid isosurface head.nii.gz --value 60 --max-triangles 5000 --image h.png\n");
+    add_input(*isosurface, o->input);
+    isosurface->add_option("--value", o->value, "the isovalue, in units of the data")
+        ->type_name("NUMBER")
+        ->required();
     add_surface_options(*isosurface, o->surface);
+    isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume")
+        ->group("Surface");
+    isosurface
+        ->add_flag("--no-normals", o->flat, "leave out the normals, and the time that they take")
+        ->group("Surface");
+    isosurface
+        ->add_flag("--at-nodes", o->at_nodes,
+                   "put vertices at samples that equal the isovalue, instead of slivers around "
+                   "them")
+        ->group("Surface");
+    isosurface
+        ->add_flag("--against-vtk", o->against_vtk,
+                   "compare with VTK's own contour of the same samples")
+        ->group("Surface");
+    add_box_options(*isosurface, *o);
     add_time_options(*isosurface, o->time);
-    isosurface
-        ->add_option("--box", o->box,
-                     "bounds x,x,y,y,z,z of a region with a threshold of its own, --box-threshold")
-        ->delimiter(',')
-        ->expected(6);
-    isosurface
-        ->add_option("--box-threshold", o->box_threshold, "in units of --threshold; default: 0")
-        ->needs("--box");
     add_lens_options(*isosurface, o->lens);
     isosurface->get_option("--lens")->excludes("--box");
-    isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume");
-    isosurface->add_flag("--no-normals", o->flat, "leave out the normals");
-    isosurface->add_flag("--at-nodes", o->at_nodes,
-                         "put vertices at samples that equal the isovalue, in the place of slivers "
-                         "around them");
-    isosurface->add_flag("--against-vtk", o->against_vtk,
-                         "add VTK's own contour of the same samples to the table");
-    return {isosurface, [o] { run_isosurface(*o); }};
+    add_read_options(*isosurface, o->input);
+    return {isosurface, [o](Report& report) { run_isosurface(*o, report); }};
 }

@@ -9,6 +9,7 @@
 
 #include <nestgrid/error.hpp>
 
+#include "input_file.hpp"
 #include "solid.hpp"
 
 namespace {
@@ -18,8 +19,8 @@ using nestgrid::Point;
 
 constexpr const char* known =
     "ball:x,y,z,r, box:x,x,y,y,z,z, halfspace:x,y,z,x,y,z, cone:x,y,z,x,y,z,degrees, "
-    "frustum:x,y,z,x,y,z,x,y,z,degrees,aspect,nearest,farthest, polyhedron:FILE, polygon:FILE or "
-    "surface:FILE";
+    "frustum:EYE,TOWARDS,UP,degrees,aspect,nearest,farthest (three times x,y,z), "
+    "polyhedron:FILE, polygon:FILE or surface:FILE";
 
 [[noreturn]] void refuse(const std::string& text) {
     throw nestgrid::InvalidInput("the lens '" + text + "' is none of " + known);
@@ -51,10 +52,8 @@ Point point_at(const std::vector<double>& numbers, std::size_t first) {
 std::vector<double> read_numbers(const std::string& path, std::size_t each,
                                  const std::string& what) {
     constexpr std::uintmax_t most_bytes = 10000000;
+    require_file(path);
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) {
-        throw nestgrid::IoError("'" + path + "' is no file");
-    }
     std::ifstream file(path);
     std::vector<double> numbers;
     double number = 0;
@@ -128,23 +127,27 @@ Distance domain_of(const std::string& text) {
 }  // namespace
 
 void add_lens_options(CLI::App& command, LensText& text) {
-    auto* lens =
-        command
-            .add_option("--lens", text.domains,
-                        "draw finely in a domain and coarsely far from it: " + std::string(known) +
-                            "; give it again for several")
-            ->take_all();
+    auto* lens = command
+                     .add_option("--lens", text.domains,
+                                 "draw finely in a domain and coarsely far from it; again for "
+                                 "several: " +
+                                     std::string(known))
+                     ->type_name("DOMAIN")
+                     ->group("Lens")
+                     ->take_all();
     command
         .add_option("--finest", text.finest,
-                    "elements in the lens are at most so large; default: 0, the finest there are")
+                    "size of the elements in the lens [0, the finest there are]")
+        ->type_name("LENGTH")
+        ->group("Lens")
         ->needs(lens);
-    command
-        .add_option("--coarsest", text.coarsest,
-                    "elements are at most so large anywhere; default: no limit")
+    command.add_option("--coarsest", text.coarsest, "size of elements anywhere [no limit]")
+        ->type_name("LENGTH")
+        ->group("Lens")
         ->needs(lens);
-    command
-        .add_option("--slope", text.slope,
-                    "by how much elements may grow with the distance from the lens")
+    command.add_option("--slope", text.slope, "growth of elements with the distance from the lens")
+        ->type_name("NUMBER")
+        ->group("Lens")
         ->capture_default_str()
         ->needs(lens);
 }

@@ -1,52 +1,82 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The command-line program: options in, one line per result out.
+// The command-line program: options in, results out.
 #include <cstdio>
 
 #include <vtkObject.h>
 
 #include "command_line.hpp"
+#include "help.hpp"
+#include "report.hpp"
+#include "usage_error.hpp"
+#include "version.hpp"
+
+namespace {
+
+std::vector<Command> add_commands(CLI::App& program, bool& json) {
+    std::vector<Command> commands{
+        add_isosurface(program), add_slice(program),    add_isolines(program), add_height(program),
+        add_surface(program),    add_boundary(program), add_probe(program),    add_info(program),
+        add_mesh(program),       add_pack(program),     add_view(program)};
+    for (const Command& command : commands) {
+        command.options->add_flag("--json", json, "print everything as one JSON document")
+            ->group("Further");
+        for (CLI::Option* option :
+             {command.options->get_option("--help"), command.options->get_option("--help-all")}) {
+            option->group("Further");
+        }
+        // What follows an option and its value is no further value of it, but a file.
+        for (CLI::Option* option : command.options->get_options()) {
+            if (!option->get_positional()) option->allow_extra_args(false);
+        }
+    }
+    return commands;
+}
+
+/// Prints a text that is made of the tree of commands.
+void add_text(CLI::App& program, const std::string& name,
+              const std::function<std::string(const CLI::App&)>& text) {
+    program.add_subcommand(name)->group("")->final_callback(
+        [&program, text] { std::fputs(text(program).c_str(), stdout); });
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     vtkObject::GlobalWarningDisplayOff();
-    CLI::App app{"Adaptive, crack-free surfaces from hierarchical grids"};
-    app.set_version_flag("--version", "nestgrid " NESTGRID_VERSION);
+    CLI::App app{"Adaptive, crack-free surfaces from hierarchical grids", "nestgrid"};
+    set_help(app);
+    app.set_version_flag(
+        "--version", [] { return version_text(); }, "print what this is built with");
     app.require_subcommand(1);
     app.footer(
         "Examples:\n"
-        "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
-        "  nestgrid isosurface head.nii.gz --value 60 --threshold 0 --threshold 5 --image "
-        "head.png\n"
-        "  nestgrid isosurface ct.raw --dims 512,512,300 --type int16 --spacing 0.5,0.5,1 \\\n"
-        "           --value 300 -o bone.stl\n"
-        "  nestgrid slice head.nii.gz --axis z --at 90 --threshold 2% --image slice.png\n"
-        "  nestgrid probe head.nii.gz --line 0,90,90,180,90,90 --count 200 -o line.csv\n"
         "  nestgrid info head.nii.gz\n"
-        "  nestgrid view head.nii.gz\n"
-        "  nestgrid mesh part.poly --family bisection --field front --tolerance 0.01 -o "
-        "part.nestgrid");
-    const std::vector<Command> commands{add_isosurface(app), add_slice(app),   add_isolines(app),
-                                        add_height(app),     add_surface(app), add_boundary(app),
-                                        add_probe(app),      add_info(app),    add_mesh(app),
-                                        add_pack(app),       add_view(app)};
-
+        "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
+        "  nestgrid slice head.nii.gz --axis z --at 30 --threshold 2% --image slice.png\n"
+        "  nestgrid view head.nii.gz");
+    bool json = false;
+    const std::vector<Command> commands = add_commands(app, json);
+    Report report(json);
+    add_text(app, "manual",
+             [](const CLI::App& tree) { return manual_page(tree, NESTGRID_VERSION); });
+    add_text(app, "bash-completion", bash_completion);
+    add_text(app, "zsh-completion", zsh_completion);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {
-        // Who misspells an option that is required has left it out, too.
-        const std::vector<std::string> unknown = app.remaining(true);
-        const std::string what =
-            unknown.empty() ? error.what() : unknown.front() + " was not expected";
-        std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n", what.c_str());
+        std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n",
+                     usage_error(error, app).c_str());
         return 2;
     }
     try {
         for (const Command& command : commands) {
-            if (*command.options) command.run();
+            if (*command.options) command.run(report);
         }
+        report.print();
         return 0;
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "nestgrid: not enough memory\n");

@@ -12,7 +12,7 @@
 #include "coarse_file.hpp"
 #include "expression.hpp"
 #include "hierarchy.hpp"
-#include "text_header.hpp"
+#include "input_file.hpp"
 
 namespace {
 
@@ -26,8 +26,8 @@ bool is_tetgen_file(const std::string& ending) {
 CoarseGrid read_with_tools(const MeshRequest& request, const std::string& ending) {
     if (!is_tetgen_file(ending)) return read_surface(request.input.string());
     TetgenOptions options;
-    if (request.maximum_volume > 0) {
-        options.switches += "a" + std::to_string(request.maximum_volume);
+    if (request.maximum_volume) {
+        options.switches += "a" + std::to_string(*request.maximum_volume);
     }
     return read_tetgen(request.input.string(), options);
 }
@@ -42,9 +42,9 @@ double reading_time(const MeshRequest& request, const std::string& ending) {
 }
 
 CoarseGrid read_coarse_grid(const MeshRequest& request) {
+    require_file(request.input);
     const std::string name = "'" + request.input.string() + "'";
-    if (std::filesystem::is_directory(request.input)) throw IoError(name + " is a folder");
-    const std::string ending = lower(request.input.extension().string());
+    const std::string ending = ending_of(request.input);
     return read_grid_apart(name, reading_time(request, ending),
                            [&] { return read_with_tools(request, ending); });
 }
@@ -128,10 +128,11 @@ void refine_and_write(Grid grid, const MeshRequest& request) {
     std::vector<NamedField> fields;
     for (const std::string& name : request.fields) {
         const Expression f = expression_of(name, request);
-        for (int step = 1; request.tolerance > 0 && fields.empty(); ++step) {
+        for (int step = 1; request.tolerance && fields.empty(); ++step) {
             const Adaptation done = refine_if([&](const Leaf& leaf) {
-                return leaf.level < request.levels && std::ranges::any_of(times, [&](double t) {
-                           return interpolation_error(f, t, leaf) > request.tolerance;
+                return leaf.level < request.levels.value_or(30) &&
+                       std::ranges::any_of(times, [&](double t) {
+                           return interpolation_error(f, t, leaf) > *request.tolerance;
                        });
             });
             tell(step);
@@ -163,9 +164,7 @@ void build(CoarseGrid coarse, const MeshRequest& request) {
                  : refine_and_write(RedGreenGrid<3>(std::move(coarse)), request);
 }
 
-}  // namespace
-
-void make_hierarchy(const MeshRequest& request) {
+void check_fields(const MeshRequest& request) {
     for (const std::string& name : request.fields) {
         expression_of(name, request);  // throws where it is none
         if (std::ranges::count(request.fields, name) > 1) {
@@ -175,21 +174,58 @@ void make_hierarchy(const MeshRequest& request) {
     if (request.fields.empty() && (!request.times.empty() || request.encoding.compression())) {
         throw InvalidInput("--times and --encode need a --field");
     }
-    if (request.tolerance > 0 && request.fields.empty()) {
+    if (request.tolerance && request.fields.empty()) {
         throw InvalidInput("--tolerance needs a --field");
     }
-    if (!(request.tolerance >= 0)) throw InvalidInput("--tolerance is negative or not a number");
+    if (request.tolerance && !(*request.tolerance > 0)) {
+        throw InvalidInput("--tolerance is not positive");
+    }
+    if (request.levels && !request.tolerance) {
+        throw InvalidInput("--levels limits --tolerance, which is not given");
+    }
     if (request.refine < 0) throw InvalidInput("--refine is negative");
-    if (request.levels < 0) throw InvalidInput("--levels is negative");
-    if (!(request.maximum_volume >= 0) || !std::isfinite(request.maximum_volume)) {
-        throw InvalidInput("--max-volume is negative or not a number");
+    if (request.levels.value_or(0) < 0) throw InvalidInput("--levels is negative");
+}
+
+/// Options that are for some families and formats only.
+void check_shape(const MeshRequest& request) {
+    const std::string ending = ending_of(request.input);
+    const auto require = [](bool met, const std::string& sentence) {
+        if (!met) throw InvalidInput(sentence);
+    };
+    if (request.maximum_volume) {
+        require(*request.maximum_volume > 0 && std::isfinite(*request.maximum_volume),
+                "--max-volume is not a positive number");
+        require(ending == ".poly" || ending == ".smesh",
+                "--max-volume is for .poly and .smesh, which are filled");
     }
-    if (!request.layers.empty() && request.family != "prism") {
-        throw InvalidInput("--layers are for --family prism");
-    }
+    require(request.layers.empty() || request.family == "prism", "--layers are for --family prism");
+    require(request.direction.empty() || !request.layers.empty(),
+            "--direction is that of --layers, which are not given");
+    require(!request.unbalanced || request.family == "octree",
+            "--unbalanced is for --family octree");
+}
+
+void check(const MeshRequest& request) {
+    check_fields(request);
+    check_shape(request);
+}
+
+/// \throw InvalidInput where the mesh alone has too many elements
+void check_size(const CoarseGrid& coarse, const MeshRequest& request) {
+    if (coarse.shapes.size() <= request.maximum_elements) return;
+    throw InvalidInput("it has " + std::to_string(coarse.shapes.size()) + " elements, more than " +
+                       std::to_string(request.maximum_elements) + " (--max-elements)");
+}
+
+}  // namespace
+
+void make_hierarchy(const MeshRequest& request) {
+    check(request);
     if (request.progress) request.progress("reading");
     CoarseGrid coarse = read_coarse_grid(request);
     try {
+        check_size(coarse, request);
         check_and_orient(coarse);
         // Neighbours in the mesh become neighbours in memory.
         coarse = reordered(coarse, reverse_cuthill_mckee(coarse));
@@ -204,6 +240,8 @@ void make_hierarchy(const MeshRequest& request) {
                 direction = {request.direction[0], request.direction[1], request.direction[2]};
             }
             coarse = extrude(coarse, request.layers, direction);
+        } else if (!request.layers.empty()) {
+            throw InvalidInput("--layers are for surfaces: the mesh has elements in space already");
         }
         build(std::move(coarse), request);
     } catch (const InvalidInput& error) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,13 @@ struct MeshRequest {
     std::vector<double> layers;     ///< thicknesses of layers to extrude a surface in, for prisms
     std::vector<double> direction;  ///< to extrude along, x, y, z; empty: along the normals
     bool unbalanced = false;
-    double maximum_volume = 0;        ///< of the tetrahedra that fill a .poly or .smesh; 0 for any
-    int refine = 0;                   ///< uniform refinements
-    std::vector<std::string> fields;  ///< names or expressions; may be empty
-    std::vector<double> times;        ///< of frames of the fields; empty: there is one without t
-    EncodingOptions encoding{};       ///< of the fields in the file
-    double tolerance = 0;  ///< refine until the first field is interpolated to this; 0: do not
-    int levels = 30;       ///< refinements at most
+    std::optional<double> maximum_volume{};  ///< of the tetrahedra that fill a .poly or .smesh
+    int refine = 0;                          ///< uniform refinements
+    std::vector<std::string> fields;         ///< names or expressions; may be empty
+    std::vector<double> times;          ///< of frames of the fields; empty: there is one without t
+    EncodingOptions encoding{};         ///< of the fields in the file
+    std::optional<double> tolerance{};  ///< refine until the first field is interpolated to this
+    std::optional<int> levels{};        ///< refinements for that at most; 30 unless given
     std::size_t maximum_elements = 20000000;  ///< leaves, before the closure
     double read_limit = 0;  ///< seconds to read the input and to fill a complex; 0: by its size
     std::filesystem::path output;

@@ -16,7 +16,7 @@ struct Options {
     std::filesystem::path output;
 };
 
-void run_pack(const Options& o) {
+void run_pack(const Options& o, Report& report) {
     require_hierarchy_name(o.output);
     require_hierarchy_name(o.inputs.front());
     check_writable(o.output);
@@ -32,7 +32,9 @@ void run_pack(const Options& o) {
                 {.times = stored.times, .compression = o.encoding.compression()});
         });
     }
-    print_info(hierarchy_info(o.output));
+    const HierarchyInfo info = hierarchy_info(o.output);
+    report_info(info, report);
+    report.wrote(o.output, {{"elements", info.leaves}});
 }
 
 }  // namespace
@@ -40,12 +42,19 @@ void run_pack(const Options& o) {
 Command add_pack(CLI::App& program) {
     auto o = std::make_shared<Options>();
     CLI::App* pack = program.add_subcommand(
-        "pack", "write hierarchies with one grid into one file, as frames, or with other encoding");
+        "pack", "write .nestgrid files into one, as frames, or encoded otherwise");
+    pack->footer(
+        "Examples:\n"
+        "  nestgrid pack first.nestgrid second.nestgrid --times 0,0.5 -o film.nestgrid\n"
+        "  nestgrid pack film.nestgrid --encode-within 0.01 -o small.nestgrid\n");
     pack->add_option("INPUTS", o->inputs, ".nestgrid files with one grid: the frames")->required();
+    pack->add_option("-o,--output", o->output, "write this .nestgrid")
+        ->type_name("FILE")
+        ->required();
     pack->add_option("--times", o->times,
-                     "of the frames, ascending; default: 0, 1, 2, ..., or those of the only input")
+                     "of the frames, ascending [0,1,2,..., or those of the only input]")
+        ->type_name("T,T,...")
         ->delimiter(',');
     add_encoding_options(*pack, o->encoding);
-    pack->add_option("-o,--output", o->output, ".nestgrid")->required();
-    return {pack, [o] { run_pack(*o); }};
+    return {pack, [o](Report& report) { run_pack(*o, report); }};
 }

@@ -20,20 +20,25 @@ struct Options {
     double colour_tolerance = 0;
 };
 
-Command add(CLI::App& program, const char* name, const char* what, bool lifted) {
+Command add(CLI::App& program, const char* name, const char* what, const char* example,
+            bool lifted) {
     auto o = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand(name, what);
-    add_input_options(*command, o->input);
-    add_surface_options(*command, o->surface);
-    add_lens_options(*command, o->lens);
-    add_time_options(*command, o->time);
-    command->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
+    command->footer(std::string("Examples:\n  ") + example);
+    add_input(*command, o->input);
     if (lifted) {
-        command->add_option("--scale", o->scale, "heights in multiples of the field")->required();
-    } else {
-        add_colour_option(*command, o->colour_tolerance);
+        command->add_option("--scale", o->scale, "heights in multiples of the field")
+            ->type_name("FACTOR")
+            ->required();
     }
-    return {command, [o, lifted] {
+    add_surface_options(*command, o->surface);
+    command->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
+    if (!lifted) add_colour_option(*command, o->colour_tolerance);
+    add_time_options(*command, o->time);
+    add_lens_options(*command, o->lens);
+    add_array_option(*command, o->input);
+    add_read_limit(*command, o->input.read_limit);
+    return {command, [o, lifted](Report& report) {
                 if (!std::isfinite(o->scale) || (lifted && o->scale == 0)) {
                     throw nestgrid::InvalidInput("--scale is 0 or not a finite number");
                 }
@@ -44,16 +49,19 @@ Command add(CLI::App& program, const char* name, const char* what, bool lifted) 
                                .empty = "the hierarchy has no elements",
                                .lens = parse(o->lens),
                                .colour_tolerance = o->colour_tolerance},
-                              o->time);
+                              o->time, report);
             }};
 }
 
 }  // namespace
 
 Command add_height(CLI::App& program) {
-    return add(program, "height", "draw a field in the plane as heights", true);
+    return add(program, "height", "draw a field in the plane, or a grey picture, as heights",
+               "nestgrid height hills.png --scale 0.2 --threshold 1% -o hills.stl", true);
 }
 
 Command add_surface(CLI::App& program) {
-    return add(program, "surface", "draw a grid of triangles or quadrilaterals, coloured", false);
+    return add(program, "surface", "draw a grid of triangles or quadrilaterals, coloured",
+               "nestgrid surface hills.png --threshold 2% --outlines --image hills-grid.png",
+               false);
 }

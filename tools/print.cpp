@@ -2,36 +2,89 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "print.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace {
 
-std::string list(std::span<const double> numbers) {
-    std::string result;
-    for (const double number : numbers) {
-        char text[40];
-        std::snprintf(text, sizeof(text), "%s%.9g", result.empty() ? "" : " ", number);
-        result += text;
-    }
-    return result;
+void say_why_empty(const ExtractionRun& run, double isovalue, Report& report) {
+    if (isovalue >= run.least && isovalue <= run.greatest) return;
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "empty: the isovalue %g is outside the range %g to %g of the data", isovalue,
+                  run.least, run.greatest);
+    report.say(text.data());
 }
 
-void print_emptiness(const ExtractionRun& run, double isovalue) {
-    if (isovalue < run.least || isovalue > run.greatest) {
-        std::printf("empty: the isovalue %g is outside the range %g to %g of the data\n", isovalue,
-                    run.least, run.greatest);
+/// What everybody wants to know of a surface comes first.
+Row row_of(const Extraction& e, bool in_space) {
+    const nestgrid::SurfaceReport& r = e.report;
+    Row row = begin_row(e.time, e.budget, e.threshold);
+    row.add(in_space ? "triangles" : "segments", r.triangles).add("vertices", r.vertices);
+    row.add("error_bound", bound_of(e.bounds));
+    if (in_space) row.add("open_edges", r.open_edges).add("area", r.area);
+    const bool encloses = r.closed() && r.triangles > 0;
+    if (in_space) row.add("volume", encloses ? Cell(std::abs(r.volume)) : Cell());
+    row.add("seconds", e.seconds);
+    if (in_space) {
+        row.add("boundary_edges", r.boundary_edges).add("components", r.components);
+        row.add("euler_number", static_cast<double>(r.euler));
+        row.add("nonmanifold_edges", r.nonmanifold_edges);
+        row.add("nonmanifold_vertices", r.nonmanifold_vertices);
     }
+    row.add("inspect_calls", e.counts.calls).add("visited", e.counts.visited);
+    row.add("extracted", e.counts.extracted);
+    if (e.budget > 0) {
+        row.add("search_trials", static_cast<std::uint64_t>(e.search.trials));
+        row.add("search_triangles", e.search.extracted).add("search_seconds", e.search_seconds);
+    }
+    return row.add("peak_bytes", e.peak_bytes).add("stack_bytes", e.stack_bytes);
 }
 
-double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / 1048576; }
+Row row_of(const Contour& contour) {
+    Row row;
+    row.add("contour", "vtkFlyingEdges3D").add("triangles", contour.triangles);
+    row.add("vertices", contour.vertices).add("boundary_edges", contour.once_edges);
+    return row.add("nonmanifold_edges", contour.nonmanifold_edges).add("seconds", contour.seconds);
+}
+
+/// Appends the facts about a lattice of samples.
+template <int dimension>
+void report_lattice(const nestgrid::LatticeBisection<dimension>& grid,
+                    const nestgrid::LatticeGeometry<dimension>& geometry, Report& report) {
+    constexpr auto axes = std::array{"axis_x", "axis_y", "axis_z"};
+    const auto levels = static_cast<std::uint64_t>(grid.block_levels());
+    report.add("spacing", std::vector<double>(geometry.spacing.begin(), geometry.spacing.end()));
+    report.add("origin", std::vector<double>(geometry.origin.begin(), geometry.origin.end()));
+    for (std::size_t d = 0; d < dimension; ++d) {
+        std::vector<double> axis;
+        for (std::size_t r = 0; r < dimension; ++r) axis.push_back(geometry.direction[r][d]);
+        report.add(axes[d], axis);
+    }
+    report.add("padded_nodes", std::uint64_t{grid.node_count()});
+    report.add("block_cells", std::uint64_t{1} << levels);
+    report.add("coarse_elements", std::uint64_t{grid.coarse_count()});
+    report.add("levels", dimension * levels + 1);
+}
+
+void report_range(std::pair<double, double> range, Report& report) {
+    report.add("least_value", range.first);
+    report.add("greatest_value", range.second);
+}
+
+Row row_of(const FieldInfo& f, const HierarchyInfo& info) {
+    Row row;
+    row.add("field", f.name).add("least_value", f.least).add("greatest_value", f.greatest);
+    if (!f.step) return row;
+    if (*f.step == 0) row.add("encoded", "exactly");
+    if (*f.step > 0) row.add("encoded_within", *f.step / 2);
+    const auto values = static_cast<double>(info.nodes * info.times.size());
+    return row.add("bytes_per_value", static_cast<double>(f.bytes) / values);
+}
 
 }  // namespace
-
-void line(const char* name, std::size_t value) { std::printf("%-22s %zu\n", name, value); }
-void line(const char* name, double value) { std::printf("%-22s %.6g\n", name, value); }
-void line(const char* name, const std::string& value) {
-    std::printf("%-22s %s\n", name, value.c_str());
-}
 
 std::string caption(const Extraction& e) {
     char text[200];
@@ -40,150 +93,116 @@ std::string caption(const Extraction& e) {
     return text;
 }
 
-void print_result(const ExtractionRun& run, double isovalue, const Seconds& seconds) {
-    const Extraction& e = run.surfaces.front();
-    const nestgrid::SurfaceReport& r = e.report;
-    print_emptiness(run, isovalue);
-    line("nodes", run.nodes);
-    line("leaf_elements", run.leaf_elements);
-    line("least_value", run.least);
-    line("greatest_value", run.greatest);
-    line("isovalue", isovalue);
-    line("threshold", e.threshold);
-    if (e.budget > 0) {
-        line("max_triangles", std::size_t{e.budget});
-        line("search_trials", static_cast<std::size_t>(e.search.trials));
-        line("search_triangles", std::size_t{e.search.extracted});
-        line("search_seconds", e.search_seconds);
-    }
-    line("inspect_calls", std::size_t{e.counts.calls});
-    line("visited", std::size_t{e.counts.visited});
-    line("extracted", std::size_t{e.counts.extracted});
-    line(run.dimension == 3 ? "triangles" : "segments", r.triangles);
-    line("vertices", r.vertices);
-    line("error_bound", e.error_bound);
-    if (run.dimension == 3) {
-        line("open_edges", r.open_edges);
-        line("boundary_edges", r.boundary_edges);
-        line("nonmanifold_edges", r.nonmanifold_edges);
-        line("nonmanifold_vertices", r.nonmanifold_vertices);
-        line("components", r.components);
-        line("euler_number", static_cast<double>(r.euler));
-        line("area", r.area);
-        if (r.closed() && r.triangles > 0) line("volume", std::abs(r.volume));
-    }
-    line("preroll_peak_bytes", run.preroll_peak_bytes);
-    line("preroll_kept_bytes", run.preroll_kept_bytes);
-    line("traversal_peak_bytes", e.peak_bytes);
-    line("traversal_stack_bytes", e.stack_bytes);
-    line("read_seconds", seconds.read);
-    line("preroll_seconds", run.preroll_seconds);
-    line("extract_seconds", e.seconds);
-    line("write_seconds", seconds.write);
-    if (seconds.draw > 0) line("draw_seconds", seconds.draw);
+Row begin_row(const std::optional<double>& time, std::uint64_t budget, double threshold) {
+    Row row;
+    if (time) row.add("time", *time);
+    if (budget > 0) row.add("max_triangles", budget);
+    return row.add("threshold", threshold);
 }
 
-void print_table(const ExtractionRun& run, double isovalue, const Seconds& seconds,
-                 const std::optional<Contour>& contour) {
-    print_emptiness(run, isovalue);
-    line("nodes", run.nodes);
-    line("leaf_elements", run.leaf_elements);
-    line("read_seconds", seconds.read);
-    line("preroll_seconds", run.preroll_seconds);
-    line("preroll_peak_bytes", run.preroll_peak_bytes);
-    line("preroll_kept_bytes", run.preroll_kept_bytes);
-    const bool budgets = run.surfaces.front().budget > 0;
-    std::printf("\n");
-    if (budgets) std::printf("%13s %6s %6s %8s ", "max_triangles", "trials", "cost", "seconds");
-    std::printf("%-16s %10s %10s %10s %11s %10s %8s %9s %9s\n", "threshold", "bound", "triangles",
-                "vertices", "visited", "open edges", "boundary", "MiB extra", "seconds");
+Cell bound_of(const nestgrid::ErrorBounds& bounds) {
+    if (bounds.bound_says_nothing()) return {};
+    return bounds.error_bound;
+}
+
+void say_nothing_bounded(Report& report) {
+    report.say("the error bound says nothing: it is no less than the range of the data allows");
+}
+
+std::size_t keys_of(const std::optional<double>& time, std::uint64_t budget) {
+    return 1 + (time ? 1 : 0) + (budget > 0 ? 1 : 0);
+}
+
+void report_sum(std::size_t surfaces, std::uint64_t simplices, const std::string& what,
+                double seconds, Report& report) {
+    if (surfaces < 2) return;
+    std::array<char, 40> time{};
+    std::snprintf(time.data(), time.size(), "%.3g", seconds);
+    report.say("in all: " + grouped(surfaces) + " surfaces, " + grouped(simplices) + " " + what +
+               ", " + time.data() + " seconds");
+}
+
+void report_field(const std::string& name, const std::string& unit, Report& report) {
+    report.add("field", name);
+    if (!unit.empty()) report.add("length_unit", unit);
+}
+
+void report_surfaces(const ExtractionRun& run, double isovalue, const Seconds& seconds,
+                     const std::optional<Contour>& contour, Report& report) {
+    const bool in_space = run.dimension == 3;
+    report_range({run.least, run.greatest}, report);
+    report.add("isovalue", isovalue);
+    report.add("nodes", std::uint64_t{run.nodes});
+    report.add("leaf_elements", std::uint64_t{run.leaf_elements});
+    report.add("preroll_peak_bytes", std::uint64_t{run.preroll_peak_bytes});
+    report.add("preroll_kept_bytes", std::uint64_t{run.preroll_kept_bytes});
+    report.add("preroll_seconds", run.preroll_seconds);
+    report.add("read_seconds", seconds.read);
+    if (seconds.write > 0) report.add("write_seconds", seconds.write);
+    if (seconds.draw > 0) report.add("draw_seconds", seconds.draw);
+    std::uint64_t simplices = 0;
+    double drawing = 0;
     for (const Extraction& e : run.surfaces) {
-        if (budgets) {
-            std::printf("%13llu %6d %6.2f %8.3f ", static_cast<unsigned long long>(e.budget),
-                        e.search.trials,
-                        static_cast<double>(e.search.extracted) / static_cast<double>(e.budget),
-                        e.search_seconds);
-        }
-        std::printf("%-16.6g %10.4g %10zu %10zu %11llu %10zu %8zu %9.1f %9.3f\n", e.threshold,
-                    e.error_bound, e.report.triangles, e.report.vertices,
-                    static_cast<unsigned long long>(e.counts.visited), e.report.open_edges,
-                    e.report.boundary_edges, mebibytes(e.peak_bytes), e.seconds);
+        report.add_row("surfaces", row_of(e, in_space), keys_of(e.time, e.budget));
+        simplices += e.report.triangles;
+        drawing += e.seconds;
     }
-    if (contour) {
-        if (budgets) std::printf("%36s ", "");
-        std::printf("%-16s %10s %10zu %10zu %11s %10s %8zu %9s %9.3f\n", "VTK FlyingEdges", "",
-                    contour->triangles, contour->vertices, "", "", contour->once_edges, "",
-                    contour->seconds);
+    if (contour) report.add_row("vtk", row_of(*contour));
+    report_sum(run.surfaces.size(), simplices, in_space ? "triangles" : "segments", drawing,
+               report);
+    if (std::ranges::any_of(run.surfaces,
+                            [](const Extraction& e) { return e.bounds.bound_says_nothing(); })) {
+        say_nothing_bounded(report);
     }
+    say_why_empty(run, isovalue, report);
 }
 
-void print_times(const ExtractionRun& run, double isovalue) {
-    print_emptiness(run, isovalue);
-    line("nodes", run.nodes);
-    line("leaf_elements", run.leaf_elements);
-    line("preroll_seconds", run.preroll_seconds);
-    line("preroll_kept_bytes", run.preroll_kept_bytes);
-    std::printf("\n%10s %12s %10s %10s %10s %11s %10s %9s\n", "time", "threshold", "bound",
-                "triangles", "vertices", "visited", "open edges", "seconds");
-    for (const Extraction& e : run.surfaces) {
-        std::printf("%10.6g %12.6g %10.4g %10zu %10zu %11llu %10zu %9.3f\n", *e.time, e.threshold,
-                    e.error_bound, e.report.triangles, e.report.vertices,
-                    static_cast<unsigned long long>(e.counts.visited), e.report.open_edges,
-                    e.seconds);
-    }
-}
-
-void print_info(const HierarchyInfo& info) {
-    line("family", info.family);
-    line("dimension", static_cast<std::size_t>(info.dimension));
-    line("coarse_elements", info.coarse_elements);
-    line("leaf_elements", info.leaves);
+void report_info(const HierarchyInfo& info, Report& report) {
+    report.add("family", info.family);
+    report.add("dimension", static_cast<std::uint64_t>(info.dimension));
+    report.add("coarse_elements", std::uint64_t{info.coarse_elements});
+    report.add("leaf_elements", std::uint64_t{info.leaves});
     for (const auto& [shape, count] : info.shapes) {
-        line(("leaf_" + std::string(nestgrid::topology(shape).name)).c_str(), count);
+        report.add("leaf_" + std::string(nestgrid::topology(shape).name), std::uint64_t{count});
     }
-    line("nodes", info.nodes);
-    line("hanging_nodes", info.hanging);
-    line("levels", static_cast<std::size_t>(info.levels));
-    line("measure", info.measure);
-    line("bytes_per_leaf", static_cast<double>(info.bytes) / static_cast<double>(info.leaves));
+    report.add("nodes", std::uint64_t{info.nodes});
+    report.add("hanging_nodes", std::uint64_t{info.hanging});
+    report.add("levels", static_cast<std::uint64_t>(info.levels));
+    report.add("measure", info.measure);
+    report.add("bytes_per_leaf",
+               static_cast<double>(info.bytes) / static_cast<double>(info.leaves));
     if (info.times != std::vector<double>{0}) {
-        line("frames", info.times.size());
-        line("times", list(info.times));
+        report.add("frames", std::uint64_t{info.times.size()});
+        report.add("times", info.times);
     }
-    for (const FieldInfo& f : info.fields) {
-        line("field", f.name);
-        line("least_value", f.least);
-        line("greatest_value", f.greatest);
-        if (!f.step) continue;
-        if (*f.step == 0) line("encoded", std::string("bit for bit"));
-        if (*f.step > 0) line("encoded_within", *f.step / 2);
-        line("bytes_per_value",
-             static_cast<double>(f.bytes) / static_cast<double>(info.nodes * info.times.size()));
-    }
+    for (const FieldInfo& f : info.fields) report.add_row("fields", row_of(f, info));
 }
 
-void print_info(const Volume& volume) {
+void report_info(const Volume& volume, Report& report) {
     const nestgrid::LatticeBisection<3> grid(volume.geometry);
-    const auto& g = volume.geometry;
-    const auto [least, greatest] = with_samples(volume, [](auto samples) {
-        const auto [lo, hi] = std::minmax_element(samples.begin(), samples.end());
-        return std::pair(static_cast<double>(*lo), static_cast<double>(*hi));
-    });
-    line("samples", std::to_string(g.samples[0]) + " " + std::to_string(g.samples[1]) + " " +
-                        std::to_string(g.samples[2]));
-    line("type", volume.type);
-    line("spacing", list(g.spacing));
-    line("origin", list(g.origin));
-    for (std::size_t d = 0; d < 3; ++d) {
-        const nestgrid::Point axis{g.direction[0][d], g.direction[1][d], g.direction[2][d]};
-        line(d == 0 ? "axis_x" : d == 1 ? "axis_y" : "axis_z", list(axis));
-    }
-    line("least_value", least);
-    line("greatest_value", greatest);
-    line("nodes", volume.sample_count());
-    line("padded_nodes", grid.node_count());
-    line("block_cells", std::size_t{1} << static_cast<unsigned>(grid.block_levels()));
-    line("coarse_elements", grid.coarse_count());
-    line("levels", 3 * static_cast<std::size_t>(grid.block_levels()) + 1);
-    line("leaf_elements", leaf_count(grid));
+    const auto& samples = volume.geometry.samples;
+    report_field(volume.name.empty() ? "value" : volume.name, volume.length_unit, report);
+    report.add("samples", std::vector<double>(samples.begin(), samples.end()));
+    report.add("type", volume.type);
+    report_range(with_samples(volume,
+                              [](auto values) {
+                                  const auto [lo, hi] = std::ranges::minmax_element(values);
+                                  return std::pair(static_cast<double>(*lo),
+                                                   static_cast<double>(*hi));
+                              }),
+                 report);
+    report.add("nodes", std::uint64_t{volume.sample_count()});
+    report.add("leaf_elements", std::uint64_t{leaf_count(grid)});
+    report_lattice<3>(grid, volume.geometry, report);
+}
+
+void report_info(const Raster& raster, Report& report) {
+    const nestgrid::LatticeBisection<2> grid(raster.geometry);
+    const auto& samples = raster.geometry.samples;
+    report_field("value", "", report);
+    report.add("samples", std::vector<double>(samples.begin(), samples.end()));
+    const auto [least, greatest] = std::ranges::minmax(raster.samples);
+    report_range({least, greatest}, report);
+    report.add("nodes", std::uint64_t{raster.samples.size()});
+    report_lattice<2>(grid, raster.geometry, report);
 }

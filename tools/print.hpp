@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// What commands report of surfaces, volumes and hierarchies.
 #pragma once
 
 #include <optional>
@@ -7,6 +9,8 @@
 
 #include "extract.hpp"
 #include "hierarchy.hpp"
+#include "raster.hpp"
+#include "report.hpp"
 
 struct Seconds {
     double read = 0;
@@ -14,23 +18,31 @@ struct Seconds {
     double draw = 0;
 };
 
-// A line with the name of a quantity and its value.
-void line(const char* name, std::size_t value);
-void line(const char* name, double value);
-void line(const char* name, const std::string& value);
+/// Facts about the field, one row of the table "surfaces" for each surface, and a row of "vtk" for
+/// VTK's contour.
+void report_surfaces(const ExtractionRun& run, double isovalue, const Seconds& seconds,
+                     const std::optional<Contour>& contour, Report& report);
 
-/// One line per quantity: name and value.
-void print_result(const ExtractionRun& run, double isovalue, const Seconds& seconds);
+/// The beginning of a row about one surface: its time between frames, its budget, its threshold.
+/// \param budget 0 for none
+Row begin_row(const std::optional<double>& time, std::uint64_t budget, double threshold);
+/// The bound of a result, or nothing where it promises no more than any drawing keeps.
+Cell bound_of(const nestgrid::ErrorBounds& bounds);
+/// The sentence for results whose bound promises nothing.
+void say_nothing_bounded(Report& report);
+/// How many of the first cells of such a row tell it from the others.
+std::size_t keys_of(const std::optional<double>& time, std::uint64_t budget);
 
-/// One row per surface, the last one VTK's.
-void print_table(const ExtractionRun& run, double isovalue, const Seconds& seconds,
-                 const std::optional<Contour>& contour);
+/// Sums of several surfaces, as a sentence; nothing for one.
+void report_sum(std::size_t surfaces, std::uint64_t simplices, const std::string& what,
+                double seconds, Report& report);
 
-/// One row per surface between frames.
-void print_times(const ExtractionRun& run, double isovalue);
+/// The name of a field and, where it is known, the unit of its coordinates.
+void report_field(const std::string& name, const std::string& unit, Report& report);
 
-void print_info(const Volume& volume);
-void print_info(const HierarchyInfo& info);
+void report_info(const Volume& volume, Report& report);
+void report_info(const Raster& raster, Report& report);
+void report_info(const HierarchyInfo& info, Report& report);
 
 /// What stands above a surface in a picture.
 std::string caption(const Extraction& extraction);

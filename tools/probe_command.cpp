@@ -8,7 +8,9 @@
 #include <nestgrid/algorithms/probe_line.hpp>
 #include <nestgrid/error.hpp>
 
+#include "input_file.hpp"
 #include "moments.hpp"
+#include "print.hpp"
 #include "surface_file.hpp"
 #include "text_file.hpp"
 
@@ -16,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nestgrid::InvalidInput;
-using nestgrid::IoError;
 using nestgrid::Point;
 
 struct Options {
@@ -48,8 +49,8 @@ std::optional<Point> parse_point(const std::string& text) {
 
 /// Reads points, one a line, below a line of names that may be missing.
 std::vector<Point> read_points(const fs::path& path) {
+    require_file(path);
     std::ifstream file(path);
-    if (!file) throw IoError(path.string() + " cannot be opened");
     std::vector<Point> points;
     std::string line;
     for (std::size_t number = 1; std::getline(file, line); ++number) {
@@ -99,34 +100,71 @@ void append_rows(const nestgrid::ProbeResult& result, const std::vector<Point>& 
     }
 }
 
-/// The values at the points; with --frames at each time, in front of which it stands.
-std::string table(Options& o, const std::vector<Point>& points) {
+/// The same rows in a report.
+void add_rows(const nestgrid::ProbeResult& result, const std::vector<Point>& points,
+              const std::optional<double>& time, const std::string& name, Report& report) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Row row;
+        if (time) row.add("time", *time);
+        row.add("x", points[i][0]).add("y", points[i][1]).add("z", points[i][2]);
+        if (result.found(i)) {
+            row.add(name, double{result.values[i * result.components]});
+            row.add("level", static_cast<std::uint64_t>(result.level[i]));
+        }
+        report.add_row("points", row);
+    }
+}
+
+/// Takes the points down at each moment: as .csv, or into the report where that is JSON and no file
+/// is asked for.
+void probe_all(Options& o, const std::vector<Point>& points, Report& report) {
     std::vector<ThresholdText> threshold;
     for (const std::string& text : o.threshold) threshold.push_back(parse_threshold(text));
     const std::optional<LensRequest> lens = parse(o.lens);
     const fs::path path = o.input.path;
     const InputField field = read_field(o.input, o.time.more, o.time.times);
     const Moments moments(field, o.time, path, o.projection, lens, 0);
+    const bool several = o.time.frames.has_value();
+    const bool as_rows = report.json() && o.output.empty();
     std::ostringstream out;
     out.precision(17);
-    const bool several = o.time.frames.has_value();
     out << (several ? "time," : "") << "x,y,z," << field.name << ",level\n";
+    std::uint64_t count = 0;
     moments.for_each([&](const Moment& moment) {
-        append_rows(probe_at(moment, points, threshold, lens.has_value()), points,
-                    several ? moment.time() : std::nullopt, out);
+        const auto result = probe_at(moment, points, threshold, lens.has_value());
+        const std::optional<double> time = several ? moment.time() : std::nullopt;
+        count += points.size();
+        if (as_rows) {
+            add_rows(result, points, time, field.name, report);
+        } else {
+            append_rows(result, points, time, out);
+        }
     });
-    return out.str();
+    if (report.json()) report_field(field.name, field.length_unit, report);
+    if (as_rows) return;
+    if (o.output.empty()) {
+        std::fputs(out.str().c_str(), stdout);
+    } else {
+        write_text(out.str(), o.output);
+        report.wrote(o.output, {{"points", count}});
+    }
 }
 
-void run_probe(Options& o) {
+void check(const Options& o) {
     if (o.line.empty() == o.points.empty()) {
         throw InvalidInput("a probe needs either --line or --points");
     }
+    if (o.line.empty()) refuse_options(*o.input.command, {"--count"}, "is for --line");
     if (o.count < 2) throw InvalidInput("--count is below 2");
     if (!o.output.empty()) check_writable(o.output);
     for (const std::string& text : o.threshold) parse_threshold(text);
+    if (o.threshold.empty()) require_threshold(*o.input.command);
     check(o.projection);
     check(o.time, o.input.path);
+}
+
+void run_probe(Options& o, Report& report) {
+    check(o);
     std::vector<Point> points;
     if (o.line.empty()) {
         points = read_points(o.points);
@@ -136,12 +174,7 @@ void run_probe(Options& o) {
                                              static_cast<std::size_t>(o.count))
                      .points;
     }
-    const std::string text = table(o, points);
-    if (o.output.empty()) {
-        std::fputs(text.c_str(), stdout);
-    } else {
-        write_text(text, o.output);
-    }
+    probe_all(o, points, report);
 }
 
 }  // namespace
@@ -149,24 +182,32 @@ void run_probe(Options& o) {
 Command add_probe(CLI::App& program) {
     auto o = std::make_shared<Options>();
     CLI::App* probe = program.add_subcommand("probe", "print values at points, as .csv");
-    add_input_options(*probe, o->input);
-    probe->add_option("--line", o->line, "points between the ends x,y,z,x,y,z, --count of them")
+    probe->footer(
+        "Examples:\n"
+        "  nestgrid probe head.nii.gz --line 0,9,9,9,9,9 --count 200 -o line.csv\n");
+    add_input(*probe, o->input);
+    probe->add_option("--line", o->line, "points between two ends, --count of them")
+        ->type_name("X,Y,Z,X,Y,Z")
         ->delimiter(',')
         ->expected(6);
-    probe->add_option("--count", o->count, "how many points on the line")->capture_default_str();
-    probe->add_option("--points", o->points, "a file with x,y,z on each line, .csv");
+    probe->add_option("--count", o->count, "how many points on the line [100]")->type_name("COUNT");
+    probe->add_option("--points", o->points, "or the points of a file, x,y,z on each line")
+        ->type_name("FILE");
     probe
         ->add_option("--threshold", o->threshold,
-                     "detail up to this is projected away: in units of --indicator, or in percent "
-                     "of the range of the data (2%)")
+                     "leave out detail up to this, in units of the data or in percent of their "
+                     "range [0]")
+        ->type_name("NUMBER[%]")
         ->expected(1);
+    probe
+        ->add_option("-o,--output", o->output,
+                     "write .csv [standard output]; points outside the grid have no value")
+        ->type_name("FILE");
     add_projection_options(*probe, o->projection);
-    add_lens_options(*probe, o->lens);
     add_time_options(*probe, o->time);
     probe->get_option("--frames")
         ->description("so many times from the first frame to the last, one after the other");
-    probe->add_option("-o,--output", o->output,
-                      ".csv; default: standard output. Values are left "
-                      "out at points outside the grid");
-    return {probe, [o] { run_probe(*o); }};
+    add_lens_options(*probe, o->lens);
+    add_read_options(*probe, o->input);
+    return {probe, [o](Report& report) { run_probe(*o, report); }};
 }

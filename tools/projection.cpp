@@ -12,6 +12,8 @@
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
 
+#include "command_line.hpp"
+
 namespace {
 
 using nestgrid::InvalidInput;
@@ -60,21 +62,31 @@ void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_len
 void add_projection_options(CLI::App& command, ProjectionChoice& choice) {
     command
         .add_option("--indicator", choice.indicator,
-                    "what --threshold limits: offset, |data - mean| in units of the data; visual, "
-                    "folds, 2 sin(angle / 2), from 0 to 2; numerical, jumps of the gradient times "
-                    "the diameter, in units of the data; wavelet, coefficients in units of the "
-                    "data; geometry, |position - mean| on curved "
-                    "grids, in units of length")
-        ->check(CLI::IsMember({"offset", "visual", "numerical", "wavelet", "geometry"}))
+                    "what --threshold limits: offset, |data - mean|; visual, folds from 0 to 2; "
+                    "numerical, jumps of the gradient; wavelet, coefficients; geometry, |position "
+                    "- mean| of curved grids")
+        ->type_name("NAME")
+        ->group("Detail")
+        ->check(one_of({"offset", "visual", "numerical", "wavelet", "geometry"}))
         ->capture_default_str();
-    command.add_option("--blend", choice.blend,
-                       "at least 1: nodes move from their mean to their value as the indicator "
-                       "grows from the threshold to this many times it; default: 1, they jump");
+    command
+        .add_option("--blend", choice.blend,
+                    "let nodes move from their mean to their value between the threshold and this "
+                    "many times it, instead of jumping [1]")
+        ->type_name("FACTOR")
+        ->group("Detail");
 }
 
 void check(const ProjectionChoice& choice) {
     if (choice.blend >= 1 && std::isfinite(choice.blend)) return;
     throw InvalidInput("--blend is not a finite number of at least 1");
+}
+
+void require_threshold(const CLI::App& command) {
+    const std::string why = "needs a --threshold or a --max-triangles above which it draws";
+    refuse_options(command, {"--indicator", "--box"}, why);
+    const CLI::Option* const lens = command.get_option_no_throw("--lens");
+    if (lens == nullptr || lens->count() == 0) refuse_options(command, {"--blend"}, why);
 }
 
 FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames, ProjectionChoice choice,

@@ -40,6 +40,9 @@ struct ProjectionChoice {
 void add_projection_options(CLI::App& command, ProjectionChoice& choice);
 /// \throw nestgrid::InvalidInput where the factor is out of range
 void check(const ProjectionChoice& choice);
+/// For a command without thresholds and budgets.
+/// \throw nestgrid::InvalidInput where an option is given that means nothing then
+void require_threshold(const CLI::App& command);
 
 /// The prerolls of the frames of a field.
 class FramePrerolls {

@@ -17,7 +17,7 @@
 #include <nestgrid/error.hpp>
 
 #include "child_process.hpp"
-#include "text_header.hpp"
+#include "input_file.hpp"
 #include "vtk_errors.hpp"
 
 namespace {
@@ -96,13 +96,12 @@ void read_picture(const fs::path& path, Parcel& parcel) {
 
 bool is_raster(const fs::path& path) {
     constexpr std::array endings{".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm", ".pnm"};
-    const std::string ending = lower(path.extension().string());
+    const std::string ending = ending_of(path);
     return std::ranges::find(endings, ending) != endings.end();
 }
 
 Raster read_raster(const fs::path& path, double seconds) {
-    if (!fs::exists(path)) throw IoError(path.string() + " does not exist");
-    if (!fs::is_regular_file(path)) throw IoError(path.string() + " is no file");
+    require_file(path);
     if (!(seconds > 0)) seconds = reading_time(fs::file_size(path));
     const std::shared_ptr<const Parcel> parcel =
         run_apart(path.string(), seconds, [&](Parcel& to) { read_picture(path, to); });

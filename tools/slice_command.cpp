@@ -23,7 +23,7 @@ struct Options {
     std::optional<double> isovalue;
 };
 
-void run_slice(Options& o) {
+void run_slice(Options& o, Report& report) {
     const SliceFunction f = slice_function(o.slice);
     if (o.isovalue && !std::isfinite(*o.isovalue)) {
         throw nestgrid::InvalidInput("--with-isosurface is not a finite number");
@@ -37,28 +37,38 @@ void run_slice(Options& o) {
                                .empty = "the slice does not meet the domain",
                                .lens = parse(o.lens),
                                .colour_tolerance = o.colour_tolerance};
-    draw_coloured(o.input, o.surface, what, o.time);
+    draw_coloured(o.input, o.surface, what, o.time, report);
 }
 
 }  // namespace
 
 Command add_slice(CLI::App& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* slice = program.add_subcommand("slice", "draw a slice, coloured");
-    add_input_options(*slice, o->input);
+    CLI::App* slice =
+        program.add_subcommand("slice", "draw a plane, sphere, cylinder or other slice, coloured");
+    slice->footer(
+        "Examples:\n"
+        "  nestgrid slice head.nii.gz --axis z --at 30 --threshold 2% --image slice.png\n"
+        "  nestgrid slice head.nii.gz --sphere 5,12,17,4 --max-triangles 2000 -o ball.vtp\n");
+    add_input(*slice, o->input);
     add_slice_options(*slice, o->slice);
     add_surface_options(*slice, o->surface);
-    add_lens_options(*slice, o->lens);
-    add_time_options(*slice, o->time);
     CLI::Option* with_isosurface =
-        slice->add_option("--with-isosurface", o->isovalue,
-                          "draw the isosurface with this value beside the slice, in the same walk");
-    CLI::Option* cap = slice->add_flag(
-        "--cap", o->cap,
-        "close the slice along the boundary, around the side that the normal points to, "
-        "or the outside");
-    cap->excludes(with_isosurface);
-    slice->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
-    add_colour_option(*slice, o->colour_tolerance);
-    return {slice, [o] { run_slice(*o); }};
+        slice
+            ->add_option("--with-isosurface", o->isovalue,
+                         "draw the isosurface with this value beside the slice")
+            ->type_name("NUMBER")
+            ->group("Slice");
+    slice
+        ->add_flag("--cap", o->cap,
+                   "close the slice along the boundary, around the side that its normal points to, "
+                   "or its outside")
+        ->group("Slice")
+        ->excludes(with_isosurface);
+    slice->add_flag("--outlines", o->outlines, "draw the edges of elements, too")->group("Slice");
+    add_colour_option(*slice, o->colour_tolerance)->group("Slice");
+    add_time_options(*slice, o->time);
+    add_lens_options(*slice, o->lens);
+    add_read_options(*slice, o->input);
+    return {slice, [o](Report& report) { run_slice(*o, report); }};
 }

@@ -8,6 +8,7 @@
 
 #include <nestgrid/error.hpp>
 
+#include "command_line.hpp"
 #include "expression.hpp"
 
 namespace {
@@ -51,23 +52,31 @@ nestgrid::Point point_at(const std::vector<double>& numbers, std::size_t first) 
 }  // namespace
 
 void add_slice_options(CLI::App& command, SliceOptions& options) {
-    command.add_option("--plane", options.plane, "a point and the normal of a plane, x,y,z,x,y,z")
+    CLI::Option* axis =
+        command.add_option("--axis", options.axis, "a plane across the x, y or z axis, at --at")
+            ->type_name("AXIS")
+            ->check(one_of({"x", "y", "z"}));
+    command.add_option("--at", options.at, "the coordinate of that plane")
+        ->type_name("NUMBER")
+        ->needs(axis);
+    command.add_option("--plane", options.plane, "a plane by a point and its normal")
+        ->type_name("X,Y,Z,NX,NY,NZ")
         ->delimiter(',')
         ->expected(6);
-    command.add_option("--axis", options.axis, "x, y or z: a plane across this axis, at --at")
-        ->check(CLI::IsMember({"x", "y", "z"}));
-    command.add_option("--at", options.at, "the coordinate of that plane")->needs("--axis");
-    command
-        .add_option("--sphere", options.sphere, "the centre and the radius of a sphere, x,y,z,r")
+    command.add_option("--sphere", options.sphere, "a sphere by its centre and radius")
+        ->type_name("X,Y,Z,R")
         ->delimiter(',')
         ->expected(4);
     command
         .add_option("--cylinder", options.cylinder,
-                    "a point on the axis of a cylinder, the axis and the radius, x,y,z,x,y,z,r")
+                    "a cylinder by a point on its axis, the axis and its radius")
+        ->type_name("X,Y,Z,AX,AY,AZ,R")
         ->delimiter(',')
         ->expected(7);
-    command.add_option("--function", options.function,
-                       "the zero of an expression in x, y and z: \"x*x+y*y-4\"");
+    command
+        .add_option("--function", options.function,
+                    "the zero of an expression in x, y and z, like \"x*x+y*y-4\"")
+        ->type_name("TEXT");
 }
 
 bool is_sliced(const SliceOptions& options) { return count_slices(options) > 0; }
@@ -77,12 +86,16 @@ SliceFunction slice_function(const SliceOptions& o) {
         throw nestgrid::InvalidInput(
             "a slice needs one of --plane, --axis, --sphere, --cylinder and --function");
     }
+    if (!o.axis.empty() && !o.at) {
+        throw nestgrid::InvalidInput("the plane across " + o.axis +
+                                     " has no place: give its coordinate, --at");
+    }
     if (!o.plane.empty() || !o.axis.empty()) {
         nestgrid::Point through{};
         nestgrid::Point normal{};
         if (o.plane.empty()) {
             const auto d = static_cast<std::size_t>(o.axis[0] - 'x');
-            through[d] = o.at;
+            through[d] = *o.at;
             normal[d] = 1;
         } else {
             through = point_at(o.plane, 0);

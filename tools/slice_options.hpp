@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@
 struct SliceOptions {
     std::vector<double> plane;  ///< a point and the normal
     std::string axis;
-    double at = 0;
+    std::optional<double> at{};
     std::vector<double> sphere;    ///< centre and radius
     std::vector<double> cylinder;  ///< a point on the axis, its direction, the radius
     std::string function;          ///< an expression

@@ -25,7 +25,7 @@
 #include "child_process.hpp"
 #include "coarse_file.hpp"
 #include "end_checks.hpp"
-#include "text_header.hpp"
+#include "input_file.hpp"
 #include "vtk_errors.hpp"
 
 namespace {
@@ -82,9 +82,9 @@ CoarseGrid read_vtp(const fs::path& path) {
 /// \throw nestgrid::IoError for a file that cannot be read
 CoarseGrid read_faces(const fs::path& path) {
     const std::string name = "'" + path.string() + "'";
+    require_file(path);
+    const std::string ending = ending_of(path);
     std::error_code error;
-    if (!fs::is_regular_file(path, error)) throw IoError(name + " is no file");
-    const std::string ending = lower(path.extension().string());
     constexpr std::array known{".off", ".obj", ".ply", ".stl", ".vtp"};
     if (std::ranges::find(known, ending) == known.end()) {
         throw IoError(name + " is no .off, .obj, .ply, .stl or .vtp");

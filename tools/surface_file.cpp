@@ -4,19 +4,26 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 
+#include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
+#include <vtkFieldData.h>
 #include <vtkGLTFWriter.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkOBJWriter.h>
 #include <vtkPLYWriter.h>
 #include <vtkSTLWriter.h>
+#include <vtkStringArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <nestgrid/error.hpp>
+
+#include "input_file.hpp"
+#include "suggestion.hpp"
 
 namespace {
 
@@ -64,17 +71,42 @@ void write_as(const std::string& format, vtkPolyData* surface, const fs::path& p
 
 }  // namespace
 
+void describe(vtkPolyData* surface, const std::string& unit,
+              const std::map<std::string, double>& values) {
+    for (const auto& [name, value] : values) {
+        const vtkNew<vtkDoubleArray> array;
+        array->SetName(name.c_str());
+        array->InsertNextValue(value);
+        surface->GetFieldData()->AddArray(array);
+    }
+    if (unit.empty()) return;
+    const vtkNew<vtkStringArray> array;
+    array->SetName("length_unit");
+    array->InsertNextValue(unit);
+    surface->GetFieldData()->AddArray(array);
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> contents_of(vtkPolyData* surface) {
+    std::vector<std::pair<std::string, std::uint64_t>> contents;
+    const auto polygons = static_cast<std::uint64_t>(surface->GetNumberOfPolys());
+    const auto lines = static_cast<std::uint64_t>(surface->GetNumberOfLines());
+    if (polygons > 0 || lines == 0) contents.emplace_back("triangles", polygons);
+    if (lines > 0) contents.emplace_back("lines", lines);
+    return contents;
+}
+
 fs::path temporary_beside(const fs::path& path) {
     return path.parent_path() / ("." + path.stem().string() + "." + std::to_string(getpid()) +
                                  path.extension().string());
 }
 
-void check_output(const fs::path& path) {
-    const std::string format = path.extension().string();
-    if (format != ".vtp" && format != ".ply" && format != ".stl" && format != ".obj" &&
-        format != ".gltf" && format != ".png") {
-        throw IoError("'" + path.string() +
-                      "' names no known format (.vtp, .ply, .stl, .obj, .gltf; .png for pictures)");
+void check_output(const fs::path& path, const std::vector<std::string>& formats) {
+    const std::string format = ending_of(path);
+    if (std::ranges::find(formats, format) == formats.end()) {
+        std::string known;
+        for (const std::string& each : formats) known += (known.empty() ? "" : ", ") + each;
+        throw IoError("'" + path.string() + "' names no known format, which is " + known +
+                      did_you_mean(format, formats));
     }
     check_writable(path);
 }
@@ -93,7 +125,7 @@ void write_surface(vtkPolyData* surface, const fs::path& path) {
     const fs::path temporary = temporary_beside(path);
     std::error_code error;
     try {
-        write_as(path.extension().string(), surface, temporary);
+        write_as(ending_of(path), surface, temporary);
     } catch (const IoError& failure) {
         fs::remove(temporary, error);
         throw IoError(path.string() + " could not be written: " + failure.what());

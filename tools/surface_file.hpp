@@ -2,14 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
-/// Throws nestgrid::IoError where the format of the name is unknown or its folder cannot be
-/// written, so that this is known before any work is done.
-void check_output(const std::filesystem::path& path);
+/// The formats of surfaces.
+inline const std::vector<std::string> surface_formats{".vtp", ".ply", ".stl", ".obj", ".gltf"};
+
+/// Throws nestgrid::IoError where the name ends with none of the formats, in lower case or not, or
+/// its folder cannot be written, so that this is known before any work is done.
+void check_output(const std::filesystem::path& path, const std::vector<std::string>& formats);
 
 /// The same for a file of any format.
 void check_writable(const std::filesystem::path& path);
@@ -17,6 +25,15 @@ void check_writable(const std::filesystem::path& path);
 /// Writes .vtp, .ply, .stl, .obj or .gltf. The file appears complete, by rename, or not at all.
 /// \throw nestgrid::IoError
 void write_surface(vtkPolyData* surface, const std::filesystem::path& path);
+
+/// Adds what is known of a whole surface, as field data.
+/// \param unit of lengths ("length_unit"); empty where it is unknown
+/// \param values by their names: that of the field on an isosurface
+void describe(vtkPolyData* surface, const std::string& unit,
+              const std::map<std::string, double>& values = {});
+
+/// What a surface has: "triangles", "lines", and how many.
+std::vector<std::pair<std::string, std::uint64_t>> contents_of(vtkPolyData* surface);
 
 /// A name in the same folder and of the same format that nobody uses.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);

@@ -8,14 +8,22 @@
 #include <nestgrid/error.hpp>
 
 #include "frame_files.hpp"
+#include "input_file.hpp"
 
 using nestgrid::InvalidInput;
 
 namespace {
 
-void require_several_frames(std::size_t count) {
-    if (count > 1) return;
-    throw InvalidInput("--time and --frames need several inputs, or a .nestgrid file with frames");
+/// \throw InvalidInput unless there are several frames, and three where cubic polynomials differ
+///        from lines
+void require_several_frames(const TimeOptions& time, std::size_t count) {
+    if (count < 2) {
+        throw InvalidInput(
+            "--time and --frames need several inputs, or a .nestgrid file with frames");
+    }
+    if (time.cubic && count < 3) {
+        throw InvalidInput("--cubic needs at least three frames: between two it is the line");
+    }
 }
 
 /// \throw InvalidInput where a time is drawn that does not lie between the frames
@@ -43,21 +51,28 @@ std::vector<float> TimeOptions::weights(const std::vector<double>& of_frames, do
 
 void add_time_options(CLI::App& command, TimeOptions& options) {
     command.add_option("FRAMES", options.more,
-                       "further files of the same layout: later frames of the same field, with "
-                       "--time or --frames");
+                       "later frames of the same field, for --time or --frames");
     CLI::Option* time =
-        command.add_option("--time", options.time,
-                           "a time between the frames, whose times are 0, 1, 2, ..., those of the "
-                           ".nestgrid file that has them, or those of --times");
+        command.add_option("--time", options.time, "draw at this time between the frames")
+            ->type_name("TIME")
+            ->group("Time");
     command
         .add_option("--frames", options.frames,
-                    "so many times from the first frame to the last, as a film: OUTPUT_0000.vtp, "
-                    "OUTPUT_0001.vtp, ... and OUTPUT.pvd")
+                    "draw so many times from the first frame to the last, as a film: "
+                    "OUTPUT_0000.vtp, OUTPUT_0001.vtp, ... and OUTPUT.pvd")
+        ->type_name("COUNT")
+        ->group("Time")
         ->excludes(time);
-    command.add_option("--times", options.times, "the times of all frames, ascending")
+    command
+        .add_option("--times", options.times,
+                    "times of all frames, ascending [those of the .nestgrid, or 0,1,2,...]")
+        ->type_name("T,T,...")
+        ->group("Time")
         ->delimiter(',');
-    command.add_flag("--cubic", options.cubic,
-                     "interpolate by cubic polynomials (Catmull and Rom) in the place of lines");
+    command
+        .add_flag("--cubic", options.cubic,
+                  "interpolate by cubic polynomials (Catmull and Rom) instead of lines")
+        ->group("Time");
 }
 
 void check(const TimeOptions& time, const std::filesystem::path& input) {
@@ -72,13 +87,13 @@ void check(const TimeOptions& time, const std::filesystem::path& input) {
     }
     if (time.frames && *time.frames < 2) throw InvalidInput("--frames is below 2");
     if (is_hierarchy(input) && time.more.empty()) return;
-    require_several_frames(time.more.size() + 1);
+    require_several_frames(time, time.more.size() + 1);
     check_times(time, times_of_frames(time.times, times_of_files(time.more.size() + 1)));
 }
 
 void check_film(const TimeOptions& time, const SurfaceOptions& surface) {
     if (!time.frames) return;
-    if (surface.output.extension() != ".vtp") {
+    if (ending_of(surface.output) != ".vtp") {
         throw InvalidInput("a film needs an --output with the name of a .vtp file");
     }
     if (!surface.image.empty()) throw InvalidInput("--image draws no films");
@@ -89,7 +104,7 @@ void check_film(const TimeOptions& time, const SurfaceOptions& surface) {
 void require_frames(const TimeOptions& time, const std::vector<double>& of_frames,
                     const std::filesystem::path& input) {
     if (time.in_use()) {
-        require_several_frames(of_frames.size());
+        require_several_frames(time, of_frames.size());
         check_times(time, of_frames);
     } else if (of_frames.size() > 1) {
         std::array<char, 120> text{};

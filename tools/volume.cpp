@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 
 #include <vtkDataArray.h>
@@ -23,7 +22,9 @@
 
 #include "child_process.hpp"
 #include "end_checks.hpp"
+#include "input_file.hpp"
 #include "sample_layout.hpp"
+#include "suggestion.hpp"
 #include "text_header.hpp"
 #include "vtk_errors.hpp"
 
@@ -168,6 +169,32 @@ VtkVolume read_nifti(const Reading& reading) {
     return volume;
 }
 
+std::vector<std::string> names_of_arrays(vtkPointData* data) {
+    std::vector<std::string> names;
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+        const char* name = data->GetArrayName(i);
+        if (name != nullptr && data->GetArray(i) != nullptr) names.emplace_back(name);
+    }
+    return names;
+}
+
+/// Makes an array the active one: the named one, else the active one of the file, else the only
+/// one.
+void choose_array(const fs::path& path, const std::string& array, vtkPointData* data) {
+    const std::vector<std::string> names = names_of_arrays(data);
+    if (!array.empty() && data->SetActiveScalars(array.c_str()) < 0) {
+        throw InvalidInput(path.string() + " has no point data array '" + array + "', " +
+                           (names.empty() ? "and no other" : "only " + listed(names)) +
+                           did_you_mean(array, names));
+    }
+    if (data->GetScalars() != nullptr) return;
+    if (names.size() == 1) data->SetActiveScalars(names.front().c_str());
+    if (names.size() > 1) {
+        throw InvalidInput(path.string() +
+                           " has several arrays, choose one by --array: " + listed(names));
+    }
+}
+
 VtkVolume read_vti(const Reading& reading, const std::string& array) {
     const vtkNew<vtkXMLImageDataReader> reader;
     reading.listen(reader);
@@ -180,13 +207,7 @@ VtkVolume read_vti(const Reading& reading, const std::string& array) {
     VtkVolume volume;
     volume.image = reading.read_samples(reader);
     vtkPointData* data = volume.image->GetPointData();
-    if (!array.empty() && data->SetActiveScalars(array.c_str()) < 0) {
-        throw InvalidInput(reading.path.string() + " has no point data array '" + array + "'");
-    }
-    if (data->GetScalars() == nullptr && data->GetNumberOfArrays() == 1 &&
-        data->GetArray(0) != nullptr) {
-        data->SetActiveScalars(data->GetArray(0)->GetName());
-    }
+    choose_array(reading.path, array, data);
     set_geometry(volume);
     if (data->GetScalars() != nullptr) volume.name = text_of(data->GetScalars()->GetName());
     // VTK's own name for what nobody has named.
@@ -200,7 +221,8 @@ SampleLayout raw_layout(const fs::path& path, const RawFormat& raw) {
         throw InvalidInput(path.string() +
                            " does not describe itself: give --dims NX,NY,NZ and --type");
     }
-    SampleLayout layout{.path = path, .type = raw.type, .files = {path}};
+    SampleLayout layout{.path = path, .type = raw.type};
+    layout.files = {path};
     layout.geometry.samples = raw.dims;
     std::copy(raw.spacing.begin(), raw.spacing.end(), layout.geometry.spacing.begin());
     layout.big_endian = raw.big_endian;
@@ -323,6 +345,20 @@ Volume open_volume(std::shared_ptr<const Parcel> parcel) {
     return volume;
 }
 
+/// Says what could be done with a file that is no volume.
+std::string unknown_format(const fs::path& path) {
+    const std::string ending = ending_of(path);
+    for (const char* mesh : {".off", ".obj", ".ply", ".stl", ".node", ".ele", ".poly", ".smesh"}) {
+        if (ending == mesh)
+            return " is a mesh without data: 'nestgrid mesh' makes a hierarchy of it";
+    }
+    const std::vector<std::string> known{".vti", ".mhd", ".mha", ".nrrd", ".nhdr",
+                                         ".nii", ".gz",  ".raw", ".png",  ".nestgrid"};
+    return " is of no known format (.vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz, .raw, "
+           ".nestgrid, or a picture)" +
+           did_you_mean(ending, known);
+}
+
 }  // namespace
 
 std::size_t leaf_count(const nestgrid::LatticeBisection<3>& grid) {
@@ -339,10 +375,7 @@ std::size_t Volume::sample_count() const {
 
 Volume read_volume(const fs::path& path, const std::string& array, const RawFormat& raw,
                    double seconds) {
-    if (!fs::exists(path)) throw IoError(path.string() + " does not exist");
-    if (!fs::is_regular_file(path)) throw IoError(path.string() + " is no file");
-    if (std::ifstream file(path); !file) throw IoError(path.string() + " cannot be opened");
-    if (fs::file_size(path) == 0) throw IoError(path.string() + " is empty");
+    require_file(path);
     const std::string name = lower(path.filename().string());
     const auto is = [&](std::initializer_list<const char*> endings) {
         return std::any_of(endings.begin(), endings.end(),
@@ -353,9 +386,7 @@ Volume read_volume(const fs::path& path, const std::string& array, const RawForm
     if (is({".nrrd", ".nhdr"})) layout = nrrd_layout(path);
     if (is({".raw"})) layout = raw_layout(path, raw);
     if (!layout && !is({".vti", ".nii", ".nii.gz"})) {
-        throw IoError(path.string() +
-                      " is of no known format (.vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz, "
-                      ".raw)");
+        throw IoError(path.string() + unknown_format(path));
     }
     const std::size_t bytes = layout ? checked_size(*layout) : fs::file_size(path);
     if (!(seconds > 0)) seconds = reading_time(bytes);

@@ -127,7 +127,7 @@ void serve(PageServer& server) {
     waiting.join();
 }
 
-void run_view(Options& o) {
+void run_view(Options& o, Report& report) {
     if (o.port < 0 || o.port > 65535) throw InvalidInput("--port is not from 0 to 65535");
     if (o.threads < 0) throw InvalidInput("--threads is negative");
     check_times(o.times);
@@ -149,9 +149,16 @@ void run_view(Options& o) {
     progress.reset();
     ExploredFrames frames(explorer);
     PageServer server(frames, o.port);
-    std::printf("%s\n", server.address().c_str());
-    std::fflush(stdout);
-    if (isatty(STDOUT_FILENO) == 1) std::printf("Open this address in a browser; Ctrl+C ends.\n");
+    if (report.json()) {
+        report.add("address", server.address());
+        report.print();
+    } else {
+        std::printf("%s\n", server.address().c_str());
+        std::fflush(stdout);
+    }
+    if (isatty(STDOUT_FILENO) == 1 && !report.json()) {
+        std::printf("Open this address in a browser; Ctrl+C ends.\n");
+    }
     if (!o.no_browser) open_browser(server.address());
     serve(server);
 }
@@ -162,14 +169,21 @@ Command add_view(CLI::App& program) {
     auto o = std::make_shared<Options>();
     CLI::App* view =
         program.add_subcommand("view", "explore a field in the browser, by a page on 127.0.0.1");
-    add_input_options(*view, o->input);
+    view->footer(
+        "Examples:\n"
+        "  nestgrid view head.nii.gz\n");
+    add_input(*view, o->input);
     view->add_option("FRAMES", o->more,
                      "further files of the same layout: later frames of the same field");
-    view->add_option("--times", o->times,
-                     "the times of all frames, ascending; default: those of the file, or 0, 1, ...")
-        ->delimiter(',');
-    view->add_option("--port", o->port, "of 127.0.0.1; default: any that is free");
-    view->add_option("--threads", o->threads, "how many to use; default: all");
+    view->add_option("--port", o->port, "of 127.0.0.1 [any that is free]")->type_name("NUMBER");
     view->add_flag("--no-browser", o->no_browser, "print the address and open no browser");
-    return {view, [o] { run_view(*o); }};
+    view->add_option("--times", o->times,
+                     "times of all frames, ascending [those of the .nestgrid, or 0,1,2,...]")
+        ->type_name("T,T,...")
+        ->delimiter(',');
+    view->add_option("--threads", o->threads, "how many to use [all]")
+        ->type_name("COUNT")
+        ->group("Further");
+    add_read_options(*view, o->input);
+    return {view, [o](Report& report) { run_view(*o, report); }};
 }

@@ -6,9 +6,12 @@
 
 Command add_view(CLI::App& program) {
     CLI::App* view = program.add_subcommand(
-        "view", "explore a field in the browser (left out here: build with -DNESTGRID_VIEW=ON)");
+        "view", "explore a field in the browser (left out: -DNESTGRID_VIEW=ON)");
+    view->footer(
+        "Examples:\n"
+        "  nestgrid view head.nii.gz\n");
     view->allow_extras();
-    return {view, [] {
+    return {view, [](Report& /*report*/) {
                 throw nestgrid::InvalidInput(
                     "this program was built without its page: configure with -DNESTGRID_VIEW=ON");
             }};
