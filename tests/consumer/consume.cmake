@@ -8,6 +8,14 @@ endfunction()
 
 file(REMOVE_RECURSE ${work})
 run(${CMAKE_COMMAND} --install ${build} --prefix ${work}/prefix)
+if(EXISTS ${work}/prefix/bin/nestgrid)
+  foreach(text man/man1/nestgrid.1 bash-completion/completions/nestgrid zsh/site-functions/_nestgrid)
+    file(SIZE ${work}/prefix/share/${text} size) # an error where it is not installed
+    if(size LESS 10000)
+      message(FATAL_ERROR "share/${text} has ${size} bytes")
+    endif()
+  endforeach()
+endif()
 set(configure ${CMAKE_COMMAND} -S ${source} -G ${generator} -D CMAKE_CXX_COMPILER=${compiler} -D
               CMAKE_CXX_FLAGS=${flags} -D CMAKE_PREFIX_PATH=${work}/prefix)
 # Separated by commas: a list would come apart on its way to the command.

@@ -6,6 +6,7 @@
 # Arguments: the program, example.poly of the package tetgen; without it the test is skipped, in
 # continuous integration (CI=true) it fails.
 set -uo pipefail
+. "$(dirname "$0")/values.sh"
 program=$1
 complex=$2
 if [ ! -s "$complex" ]; then
@@ -15,7 +16,7 @@ if [ ! -s "$complex" ]; then
 fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-value() { awk -v name="$1" '$1 == name { print $2 }' "$work/out"; }
+cd "$work" || exit 1
 for family in bisection red-green; do
     "$program" mesh "$complex" --family $family --field 'sqrt((x-5)^2+y^2+(z-2)^2)' \
         --tolerance 0.01 -o "$work/c.nestgrid" >"$work/out" || exit 1

@@ -102,7 +102,7 @@ if [ "$3" = 1 ]; then
     refused 1 "'open.off': the surface of a solid is open" isosurface v.vti --value 130 --lens surface:open.off -o x.vtp
     refused 1 "crossing.off': .* intersects or touches itself" isosurface v.vti --value 130 --lens surface:crossing.off -o x.vtp
     refused 1 "point.off': the surface of a solid is empty" isosurface v.vti --value 130 --lens surface:point.off -o x.vtp
-    refused 1 "'none.stl' is no file" isosurface v.vti --value 130 --lens surface:none.stl -o x.vtp
+    refused 1 "'none.stl' does not exist" isosurface v.vti --value 130 --lens surface:none.stl -o x.vtp
     refused 1 "'v.vti' is no .off, .obj, .ply, .stl or .vtp" isosurface v.vti --value 130 --lens surface:v.vti -o x.vtp
     cp v.vti other.vtp
     refused 1 "'other.vtp' is no VTK poly data" isosurface v.vti --value 130 --lens surface:other.vtp -o x.vtp
@@ -120,9 +120,9 @@ refused 1 'radius of .* is negative' $(surface) --lens=ball:1,2,3,-4
 refused 1 'is empty' $(surface) --lens=box:2,1,0,1,0,1
 refused 1 'normal of a half-space' $(surface) --lens=halfspace:1,2,3,0,0,0
 refused 1 'angle between' $(surface) --lens=cone:1,2,3,0,0,1,100
-refused 1 "'nothing.txt' is no file" $(surface) --lens=polygon:nothing.txt
-refused 1 "'.' is no file" $(surface) --lens=polygon:.
-: >empty.txt && refused 1 'no list of corners' $(surface) --lens=polygon:empty.txt
+refused 1 "'nothing.txt' does not exist" $(surface) --lens=polygon:nothing.txt
+refused 1 "'.' is a folder" $(surface) --lens=polygon:.
+: >empty.txt && refused 1 "'empty.txt' is empty" $(surface) --lens=polygon:empty.txt
 echo 1 2 3 >odd.txt && refused 1 'no list of corners' $(surface) --lens=polygon:odd.txt
 echo 1 2 3 4 x >words.txt && refused 1 'no list of corners' $(surface) --lens=polygon:words.txt
 refused 1 'no list of half-spaces' $(surface) --lens=polyhedron:odd.txt

@@ -44,7 +44,7 @@ cmp -s one.vtp three.vtp || fail "three threads draw something else"
 [ "$(value open_edges)" = 0 ] && [ "$(value search_trials)" -gt 5 ] || fail "budget: search"
 "$program" isosurface v.vti --value 130 --max-triangles $((2 * finest)) \
     --max-triangles $((finest / 2)) >out || fail "budgets"
-[ "$(grep -c " 0 *0 " out)" -ge 1 ] && grep -q "^max_triangles  *trials" <(sed 's/^ *//' out) ||
+[ "$(value threshold | head -1)" = 0 ] && [ "$(value max_triangles | tail -1)" = $((finest / 2)) ] ||
     fail "budgets: $(cat out)"
 "$program" isosurface v.vti --value 130 --threshold 50 --box=-100,100,-100,100,-100,100 >out ||
     fail "box"
@@ -82,9 +82,9 @@ refused 2 'indicator: ' isosurface v.vti --value 130 --threshold 2 --indicator c
 refused 1 'even the coarsest surface has more than 1' isosurface v.vti --value 130 --max-triangles 1
 refused 1 'max-triangles is not positive' isosurface v.vti --value 130 --max-triangles 0
 refused 2 'excludes' isosurface v.vti --value 130 --max-triangles 9 --threshold 1
-refused 1 'box is empty' isosurface v.vti --value 130 --box 1,0,0,1,0,1
-refused 1 'box is empty' isosurface v.vti --value 130 --box 0,nan,0,1,0,1
-refused 1 'box-threshold is negative' isosurface v.vti --value 130 --box 0,1,0,1,0,1 --box-threshold -1
+refused 1 'box is empty' isosurface v.vti --value 130 --threshold 1 --box 1,0,0,1,0,1
+refused 1 'box is empty' isosurface v.vti --value 130 --threshold 1 --box 0,nan,0,1,0,1
+refused 1 'box-threshold is negative' isosurface v.vti --value 130 --threshold 1 --box 0,1,0,1,0,1 --box-threshold -1
 refused 2 'box' isosurface v.vti --value 130 --box 0,1
 refused 2 'box' isosurface v.vti --value 130 --box-threshold 1
 refused 1 'threads is negative' isosurface v.vti --value 130 --threads -1
@@ -96,7 +96,7 @@ done
 "$program" isosurface v.vti --value 130 --threshold 0 --threshold 10 --against-vtk -o t.vtp >out ||
     fail "table"
 [ -s t-1.vtp ] && [ -s t-2.vtp ] || fail "numbered output"
-grep -q '^VTK FlyingEdges' out || fail "row of VTK"
+grep -q '^ *vtkFlyingEdges3D ' out || fail "row of VTK"
 
 "$program" isosurface v.vti --value 900 -o empty.vtp >out 2>err || fail "empty: status"
 grep -q '^empty: the isovalue 900 is outside the range' out || fail "empty: $(cat out)"
@@ -146,9 +146,9 @@ refused 1 "threshold 'much'" isosurface v.vti --value 130 --threshold much
 refused 1 "threshold '-3'" isosurface v.vti --value 130 --threshold=-3
 refused 2 '--frobnicate' isosurface v.vti --value 130 --frobnicate
 refused 2 'value is required' isosurface v.vti
-refused 2 '--valu=130 was not expected' isosurface v.vti --valu=130 -o x.vtp
+refused 2 "no option --valu=130: did you mean '--value'" isosurface v.vti --valu=130 -o x.vtp
 refused 2 '' isosurface
-refused 2 'paint was not expected' paint v.vti
+refused 2 "there is no command 'paint'" paint v.vti
 # Hierarchies.
 cat >tetra.off <<'END'
 OFF
@@ -195,7 +195,7 @@ for family in bisection red-green; do
     [ ! -s err ] || fail "mesh $family wrote to standard error"
     [ "$(value measure)" = 1 ] || fail "mesh $family: volume $(value measure)"
     [ "$(value hanging_nodes)" = 0 ] || fail "mesh $family: hanging nodes"
-    cp out first && "$program" info $family.nestgrid >out && cmp -s out first || fail "info $family"
+    facts >first && "$program" info $family.nestgrid >out && facts | cmp -s - first || fail "info $family"
     "$program" isosurface $family.nestgrid --value 0.7 -o $family.vtp >out || fail "iso $family"
     [ "$(value open_edges)" = 0 ] || fail "iso $family: open edges"
     # An eighth of a sphere: its area to a percent.
@@ -232,10 +232,10 @@ refused 1 'needs a --field' mesh tetra.off "${mesh[@]}" --tolerance 1
 refused 1 'no rule for a tetrahedron' mesh cube.smesh --family octree -o x.nestgrid
 refused 1 'more than 5000 elements' mesh tetra.off "${mesh[@]}" --refine 1000 --max-elements 5000
 refused 1 'more than 5000 elements' mesh tetra.off "${mesh[@]}" --field x^2 --tolerance 1e-300 --max-elements 5000
-refused 1 'tolerance is negative' mesh tetra.off "${mesh[@]}" --field x --tolerance nan
+refused 1 'tolerance is not positive' mesh tetra.off "${mesh[@]}" --field x --tolerance nan
 refused 1 'refine is negative' mesh tetra.off "${mesh[@]}" --refine -1
-refused 1 'levels is negative' mesh tetra.off "${mesh[@]}" --levels -1
-refused 1 'max-volume is negative' mesh cube.smesh "${mesh[@]}" --max-volume -1
+refused 1 'levels is negative' mesh tetra.off "${mesh[@]}" --field x --tolerance 1 --levels -1
+refused 1 'max-volume is not a positive' mesh cube.smesh "${mesh[@]}" --max-volume -1
 refused 1 'cube.smesh. cannot be read within 0.2 seconds' mesh cube.smesh "${mesh[@]}" --max-volume 1e-6 --read-limit 0.2
 refused 2 'read-limit' mesh cube.smesh "${mesh[@]}" --read-limit 0
 refused 1 'layer 0 is no positive' mesh tetra.off --family prism --layers nan -o x.nestgrid

@@ -1,0 +1,266 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Every option that is given has an effect, or is refused in one sentence. The options are those of
+# --help-all: one that no case here names fails the test. Arguments: the program, the maker of
+# volumes.
+. "$(dirname "$0")/functions.sh"
+
+: >covered
+# result ARGUMENTS...: what a command prints and writes, without times and memory; where it is
+# refused, the sentence.
+result() {
+    rm -rf kept && mkdir kept
+    "$program" "$@" --json >document 2>err || { echo "refused: $(cat err)"; return; }
+    python3 - <<'END'
+import json
+def drop(x):
+    if isinstance(x, list): return [drop(y) for y in x]
+    if isinstance(x, dict): return {k: drop(v) for k, v in x.items() if "seconds" not in k and "bytes" not in k}
+    return x
+document = drop(json.load(open("document")))
+document["notes"] = [note for note in document["notes"] if not note.startswith("in all")]
+print(json.dumps(document, sort_keys=True))
+END
+    find kept -type f -exec sha256sum {} + | sort
+}
+
+# effect COMMAND BASE OPTION [VALUE]: with the option, the result is another one.
+effect() {
+    local command=$1 base=$2
+    shift 2
+    echo "$command $1" >>covered
+    local without with
+    without=$(result $command $base)
+    with=$(result $command $base "$@")
+    [[ "$without" != refused:* ]] || fail "$command $base: $without"
+    [[ "$with" != refused:* ]] || fail "$command $base $*: $with"
+    [ "$with" != "$without" ] || fail "$command $base: $* has no effect"
+}
+
+# differ COMMAND OPTION ARGUMENTS OTHERS: two values of the option have two results.
+differ() {
+    local one other
+    one=$(result $1 $3)
+    other=$(result $1 $4)
+    echo "$1 $2" >>covered
+    [[ "$one$other" != *refused:* ]] || fail "$1 $3, $4: $one $other"
+    [ "$one" != "$other" ] || fail "$1: $3 and $4 are the same"
+}
+
+# void COMMAND PATTERN BASE OPTION [VALUE]: where the option would have no effect, it is refused.
+void() {
+    local command=$1 pattern=$2 base=$3
+    shift 3
+    [[ "$(result $command $base)" != refused:* ]] || fail "$command $base: $(cat err)"
+    refused 1 "$pattern" $command $base "$@"
+}
+
+{
+    printf 'P5\n65 65\n255\n'
+    LC_ALL=C awk 'BEGIN { for (i = 0; i < 65 * 65; ++i) printf "%c", 64 + 50 * sin(i % 65 / 9) * cos(int(i / 65) / 7) }'
+} >hills.pgm
+run mesh "$cube" --family bisection --field 'sqrt(x^2+y^2+z^2)+t' --times 0,1,3 --refine 8 -o film.nestgrid
+run mesh "$cube" --family bisection --field x --field z*z --refine 6 -o two.nestgrid
+printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n' >plane.off
+run mesh plane.off --family bisection --field x --field 'x*y' --refine 6 -o plane.nestgrid
+run mesh plane.off --family prism --layers 1 --direction 0,0,1 --field 'x*z+y*z' --refine 1 -o prisms.nestgrid
+cp two.nestgrid first.nestgrid && cp two.nestgrid second.nestgrid
+raw='v.raw --dims 20,24,18 --type uint8'
+for name in a b; do head -c 8000 v.raw | tail -c 7680 >$name.raw; done
+head -c 8640 v.raw | tail -c 7680 >b.raw
+frames='a.raw b.raw --dims 20,24,16 --type uint8'
+
+declare -A base=([isosurface]='--value 130' [slice]='--axis z --at 9' [isolines]='--axis z --at 9 --count 3'
+    [boundary]='' [probe]='--line 0,0,0,9,17,11 --count 7' [info]='')
+for command in isosurface slice isolines boundary probe info; do
+    options=${base[$command]}
+    keep='-o kept/x.vtp'
+    [ $command = probe ] && keep='-o kept/x.csv'
+    [ $command = info ] && keep=
+    # Input.
+    void $command 'is for .raw files' "v.vti $options" --dims 20,24,18
+    void $command 'is for .raw files' "v.vti $options" --type uint8
+    void $command 'is for .raw files' "v.nii.gz $options" --endian big
+    void $command 'is for .raw files' "v.nrrd $options" --spacing 1,1,1
+    void $command 'is for .vti and .nestgrid' "v.mha $options" --array value
+    void $command 'not for .nestgrid' "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
+    refused 1 'give --dims' $command v.raw $options && echo "$command --dims" >>covered
+    refused 1 'has 8640 bytes' $command v.raw $options --dims 20,24,18 --type int16 && echo "$command --type" >>covered
+    head -c 17280 /dev/urandom | LC_ALL=C tr '\200-\377' '\000-\177' >two.raw
+    two="two.raw --dims 20,24,18 --type int16 $(sed 's/130/9000/' <<<"$options")"
+    effect $command "$two" --endian big
+    effect $command "$raw $options" --spacing 0.9,1.1,1.3
+    refused 1 'within 1e-06 seconds' $command v.nii.gz $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
+    echo "$command --json" >>covered
+    [ $command = info ] && continue
+    inside=$(sed 's/130/0.5/; s/at 9/at 0.4/; s/9,17,11/1,1,1/' <<<"$options")
+    differ $command --array "two.nestgrid $inside --array x" "two.nestgrid $inside --array z*z"
+    # Detail.
+    effect $command "$raw $options $keep" --threshold 30
+    void $command 'needs a --threshold' "$raw $options" --indicator visual
+    void $command 'needs a --threshold' "$raw $options" --blend 2
+    void $command 'needs a --threshold' "$raw $options --lens ball:9,9,9,3" --indicator visual
+    effect $command "$raw $options $keep --threshold 1" --indicator visual
+    effect $command "$raw $options $keep --threshold 10" --blend 2
+    # Lens.
+    effect $command "$raw $options $keep" --lens ball:0,0,0,2
+    lens='--lens ball:0,0,0,2'
+    effect $command "$raw $options $keep $lens" --finest 4
+    effect $command "$raw $options $keep $lens --slope 9" --coarsest 2
+    effect $command "$raw $options $keep $lens" --slope 3
+    for option in finest coarsest slope; do refused 2 lens $command $raw $options --$option 1; done
+    # Time.
+    effect $command "$frames $options $keep --time 0.5" --times 0,2
+    effect $command "film.nestgrid $(sed 's/130/1.5/; s/at 9/at 0.4/; s/9,17,11/1,1,1/' <<<"$options") $keep --time 1.7" --cubic
+    refused 1 'at least three frames' $command $frames $options --time 0.5 --cubic
+    void $command 'need --time or --frames' "$raw $options" --cubic
+    void $command 'need --time or --frames' "$raw $options" --times 0
+    void $command 'need several inputs' "$raw $options" --time 0
+    void $command 'need several inputs' "$raw $options $keep" --frames 3
+    "$program" $command $frames $options $keep --frames 3 >out 2>err || fail "$command --frames: $(cat err)"
+    echo "$command --frames" >>covered
+    echo "$command --time" >>covered
+done
+
+# What is drawn.
+for command in isosurface slice isolines boundary; do
+    effect $command "$raw ${base[$command]}" --max-triangles 3000
+    effect $command "$raw ${base[$command]}" --output kept/x.vtp
+    effect $command "$raw ${base[$command]}" -o kept/x.vtp
+    "$program" $command $raw ${base[$command]} --threads 1 -o one.vtp >out && "$program" $command $raw ${base[$command]} --threads 3 -o three.vtp >out
+    cmp -s one.vtp three.vtp || fail "$command: another surface by three threads"
+    refused 1 'threads is negative' $command $raw ${base[$command]} --threads -1
+    echo "$command --threads" >>covered
+done
+effect isosurface "$raw --value 130 --threshold 30" --box 0,20,0,24,0,9
+effect isosurface "$raw --value 130 --threshold 30 --box 0,20,0,24,0,9" --box-threshold 5
+void isosurface 'needs a --threshold' "$raw --value 130" --box 0,9,0,9,0,9
+refused 2 box isosurface $raw --value 130 --box-threshold 1
+effect isosurface "$raw --value 30" --cap
+effect isosurface "$raw --value 130 -o kept/x.vtp" --no-normals
+effect isosurface "$raw --value 130 -o kept/x.ply" --no-normals
+void isosurface 'changes no .stl file' "$raw --value 130 -o x.stl" --no-normals
+void isosurface 'is for surfaces, not for isolines' "hills.pgm --value 60" --cap
+void isosurface 'is for surfaces, not for isolines' "hills.pgm --value 60 -o kept/x.vtp" --no-normals
+effect isosurface "$raw --value 130" --at-nodes
+effect isosurface "$raw --value 130" --against-vtk
+void isosurface 'is for one volume' "hills.pgm --value 60" --against-vtk
+
+slices=("--axis z --at 9" "--axis x --at 9" "--axis z --at 8" "--plane 9,9,9,1,1,1" "--sphere 9,9,9,4" "--cylinder 9,9,9,0,0,1,4" "--function x*x-50")
+for command in slice isolines; do
+    count=
+    [ $command = isolines ] && count='--count 3'
+    seen=
+    for slice in "${slices[@]}"; do
+        new=$(result $command $raw $count $slice)
+        [[ "$new" != refused:* ]] || fail "$command $slice: $new"
+        [[ "$seen" != *"$new"* ]] || fail "$command: $slice has no effect"
+        seen+=$new
+        for name in $slice; do [[ $name != --* ]] || echo "$command $name" >>covered; done
+    done
+    refused 1 'needs one of' $command $raw $count --axis z --at 9 --sphere 9,9,9,4
+    refused 2 axis $command $raw $count --at 9
+done
+effect slice "$raw --sphere 9,9,9,4" --cap
+effect slice "$raw --axis z --at 9" --with-isosurface 130
+for command in slice boundary; do
+    effect $command "two.nestgrid --array x $([ $command = slice ] && echo --axis z --at 0.5) -o kept/x.vtp" --outlines
+    void $command 'is about what is kept' "$raw ${base[$command]}" --outlines
+    effect $command "prisms.nestgrid $([ $command = slice ] && echo --plane 0.5,0.5,0.3,0.3,0.5,0.81)" --colour-tolerance 0.01
+done
+[ "$(result isolines $raw --axis z --at 9 --count 3)" != "$(result isolines $raw --axis z --at 9 --count 4)" ] || fail "isolines --count"
+[ "$(result isolines $raw --axis z --at 9 --values 30)" != "$(result isolines $raw --axis z --at 9 --values 40)" ] || fail "isolines --values"
+[ "$(result isolines $raw --on-surface 130 --by x --count 3)" != "$(result isolines $raw --on-surface 130 --by y --count 3)" ] || fail "isolines --by"
+[ "$(result isolines $raw --on-surface 130 --by x --count 3)" != "$(result isolines $raw --on-surface 140 --by x --count 3)" ] || fail "isolines --on-surface"
+for name in count values on-surface by; do echo "isolines --$name" >>covered; done
+refused 1 'either --values or --count' isolines $raw --axis z --at 9 --values 3 --count 3
+echo "isosurface --value" >>covered
+
+# The plane.
+for command in height surface; do
+    options=$([ $command = height ] && echo --scale 2)
+    keep='-o kept/x.vtp'
+    differ $command --array "plane.nestgrid $options --array x" "plane.nestgrid $options --array x*y"
+    void $command 'is for .vti and .nestgrid' "hills.pgm $options" --array value
+    refused 1 'within 1e-06 seconds' $command hills.pgm $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
+    effect $command "hills.pgm $options" --threshold 5
+    effect $command "hills.pgm $options" --max-triangles 900
+    effect $command "hills.pgm $options" -o kept/x.vtp
+    effect $command "hills.pgm $options" --output kept/x.vtp
+    effect $command "hills.pgm $options $keep" --outlines
+    void $command 'is about what is kept' "hills.pgm $options" --outlines
+    effect $command "hills.pgm $options $keep --threshold 0.3" --indicator visual
+    effect $command "hills.pgm $options $keep --threshold 3" --blend 2
+    void $command 'needs a --threshold' "hills.pgm $options" --indicator visual
+    void $command 'needs a --threshold' "hills.pgm $options" --blend 2
+    effect $command "hills.pgm $options" --lens ball:9,9,0,3
+    effect $command "hills.pgm $options --lens ball:9,9,0,3" --finest 4
+    effect $command "hills.pgm $options --lens ball:9,9,0,3 --slope 9" --coarsest 2
+    effect $command "hills.pgm $options --lens ball:9,9,0,3" --slope 3
+    sed 's/@/A/g' hills.pgm >next.pgm
+    cp next.pgm last.pgm
+    pair="hills.pgm next.pgm $options $keep"
+    effect $command "$pair --time 0.5" --times 0,2
+    [ "$(result $command $pair --time 0.2)" != "$(result $command $pair --time 0.7)" ] || fail "$command --time"
+    [ "$(result $command hills.pgm next.pgm last.pgm $options $keep --time 0.7)" != "$(result $command hills.pgm next.pgm last.pgm $options $keep --time 0.7 --cubic)" ] || fail "$command --cubic"
+    run $command $pair --frames 3
+    for name in time cubic frames json threads; do echo "$command --$name" >>covered; done
+done
+[ "$(result height hills.pgm --scale 1)" != "$(result height hills.pgm --scale 2)" ] || fail "height --scale"
+echo "height --scale" >>covered
+effect surface "plane.nestgrid --array x*y" --colour-tolerance 1e-9
+
+# Probes.
+printf '1,2,3\n4,5,6\n' >points.csv
+[[ "$(result probe $raw --points points.csv)" != refused:* ]] && echo "probe --points" >>covered
+effect probe "$raw --line 0,0,0,9,9,9" --count 7
+echo "probe --line" >>covered
+void probe 'is for --line' "$raw --points points.csv" --count 7
+effect probe "$raw --line 0,0,0,9,9,9" -o kept/x.csv
+effect probe "$raw --line 0,0,0,9,9,9" --output kept/x.csv
+
+# Hierarchies. --levels, --max-volume and others are for some families and formats.
+mesh="$cube --family bisection --field x*x -o kept/x.nestgrid"
+effect mesh "$mesh" --field y
+effect mesh "$mesh" --tolerance 0.01
+effect mesh "$mesh --tolerance 0.001" --levels 3
+effect mesh "$mesh" --times 0,1
+effect mesh "$mesh" --refine 2
+effect mesh "$mesh" --max-volume 0.01
+effect mesh "$mesh" --encode
+effect mesh "$mesh" --encode-within 0.1
+refused 1 'more than 3' mesh $cube --family bisection -o x.nestgrid --max-elements 3 && echo "mesh --max-elements" >>covered
+refused 1 'within 1e-06 seconds' mesh $cube --family bisection -o x.nestgrid --read-limit 1e-6 && echo "mesh --read-limit" >>covered
+prisms="plane.off --family prism --layers 1 -o kept/x.nestgrid"
+effect mesh "$prisms" --direction 0.1,0,1
+[ "$(result mesh $prisms)" != "$(result mesh plane.off --family prism --layers 2 -o kept/x.nestgrid)" ] || fail "mesh --layers"
+[ "$(result mesh $mesh)" != "$(result mesh ${mesh/bisection/red-green})" ] || fail "mesh --family"
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n' >quad.obj
+effect mesh "quad.obj --family octree --field (x^2+y^2)^0.1 --tolerance 0.02 -o kept/x.nestgrid" --unbalanced
+for name in layers family output json; do echo "mesh --$name" >>covered; done
+void mesh 'limits --tolerance' "$mesh" --levels 3
+void mesh 'for --family octree' "$mesh" --unbalanced
+void mesh 'for .poly and .smesh' "plane.off --family bisection -o kept/x.nestgrid" --max-volume 1
+void mesh 'for --family prism' "$mesh" --layers 1
+void mesh 'that of --layers' "$mesh" --direction 0,0,1
+void mesh 'need a --field' "plane.off --family bisection -o kept/x.nestgrid" --encode
+pack="first.nestgrid second.nestgrid -o kept/x.nestgrid"
+effect pack "$pack" --times 0,3
+effect pack "$pack" --encode
+effect pack "$pack" --encode-within 0.1
+for name in output json; do echo "pack --$name" >>covered; done
+
+for command in isosurface slice isolines height surface boundary probe info mesh pack; do
+    for option in $("$program" $command --help-all | grep -oE -e '^  (-.,)?--[a-z-]+' | grep -oE -e '--[a-z-]+'); do
+        case $option in --help | --help-all) continue ;; esac
+        # The options of pictures have a test of their own.
+        "$program" $command --help-all | awk '/^[A-Z]/ { group = $0 } index($0, "'$option'") && /^  / { print group; exit }' | grep -q '^Picture' && continue
+        [ $option = --image ] && continue
+        grep -qxF -e "$command $option" covered || fail "nothing tries '$command $option'"
+    done
+done
+
+[ $failures = 0 ] && echo "all as it should be"
+exit $((failures > 0))
