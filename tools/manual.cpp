@@ -10,7 +10,7 @@
 namespace {
 
 /// A text in the language of man(7).
-std::string quoted(const std::string& text) {
+std::string roff(const std::string& text) {
     std::string result;
     for (const char c : text) {
         if (c == '\\') {
@@ -39,12 +39,12 @@ std::string today() {
 std::string text_of(const OptionGroup& group) {
     std::string text;
     for (const OptionText& option : group.options) {
-        text += ".TP\n.B " + quoted(option.usage()) + "\n" + quoted(sentence(option.description)) +
-                "\n";
+        text +=
+            ".TP\n.B " + roff(option.usage()) + "\n" + roff(sentence(option.description)) + "\n";
         if (option.choices.empty()) continue;
         std::string words;
         for (const std::string& word : option.choices) words += (words.empty() ? "" : ", ") + word;
-        text += "One of " + quoted(words) + ".\n";
+        text += "One of " + roff(words) + ".\n";
     }
     return text;
 }
@@ -80,8 +80,8 @@ bool is_shared(const std::vector<SharedGroup>& groups, const OptionGroup& group)
 
 std::string command_section(const CLI::App& command, const std::vector<SharedGroup>& groups) {
     std::string page = ".SS " + command.get_name() + "\n.B " +
-                       quoted(usage_line(command, "nestgrid " + command.get_name())) + "\n.PP\n" +
-                       quoted(sentence(command.get_description())) + "\n";
+                       roff(usage_line(command, "nestgrid " + command.get_name())) + "\n.PP\n" +
+                       roff(sentence(command.get_description())) + "\n";
     std::string elsewhere;
     for (const OptionGroup& group : option_groups(command)) {
         if (is_shared(groups, group)) {
@@ -91,11 +91,11 @@ std::string command_section(const CLI::App& command, const std::vector<SharedGro
         }
     }
     if (!elsewhere.empty()) {
-        page += ".PP\nOptions described below: " + quoted(elsewhere) + ".\n";
+        page += ".PP\nOptions described below: " + roff(elsewhere) + ".\n";
     }
     for (const FooterPart& part : footer_parts(command)) {
-        page += ".PP\n" + quoted(part.title) + ":\n.PP\n.nf\n";
-        for (const std::string& line : part.lines) page += quoted(line) + "\n";
+        page += ".PP\n" + roff(part.title) + ":\n.PP\n.nf\n";
+        for (const std::string& line : part.lines) page += roff(line) + "\n";
         page += ".fi\n";
     }
     return page;
@@ -109,14 +109,14 @@ std::string manual_page(const CLI::App& program, const std::string& version) {
     std::string page = ".TH NESTGRID 1 \"" + today() + "\" \"nestgrid " + version +
                        "\" \"User Commands\"\n"
                        ".SH NAME\nnestgrid \\- " +
-                       quoted(program.get_description()) + "\n.SH SYNOPSIS\n.B " +
-                       quoted(usage_line(program, "nestgrid")) + "\n.SH COMMANDS\n";
+                       roff(program.get_description()) + "\n.SH SYNOPSIS\n.B " +
+                       roff(usage_line(program, "nestgrid")) + "\n.SH COMMANDS\n";
     for (const CLI::App* command : commands) page += command_section(*command, groups);
     page += ".SH OPTIONS OF SEVERAL COMMANDS\n";
     for (const SharedGroup& group : groups) {
         std::string names;
         for (const std::string& name : group.commands) names += (names.empty() ? "" : ", ") + name;
-        page += ".SS " + group.title + "\nOf " + quoted(names) + ".\n" + group.text;
+        page += ".SS " + group.title + "\nOf " + roff(names) + ".\n" + group.text;
     }
     page +=
         ".SH EXIT STATUS\n"
