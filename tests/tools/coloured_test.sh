@@ -75,7 +75,7 @@ grep -q 'Name="value"' l.vtp || fail "isolines without values"
 
 # In the unit cube, the plane x = 0.3 and lines on it by another field and by expressions.
 run mesh "$cube" --family bisection --field x --field 2*z --refine 6 -o cube.nestgrid
-[ "$(grep -c '^field' out)" = 2 ] || fail "not two fields: $(cat out)"
+[ "$(value field | wc -l)" = 2 ] || fail "not two fields: $(cat out)"
 for by in 2*z 2*y z+y; do
     for threshold in 0 1%; do
         run isolines cube.nestgrid --array x --on-surface 0.3 --by $by --values 0.5,1 \
