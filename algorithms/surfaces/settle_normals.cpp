@@ -19,6 +19,20 @@ using Triangle = std::array<std::uint32_t, 3>;
 constexpr double least_of_gradient = 0.2;
 constexpr double least_of_mean = 0.02;  // more than rounding to eight bits takes away
 
+/// The first direction, on the way from one to another that agrees with all triangles of a fan,
+/// that agrees with them, too. Along this way the product with each triangle is linear.
+Point first_agreeing(const Point& from, const Agreement& to, std::span<const Point> fan) {
+    const double least = std::min(least_of_mean, to.cosine / 2);
+    double way = 0;
+    for (const Point& triangle : fan) {
+        const double before = dot(from, triangle);
+        const double after = dot(to.direction, triangle);
+        if (before < least) way = std::max(way, (least - before) / (after - before));
+    }
+    const Point direction = (1 - way) * from + way * to.direction;
+    return (1 / norm(direction)) * direction;
+}
+
 class SettledNormals {
 public:
     SettledNormals(std::span<const Triangle> triangles, std::span<const Point> x,
@@ -124,11 +138,12 @@ std::size_t SettledNormals::take_widest() {
             std::span<const Point>(directions_).subspan(first_[i], first_[i + 1] - first_[i]);
         const Agreement widest = widest_direction(fan);
         Point& normal = normals_[vertices_[i]];
-        const bool unknown = !(norm(normal) > 0);
-        if (unknown || widest.cosine > std::max(0.0, least_cosine(normal, fan))) {
-            normal = widest.direction;
+        if (widest.cosine > 0) {
+            normal = first_agreeing(normal, widest, fan);
+            continue;
         }
-        folded += least_cosine(normal, fan) > 0 ? 0U : 1U;
+        ++folded;
+        if (!(norm(normal) > 0)) normal = widest.direction;
     }
     return folded;
 }

@@ -71,9 +71,12 @@ cmp -s packed.vtp files.vtp || fail "a file with frames is not the files of the 
 # Percents are those of all frames, numbers are not.
 run isosurface packed.nestgrid --value 0.5 --threshold 0.02 --time 0.5 -o packed.vtp
 run isosurface at0.5.nestgrid --value 0.5 --threshold 0.02 -o alone.vtp
-cmp -s packed.vtp alone.vtp || fail "a frame of a file is not the file of the frame"
+# The name of the field, which has the time in it, differs.
+unnamed() { LC_ALL=C sed 's/Name="sqrt[^"]*"/Name="u"/' "$1"; }
+unnamed alone.vtp >alone && unnamed packed.vtp | cmp -s - alone ||
+    fail "a frame of a file is not the file of the frame"
 run isosurface packed.nestgrid --value 0.5 --times 0,1,2 --time 1 --threshold 0.02 -o packed.vtp
-cmp -s packed.vtp alone.vtp || fail "--times are not those of the frames"
+unnamed packed.vtp | cmp -s - alone || fail "--times are not those of the frames"
 
 # Encoded values: bit for bit, and within a bound; every command reads them.
 run pack film.nestgrid --encode -o exact.nestgrid

@@ -14,8 +14,9 @@ namespace nestgrid {
 ///
 /// A normal agrees where its cosine with every triangle around is at least 0.2. Else it becomes the
 /// mean of these triangles, weighted by area, where the cosine of that with each is at least 0.02;
-/// else the direction whose least cosine with them is greatest. Where even that is not above 0, the
-/// fan is folded over itself: the normal is then the mean, behind some of its triangles.
+/// else that mean is turned towards the direction whose least cosine with them is greatest, until it
+/// agrees. Where even that cosine is not above 0, the fan is folded over itself: the normal is then
+/// the mean, behind some of its triangles.
 ///
 /// Surfaces that isosurface() and its relatives draw with normals have settled ones.
 /// \param surface whose normals are of unit length, or 0 where none is known; all are made where
