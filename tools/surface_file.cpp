@@ -96,8 +96,9 @@ std::vector<std::pair<std::string, std::uint64_t>> contents_of(vtkPolyData* surf
 }
 
 fs::path temporary_beside(const fs::path& path) {
-    return path.parent_path() / ("." + path.stem().string() + "." + std::to_string(getpid()) +
-                                 path.extension().string());
+    // VTK's writers append an ending in capital letters once more.
+    return path.parent_path() /
+           ("." + path.stem().string() + "." + std::to_string(getpid()) + ending_of(path));
 }
 
 void check_output(const fs::path& path, const std::vector<std::string>& formats) {

@@ -77,7 +77,7 @@ refused 2 'a command is missing'
 refused 2 "has no option --qqqqqq \(" isosurface v.vti --qqqqqq
 refused 2 "takes NUMBER, not 'abc'" isosurface v.vti --value abc
 refused 2 'takes NUMBER, but nothing follows' isosurface v.vti --value
-refused 2 -e '--value is given twice' isosurface v.vti --value 1 --value 2
+refused 2 '--value is given twice' isosurface v.vti --value 1 --value 2
 refused 2 'takes X,Y,Z,NX,NY,NZ' slice v.vti --plane 1,2,3
 refused 1 'has no place: give its coordinate, --at' slice v.vti --axis z
 
@@ -153,6 +153,7 @@ completes "--indicator" nestgrid isosurface v.vti --ind
 completes "visual" nestgrid isosurface v.vti --indicator v
 completes "visual" nestgrid isosurface v.vti --indicator = v
 completes "red-green bisection octree prism" nestgrid mesh part.poly --family ""
+rm -f head.vtp
 completes "head.nii.gz" nestgrid isosurface head
 completes "head.nii.gz" nestgrid isosurface -o head
 completes "" nestgrid isosurface --value ""

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 
 #include <nestgrid/adapters/tetgen_files.hpp>
 #include <nestgrid/adapters/tetgen_mesher.hpp>
@@ -46,11 +47,14 @@ inline CoarseGrid coarse_from_tetgen(const tetgenio& mesh) {
 inline CoarseGrid read_tetgen(const std::string& path, const TetgenOptions& options = {}) {
     const std::size_t dot = std::min(path.rfind('.'), path.size());
     const std::string stem = path.substr(0, dot);
-    const std::string ending = path.substr(dot);
+    const std::string given = path.substr(dot);
+    std::string ending = given;
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const bool capital = ending != given;
     tetgenio mesh;
     if (ending == ".node" || ending == ".ele") {
-        detail::read_node_file(stem + ".node", mesh);
-        detail::read_ele_file(stem + ".ele", mesh);
+        detail::read_node_file(stem + (capital ? ".NODE" : ".node"), mesh);
+        detail::read_ele_file(stem + (capital ? ".ELE" : ".ele"), mesh);
         if (mesh.numberoftetrahedra == 0) throw InvalidInput("'" + path + "' has no tetrahedra");
     } else if (ending == ".poly" || ending == ".smesh") {
         tetgenio plc;
