@@ -3,6 +3,7 @@
 #include <surfaces/settle_normals.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include <nestgrid/algorithms/normals.hpp>
@@ -16,20 +17,27 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-constexpr double least_of_gradient = 0.2;
-constexpr double least_of_mean = 0.02;  // more than rounding to eight bits takes away
+constexpr double least_of_gradient = 0.2;  // with each triangle
+constexpr double least_with_mean = 0.5;    // of a gradient that says anything
+constexpr double least_of_mean = 0.02;     // with each triangle; more than eight bits round away
+
+/// A direction of the triangles around a vertex, of unit length, and twice their area.
+struct FanTriangle {
+    Point direction;
+    double area;
+};
 
 /// The first direction, on the way from one to another that agrees with all triangles of a fan,
-/// that agrees with them, too. Along this way the product with each triangle is linear.
-Point first_agreeing(const Point& from, const Agreement& to, std::span<const Point> fan) {
-    const double least = std::min(least_of_mean, to.cosine / 2);
+/// whose cosine with each is at least a number that the other one's are, too. Along this way the
+/// product with each triangle is linear.
+Point first_agreeing(const Point& from, const Point& to, std::span<const Point> fan, double least) {
     double way = 0;
     for (const Point& triangle : fan) {
         const double before = dot(from, triangle);
-        const double after = dot(to.direction, triangle);
+        const double after = dot(to, triangle);
         if (before < least) way = std::max(way, (least - before) / (after - before));
     }
-    const Point direction = (1 - way) * from + way * to.direction;
+    const Point direction = (1 - way) * from + way * to;
     return (1 / norm(direction)) * direction;
 }
 
@@ -37,115 +45,101 @@ class SettledNormals {
 public:
     SettledNormals(std::span<const Triangle> triangles, std::span<const Point> x,
                    std::span<Point> normals)
-        : triangles_{triangles}, x_{x}, normals_{normals}, refused_(normals.size(), 0) {}
+        : triangles_{triangles}, x_{x}, normals_{normals}, place_(normals.size(), accepted) {}
 
     std::size_t run() {
-        refuse(least_of_gradient, 0);
-        if (!any_refused()) return 0;
-        take_means();
-        refuse(least_of_mean, 1);
-        if (std::ranges::find(refused_, 2) == refused_.end()) return 0;
+        refuse();
+        if (refused_.empty()) return 0;
         list_fans();
-        return take_widest();
+        std::size_t folded = 0;
+        for (std::size_t i = 0; i < refused_.size(); ++i) folded += settle(i) ? 0U : 1U;
+        return folded;
     }
 
 private:
+    static constexpr std::uint32_t accepted = std::numeric_limits<std::uint32_t>::max();
+
     /// Twice the area vector.
     Point area(const Triangle& t) const { return cross(x_[t[1]] - x_[t[0]], x_[t[2]] - x_[t[0]]); }
-    bool any_refused() const { return std::ranges::find(refused_, 1) != refused_.end(); }
-    bool is_refused(const Triangle& t, std::uint8_t times) const {
-        return refused_[t[0]] == times || refused_[t[1]] == times || refused_[t[2]] == times;
-    }
 
-    void refuse(double least, std::uint8_t times);
-    void take_means();
+    template <class Function>
+    void for_each_of_fans(const Function& function) const;
+
+    void refuse();
     void list_fans();
-    std::size_t take_widest();
+    bool settle(std::size_t i);
 
     std::span<const Triangle> triangles_;
     std::span<const Point> x_;
     std::span<Point> normals_;
-    std::vector<std::uint8_t> refused_;    // by vertex: how often its normal was refused
-    std::vector<std::uint32_t> vertices_;  // refused twice
-    std::vector<std::uint32_t> first_;     // of each of these: its first direction, and the end
-    std::vector<Point> directions_;        // of the triangles around each of them
+    std::vector<std::uint32_t> place_;    // by vertex: its place among the refused
+    std::vector<std::uint32_t> refused_;  // vertices whose normals are refused
+    std::vector<std::uint32_t> first_;    // of each of these: its first triangle, and the end
+    std::vector<FanTriangle> fans_;       // the triangles around each of them
+    std::vector<Point> fan_;              // directions of the triangles around one of them
 };
 
-/// Refuses normals that were refused so many times, where the cosine with a triangle is less.
-void SettledNormals::refuse(double least, std::uint8_t times) {
+/// Refuses normals whose cosine with a triangle is too small.
+void SettledNormals::refuse() {
     for (const Triangle& t : triangles_) {
-        if (times > 0 && !is_refused(t, times)) continue;
         const Point n = area(t);
         const double length = norm(n);
         if (length == 0) continue;
         for (const std::uint32_t v : t) {
-            const bool agrees = dot(normals_[v], n) >= least * length;
-            if (!agrees && refused_[v] == times) refused_[v] = static_cast<std::uint8_t>(times + 1);
+            if (place_[v] != accepted || dot(normals_[v], n) >= least_of_gradient * length)
+                continue;
+            place_[v] = static_cast<std::uint32_t>(refused_.size());
+            refused_.push_back(v);
         }
     }
 }
 
-/// Replaces refused normals by the means of the triangles around.
-void SettledNormals::take_means() {
-    for (std::size_t v = 0; v < normals_.size(); ++v) {
-        if (refused_[v] != 0) normals_[v] = {0, 0, 0};
-    }
+/// Calls function(place of a refused vertex, a triangle around it).
+template <class Function>
+void SettledNormals::for_each_of_fans(const Function& function) const {
     for (const Triangle& t : triangles_) {
-        if (!is_refused(t, 1)) continue;
+        if (std::ranges::all_of(t, [&](auto v) { return place_[v] == accepted; })) continue;
         const Point n = area(t);
+        const double length = norm(n);
+        if (length == 0) continue;
         for (const std::uint32_t v : t) {
-            if (refused_[v] != 0) normals_[v] = normals_[v] + n;
+            if (place_[v] != accepted) function(place_[v], FanTriangle{(1 / length) * n, length});
         }
-    }
-    for (std::size_t v = 0; v < normals_.size(); ++v) {
-        const double length = refused_[v] == 0 ? 0 : norm(normals_[v]);
-        if (length > 0) normals_[v] = (1 / length) * normals_[v];
     }
 }
 
-/// Lists the directions of the triangles around vertices whose normals were refused twice.
 void SettledNormals::list_fans() {
-    std::vector<std::uint32_t> place(normals_.size(), 0);  // of a vertex in vertices_
-    for (std::uint32_t v = 0; v < normals_.size(); ++v) {
-        if (refused_[v] != 2) continue;
-        place[v] = static_cast<std::uint32_t>(vertices_.size());
-        vertices_.push_back(v);
-    }
-    const auto for_each = [&](auto&& function) {
-        for (const Triangle& t : triangles_) {
-            if (!is_refused(t, 2)) continue;
-            const Point n = area(t);
-            const double length = norm(n);
-            if (length == 0) continue;
-            for (const std::uint32_t v : t) {
-                if (refused_[v] == 2) function(place[v], (1 / length) * n);
-            }
-        }
-    };
-    first_.assign(vertices_.size() + 1, 0);
-    for_each([&](std::uint32_t at, const Point&) { ++first_[at + 1U]; });
+    first_.assign(refused_.size() + 1, 0);
+    for_each_of_fans([&](std::uint32_t i, const FanTriangle&) { ++first_[i + 1U]; });
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    directions_.resize(first_.back());
+    fans_.resize(first_.back());
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for_each([&](std::uint32_t at, const Point& n) { directions_[next[at]++] = n; });
+    for_each_of_fans([&](std::uint32_t i, const FanTriangle& t) { fans_[next[i]++] = t; });
 }
 
-/// \return the number of vertices at which no direction agrees with all triangles
-std::size_t SettledNormals::take_widest() {
-    std::size_t folded = 0;
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-        const auto fan =
-            std::span<const Point>(directions_).subspan(first_[i], first_[i + 1] - first_[i]);
-        const Agreement widest = widest_direction(fan);
-        Point& normal = normals_[vertices_[i]];
-        if (widest.cosine > 0) {
-            normal = first_agreeing(normal, widest, fan);
-            continue;
-        }
-        ++folded;
-        if (!(norm(normal) > 0)) normal = widest.direction;
+/// Turns the normal of a refused vertex.
+/// \return whether any direction agrees with all triangles around
+bool SettledNormals::settle(std::size_t i) {
+    fan_.clear();
+    Point mean{0, 0, 0};
+    for (std::size_t t = first_[i]; t < first_[i + 1]; ++t) {
+        fan_.push_back(fans_[t].direction);
+        mean = mean + fans_[t].area * fans_[t].direction;
     }
-    return folded;
+    const double length = norm(mean);
+    if (length > 0) mean = (1 / length) * mean;
+
+    Point& normal = normals_[refused_[i]];
+    if (!(dot(normal, mean) >= least_with_mean)) normal = mean;
+    Agreement target{mean, least_cosine(mean, fan_)};
+    if (target.cosine < least_of_mean) target = widest_direction(fan_);
+    if (target.cosine > 0) {
+        const double least = std::min(least_of_gradient, target.cosine / 2);
+        normal = first_agreeing(normal, target.direction, fan_, least);
+        return true;
+    }
+    if (!(norm(normal) > 0)) normal = target.direction;
+    return false;
 }
 
 }  // namespace

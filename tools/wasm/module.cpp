@@ -14,9 +14,9 @@
 
 #include <nestgrid/error.hpp>
 
-#include "../samples.hpp"
 #include "../view/explored_samples.hpp"
 #include "../view/explorer.hpp"
+#include "samples.hpp"
 
 namespace {
 

@@ -10,13 +10,15 @@
 
 namespace nestgrid {
 
-/// Replaces each normal that does not agree with the triangles around its vertex, or that is 0.
+/// Turns each normal that does not agree with the triangles around its vertex, and makes those that
+/// are 0.
 ///
-/// A normal agrees where its cosine with every triangle around is at least 0.2. Else it becomes the
-/// mean of these triangles, weighted by area, where the cosine of that with each is at least 0.02;
-/// else that mean is turned towards the direction whose least cosine with them is greatest, until it
-/// agrees. Where even that cosine is not above 0, the fan is folded over itself: the normal is then
-/// the mean, behind some of its triangles.
+/// A normal agrees where its cosine with every triangle around is at least 0.2. Else it is turned
+/// towards the mean of these triangles, weighted by area, until it agrees (to half the least cosine
+/// of the mean, where that is less than 0.4); one that is more than 60 degrees away from the mean
+/// becomes the mean. Where the mean itself is behind a triangle, the direction whose least cosine
+/// with the triangles is greatest takes its place. Where even that cosine is not above 0, the fan is
+/// folded over itself: the normal is then behind some of its triangles.
 ///
 /// Surfaces that isosurface() and its relatives draw with normals have settled ones.
 /// \param surface whose normals are of unit length, or 0 where none is known; all are made where
