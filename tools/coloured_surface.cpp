@@ -3,61 +3,24 @@
 #include "coloured_surface.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
-#include <vtkAppendPolyData.h>
-
-#include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
-#include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
-#include <nestgrid/algorithms/surface_isolines.hpp>
-#include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
-#include <nestgrid/detail/geometry.hpp>
 
 #include "collection.hpp"
+#include "coloured_panel.hpp"
 #include "expression.hpp"
 #include "extract.hpp"
 #include "film.hpp"
 #include "moments.hpp"
-#include "picture.hpp"
 #include "print.hpp"
 #include "surface_file.hpp"
 
 namespace {
-
-using nestgrid::dot;
-using nestgrid::operator*;
-using nestgrid::operator-;
-
-/// One surface and what it cost.
-struct Drawn {
-    std::optional<double> time;  ///< where it is between frames
-    std::uint64_t budget = 0;    ///< 0: none
-    double threshold = 0;
-    nestgrid::Slice slice;  ///< or an isosurface without one
-    nestgrid::SurfaceReport report;
-    nestgrid::Surface<3> isosurface;  ///< beside a slice
-    nestgrid::SurfaceReport isosurface_report;
-    nestgrid::Polylines isolines;
-    double seconds = 0;
-};
-
-/// All surfaces of one field.
-struct DrawnField {
-    std::string name;        ///< of the colours
-    std::string input_name;  ///< of the field that isosurfaces are of
-    std::string length_unit;  ///< empty where it is unknown
-    double least = std::numeric_limits<double>::infinity();  ///< of the colours
-    double greatest = -std::numeric_limits<double>::infinity();
-    double preroll_seconds = 0;
-    std::vector<Drawn> surfaces;
-    std::vector<double> values;  ///< of isolines
-};
 
 /// \throw nestgrid::InvalidInput where the surface is none of a field of this dimension, or options
 ///        do not go together
@@ -324,89 +287,6 @@ void add_range(const Drawn& d, DrawnField& field) {
     }
 }
 
-/// Whether the surface lies in a plane across the z axis.
-bool is_level(const nestgrid::Surface<3>& surface) {
-    return std::ranges::all_of(surface.vertices, [&](const nestgrid::Point& x) {
-        return x[2] == surface.vertices.front()[2];
-    });
-}
-
-/// Looks across a flat surface, or, where it is closed to a solid, onto the cut.
-void set_view(Panel& panel, const ColouredSurface& what, const nestgrid::Surface<3>& surface) {
-    if (what.isovalue) return;
-    const nestgrid::Point normal = what.flat ? what.normal : nestgrid::Point{0, 0, 1};
-    if (!what.flat && !is_level(surface)) return;
-    if (!what.cap) {
-        panel.from = normal;
-        panel.lit = false;
-        return;
-    }
-    const double side = dot(panel.from, normal);
-    if (side > 0) panel.from = panel.from - 2 * side / dot(normal, normal) * normal;
-}
-
-/// "threshold 0.1", or nothing where a lens decides alone; and the time, where there is one.
-std::string drawn_at(const Drawn& d) {
-    std::array<char, 80> text{};
-    std::string result;
-    if (std::isfinite(d.threshold)) {
-        std::snprintf(text.data(), text.size(), ", threshold %.4g", d.threshold);
-        result += text.data();
-    }
-    if (d.time) {
-        std::snprintf(text.data(), text.size(), ", time %.4g", *d.time);
-        result += text.data();
-    }
-    return result;
-}
-
-std::string caption(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
-    std::array<char, 200> text{};
-    const std::string name = short_name(field.name);
-    const std::size_t triangles = d.report.triangles + d.isosurface_report.triangles;
-    if (what.isovalue) {
-        const bool alone = what.function == nullptr;
-        std::snprintf(text.data(), text.size(), "%s %s %s = %.4g%s\n%zu triangles", name.c_str(),
-                      alone ? "where" : "and the surface", short_name(field.input_name).c_str(),
-                      *what.isovalue, drawn_at(d).c_str(), triangles);
-    } else {
-        std::snprintf(text.data(), text.size(), "%s%s\n%zu triangles", name.c_str(),
-                      drawn_at(d).c_str(), triangles);
-    }
-    return text.data();
-}
-
-Panel make_panel(const Drawn& d, const DrawnField& field, const ColouredSurface& what) {
-    const auto data_of = [&](const nestgrid::Surface<3>& surface) {
-        return nestgrid::make_poly_data(surface, {field.name});
-    };
-    Panel panel{data_of(d.slice.surface), caption(d, field, what)};
-    if (!d.isosurface.simplices.empty()) panel.veil = data_of(d.isosurface);
-    panel.colour = {field.name, field.least, field.greatest};
-    if (!field.values.empty()) {
-        panel.lines = make_poly_data(d.isolines, {field.name});
-        panel.line_width = 2;
-        panel.detail = false;
-    }
-    if (what.outlines) {
-        panel.lines = nestgrid::make_poly_data(nestgrid::outlines(d.slice.surface), {field.name});
-        panel.detail = false;
-    }
-    if (what.cap || what.isovalue) panel.detail = false;
-    set_view(panel, what, d.slice.surface);
-    return panel;
-}
-
-/// What is written of a panel, as one data set: the lines alone, or all.
-vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, bool lines_alone) {
-    if (lines_alone) return panel.lines;
-    const vtkNew<vtkAppendPolyData> append;
-    for (const auto& part : {panel.surface, panel.veil, panel.lines}) {
-        if (part != nullptr) append->AddInputData(part);
-    }
-    append->Update();
-    return append->GetOutput();
-}
 
 void write(const SurfaceOptions& options, const DrawnField& field, const ColouredSurface& what,
            Report& report) {
@@ -414,14 +294,17 @@ void write(const SurfaceOptions& options, const DrawnField& field, const Coloure
     std::vector<vtkSmartPointer<vtkPolyData>> written;
     for (std::size_t i = 0; i < field.surfaces.size(); ++i) {
         panels.push_back(make_panel(field.surfaces[i], field, what));
-        if (options.output.empty()) continue;
-        written.push_back(data_of(panels[i], !field.values.empty()));
-        describe(written.back(), field.length_unit);
+        Panel& panel = panels.back();
+        if (!options.output.empty()) {
+            written.push_back(data_of(panel, !field.values.empty()));
+            describe(written.back(), field.length_unit);
+        }
+        shade(panel);
     }
     if (!written.empty()) write_surfaces(written, options.output, report);
-    if (options.image.empty()) return;
-    write_picture(panels, options.image);
-    report.wrote(options.image, {{"surfaces", panels.size()}});
+    if (options.picture.image.empty()) return;
+    write_picture(panels, parse(options.picture), options.picture.image);
+    report.wrote(options.picture.image, {{"surfaces", panels.size()}});
 }
 
 void require_triangles(const Drawn& d, const ColouredSurface& what) {

@@ -149,13 +149,13 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
         ->excludes("--threshold");
     command.add_option("-o,--output", options.output, "write .vtp, .ply, .stl, .obj or .gltf")
         ->type_name("FILE");
-    command.add_option("--image", options.image, "draw a picture, .png")->type_name("FILE");
     add_projection_options(command, options.projection);
     command
         .add_option("--threads", options.threads,
                     "how many to use; the surface is the same with any [all]")
         ->type_name("COUNT")
         ->group("Further");
+    add_picture_options(command, options.picture);
 }
 
 void check(const SurfaceOptions& options) {
@@ -165,9 +165,9 @@ void check(const SurfaceOptions& options) {
     check(options.projection);
     if (options.threads < 0) throw nestgrid::InvalidInput("--threads is negative");
     if (!options.output.empty()) check_output(options.output, surface_formats);
-    if (!options.image.empty()) check_output(options.image, {".png"});
+    parse(options.picture);
     if (options.command == nullptr) return;
-    if (options.output.empty() && options.image.empty()) {
+    if (options.output.empty() && options.picture.image.empty()) {
         refuse_options(*options.command, {"--outlines"},
                        "is about what is kept: give an --output or an --image");
     }
@@ -177,7 +177,7 @@ void check(const SurfaceOptions& options) {
 }
 
 void say_what_was_kept(const SurfaceOptions& options, Report& report) {
-    if (!options.output.empty() || !options.image.empty()) return;
+    if (!options.output.empty() || !options.picture.image.empty()) return;
     report.say("nothing was kept: give -o FILE or --image FILE");
 }
 

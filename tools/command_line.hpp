@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "picture/picture_options.hpp"
 #include "projection.hpp"
 #include "report.hpp"
 #include "volume.hpp"
@@ -75,7 +76,7 @@ struct SurfaceOptions {
     ProjectionChoice projection;
     int threads = 0;
     std::filesystem::path output;
-    std::filesystem::path image;
+    PictureOptions picture;
     const CLI::App* command = nullptr;  ///< that they are options of
 };
 void add_surface_options(CLI::App& command, SurfaceOptions& options);

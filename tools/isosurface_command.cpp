@@ -9,7 +9,7 @@
 #include "extract.hpp"
 #include "film.hpp"
 #include "input_file.hpp"
-#include "picture.hpp"
+#include "picture/picture.hpp"
 #include "print.hpp"
 
 namespace {
@@ -60,7 +60,7 @@ ExtractionRequest request_of(const Options& o) {
     for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
     if (s.budgets.empty()) set_default_threshold(request.thresholds, request.lens.has_value());
     if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
-    request.keep_surfaces = !s.output.empty() || !s.image.empty();
+    request.keep_surfaces = !s.output.empty() || !s.picture.image.empty();
     return request;
 }
 
@@ -76,7 +76,7 @@ void check_for(const Options& o, const InputField& field) {
         refuse_options(command, {"--cap", "--no-normals"}, "is for surfaces, not for isolines");
     }
     const std::string format = ending_of(o.surface.output);
-    if (o.surface.image.empty() && format == ".stl") {
+    if (o.surface.picture.image.empty() && format == ".stl") {
         refuse_options(command, {"--no-normals"}, "changes no " + format + " file");
     }
 }
@@ -89,7 +89,8 @@ void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progr
     for (const Extraction& e : run.surfaces) {
         if (!e.surface) return;
         surfaces.push_back(e.surface);
-        panels.push_back({e.surface, caption(e)});
+        panels.push_back({.surface = e.surface, .caption = caption(e)});
+        if (run.dimension == 2) panels.back().view = seen_from({0, 0, 1});
     }
     if (!s.output.empty()) {
         progress.show("writing");
@@ -97,12 +98,13 @@ void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progr
         write_surfaces(surfaces, s.output, report);
         seconds.write = now() - start;
     }
-    if (!s.image.empty()) {
+    const fs::path& image = s.picture.image;
+    if (!image.empty()) {
         progress.show("painting");
         const double start = now();
-        write_picture(panels, s.image);
+        write_picture(panels, parse(s.picture), image);
         seconds.draw = now() - start;
-        report.wrote(s.image, {{"surfaces", panels.size()}});
+        report.wrote(image, {{"surfaces", panels.size()}});
     }
 }
 
@@ -110,6 +112,7 @@ void run_isosurface(Options& o, Report& report) {
     check(o.surface);
     check(o.time, o.input.path);
     check_film(o.time, o.surface);
+    refuse_colours(o.surface.picture, "an isosurface has one colour");
     ExtractionRequest request = request_of(o);
     Seconds seconds;
     std::optional<ProgressLine> progress(std::in_place);

@@ -96,7 +96,7 @@ void check_film(const TimeOptions& time, const SurfaceOptions& surface) {
     if (ending_of(surface.output) != ".vtp") {
         throw InvalidInput("a film needs an --output with the name of a .vtp file");
     }
-    if (!surface.image.empty()) throw InvalidInput("--image draws no films");
+    if (!surface.picture.image.empty()) throw InvalidInput("--image draws no films");
     if (surface.thresholds.size() > 1) throw InvalidInput("a film has one --threshold");
     if (surface.budgets.size() > 1) throw InvalidInput("a film has one --max-triangles");
 }
