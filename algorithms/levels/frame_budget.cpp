@@ -92,7 +92,12 @@ double FrameBudget::settle(const std::function<bool(double)>& fits) {
     const auto value = [&](std::uint16_t code) {
         return code < last ? static_cast<double>(bfloat16_value(code)) : greatest_;
     };
-    const auto code_fits = [&](std::uint16_t code) { return fits(value(code)); };
+    const auto code_fits = [&](std::uint16_t code) {
+        const bool fit = fits(value(code));
+        kept_ = kept_ || fit;
+        return fit;
+    };
+    kept_ = false;
     const auto start = std::min(bfloat16_above(float_above(threshold())), last);
     const std::uint16_t least = bfloat16_above(float_above(finest * greatest_));
     const Bracket bracket = code_fits(start) ? bracket_below(start, least, code_fits)

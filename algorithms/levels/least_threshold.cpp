@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include <levels/bfloat16_search.hpp>
@@ -21,9 +22,18 @@ using engine::octave;
 /// infinity, and no element may stop at them.
 constexpr std::uint16_t greatest = bfloat16_infinity - 1;
 
+std::string short_number(double x) {
+    std::ostringstream text;
+    text << x;
+    return text.str();
+}
+
 /// After so many halvings of the threshold, steps double: what is then left is of data that are
 /// affine up to rounding, say.
 constexpr int halvings = 8;
+
+/// Triangles beyond the budget are counted up to so many times the budget.
+constexpr std::uint64_t most_beyond = 16;
 
 /// Codes of two thresholds, of which the greater one fits and the lesser one does not.
 struct Bracket {
@@ -35,7 +45,9 @@ struct Bracket {
 class Trials {
 public:
     Trials(const CountTriangles& count, std::uint64_t max_triangles)
-        : count_{count}, max_triangles_{max_triangles} {}
+        : count_{count}, max_triangles_{max_triangles} {
+        best_.max_triangles = max_triangles;
+    }
 
     const TriangleBudget& best() const { return best_; }
     bool any_fits() const { return any_fits_; }
@@ -77,6 +89,14 @@ public:
         return {beyond, greatest};
     }
 
+    /// Counts the triangles at the next lesser threshold, where the budget is far from filled.
+    void look_beyond(std::uint16_t code) {
+        if (best_.end() != BudgetEnd::step) return;
+        best_.next_threshold = bfloat16_value(code);
+        best_.next_triangles =
+            count_(best_.next_threshold, most_beyond * max_triangles_).value_or(0);
+    }
+
 private:
     [[noreturn]] void throw_too_few() const {
         const auto triangles =
@@ -98,11 +118,38 @@ void search(Trials& trials, double start) {
         std::min(bfloat16_above(float_above(std::max(start, 0.0))), greatest);
     const Bracket bracket =
         first > 0 && trials.fits(first) ? trials.bracket_below(first) : trials.bracket_above(first);
-    engine::least_that_fits(bracket.beyond, bracket.within,
-                            [&](std::uint16_t code) { return trials.fits(code); });
+    const std::uint16_t least = engine::least_that_fits(
+        bracket.beyond, bracket.within, [&](std::uint16_t code) { return trials.fits(code); });
+    trials.look_beyond(static_cast<std::uint16_t>(least - 1));
 }
 
 }  // namespace
+
+BudgetEnd TriangleBudget::end() const {
+    if (cancelled) return BudgetEnd::cancelled;
+    if (threshold == 0) return BudgetEnd::complete;
+    const bool filled = triangles >= max_triangles - max_triangles / 10;
+    return filled ? BudgetEnd::filled : BudgetEnd::step;
+}
+
+std::string TriangleBudget::reason() const {
+    const std::string of =
+        std::to_string(triangles) + " of " + std::to_string(max_triangles) + " triangles";
+    switch (end()) {
+        case BudgetEnd::filled:
+            return {};
+        case BudgetEnd::complete:
+            return of + ": nothing is left out";
+        case BudgetEnd::step:
+            return of + ": many elements share one indicator, and the next lesser threshold, " +
+                   short_number(next_threshold) + ", has " +
+                   (next_triangles == 0 ? "more than " + std::to_string(most_beyond * max_triangles)
+                                        : std::to_string(next_triangles));
+        case BudgetEnd::cancelled:
+            return of + ": the search was cancelled";
+    }
+    return {};
+}
 
 TriangleBudget least_threshold(const CountTriangles& count, double start,
                                std::uint64_t max_triangles) {

@@ -9,10 +9,10 @@
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
@@ -60,8 +60,19 @@ void expect_kept(const Draw& draw, const Find& find) {
         EXPECT_LE(best.extracted, static_cast<std::uint64_t>(best.trials) * (budget + 1));
         EXPECT_LE(best.trials, 40);
         EXPECT_EQ(best.threshold == 0, finest <= budget);
+        EXPECT_EQ(best.max_triangles, budget);
+        EXPECT_EQ(best.end() == BudgetEnd::complete, best.threshold == 0);
+        EXPECT_EQ(best.reason().empty(), best.end() == BudgetEnd::filled);
         if (best.threshold == 0) continue;
-        EXPECT_GT(draw(next_below(best.threshold)), budget);
+        const std::uint64_t next = draw(next_below(best.threshold));
+        EXPECT_GT(next, budget);
+        if (best.end() == BudgetEnd::filled) {
+            EXPECT_GE(best.triangles + budget / 10, budget);
+            continue;
+        }
+        EXPECT_LT(best.triangles, budget - budget / 10);
+        EXPECT_EQ(best.next_threshold, next_below(best.threshold));
+        EXPECT_EQ(best.next_triangles, next <= 16 * budget ? next : 0);
     }
 }
 

@@ -41,6 +41,9 @@ public:
     /// \param fits draws or counts a frame at a threshold, and says whether it keeps within the
     ///        goal. Asked at most ten times where the last frame was within 3 % of the goal.
     double settle(const std::function<bool(double threshold)>& fits);
+    /// Whether the threshold that settle() found last fits: false where none does, not even the
+    /// greatest one.
+    bool kept() const { return kept_; }
 
 private:
     double goal_;
@@ -52,6 +55,7 @@ private:
         double miss;
     };
     Frame last_;
+    bool kept_ = true;
     double power_ = 1;  // the cost is about proportional to threshold^-power
 };
 

@@ -8,6 +8,8 @@
 // are bfloat16, so that the elements that stop change at these thresholds only.
 // Promise: the threshold that is found keeps within the number, and it is 0, or the bfloat16 number
 // below it (less by 1/256 to 1/128 of it) does not.
+// Where many elements have one indicator, much less than the number may be left: end() and reason()
+// say so, and what the next threshold would give.
 // Not promised: that no lesser threshold keeps within the number. Triangles get fewer as the
 // threshold grows, but not at each step: a coarser element may cut a fold that finer ones miss.
 // Under criteria that blend, and between frames, vertices also move between bfloat16 numbers, and
@@ -22,8 +24,17 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace nestgrid {
+
+/// Why a drawing has no more triangles than it has.
+enum class BudgetEnd : std::uint8_t {
+    filled,     ///< it has at least nine tenths of the number
+    complete,   ///< at threshold 0 it keeps within the number: nothing is projected away
+    step,       ///< the next lesser threshold, at which many elements go on at once, exceeds it
+    cancelled,  ///< the search was
+};
 
 /// The threshold that keeps within a number of triangles.
 struct TriangleBudget {
@@ -31,9 +42,18 @@ struct TriangleBudget {
     std::uint64_t triangles = 0;  ///< of the surface at it
     std::uint64_t extracted = 0;  ///< over all trials: the cost of the search
     int trials = 0;
+    std::uint64_t max_triangles = 0;  ///< the number that was asked for
+    /// Where the search ended at a step: the next lesser threshold, and how many triangles it has;
+    /// 0 where these are more than sixteen times max_triangles.
+    double next_threshold = 0;
+    std::uint64_t next_triangles = 0;
     /// By options.progress: `threshold` is the least one that was found to keep within the number
     /// by then, or the greatest one, with 0 triangles.
     bool cancelled = false;
+
+    BudgetEnd end() const;
+    /// Why there are no more triangles, as a sentence; empty where the budget is filled.
+    std::string reason() const;
 };
 
 /// The number of triangles at a threshold, or nothing where there are more than `most`: a function

@@ -27,10 +27,11 @@ public:
             IsosurfaceOptions options = options_;
             options.threshold = GetThreshold();
             PolyDataSink<Grid::dimension> sink(attributes);
-            extract_isosurfaces<Grid::dimension>(
+            const auto drawn = extract_isosurfaces<Grid::dimension>(
                 hierarchy, std::span<const double>(&isovalue_, 1), std::vector{sink},
                 criterion_for<Grid::dimension>(hierarchy, isovalue_, indicator(), options),
                 indicator(), options);
+            bounds_ = drawn.front();
             return vtkSmartPointer<vtkPolyData>(sink.data());
         });
     }
@@ -45,6 +46,8 @@ public:
     /// Closes the surface along the boundary of the domain.
     void SetCap(bool on) { set(options_.cap, on); }
     bool GetCap() const { return options_.cap; }
+    /// How far the surface of the last update may be from the data.
+    const ErrorBounds& GetErrorBounds() const { return bounds_; }
 
 protected:
     IsosurfaceSource() = default;
@@ -53,6 +56,7 @@ protected:
 private:
     double isovalue_ = 0;
     IsosurfaceOptions options_;
+    ErrorBounds bounds_;
 };
 
 // NOLINTEND(readability-identifier-naming)
