@@ -11,6 +11,7 @@
 
 #include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "coloured_surface.hpp"
 #include "picture/picture.hpp"
@@ -18,7 +19,7 @@
 /// One surface and what it cost.
 struct Drawn {
     std::optional<double> time;  ///< where it is between frames
-    std::uint64_t budget = 0;    ///< 0: none
+    nestgrid::TriangleBudget search;  ///< of the threshold; max_triangles is 0 where none was
     double threshold = 0;
     nestgrid::Slice slice;  ///< or an isosurface without one
     nestgrid::SurfaceReport report;

@@ -74,7 +74,7 @@ public:
     void draw_all(const Take& take) {
         const bool unlimited = options_.thresholds.empty() && options_.budgets.empty();
         if (unlimited && !what_.lens && !what_.isovalue) {
-            take(draw(0, 0, [&](Drawn& d) { d.slice = draw_exactly(); }));
+            take(draw({}, 0, [&](Drawn& d) { d.slice = draw_exactly(); }));
             return;
         }
         const ChosenIndicator& indicators = moment_.indicators();
@@ -84,23 +84,24 @@ public:
         }
         if (unlimited) set_default_threshold(thresholds, what_.lens.has_value());
         indicators.with_criteria([&](const auto& criterion_at) {
-            const auto take_at = [&](std::uint64_t budget, double threshold) {
-                take(draw(budget, threshold,
+            const auto take_at = [&](double threshold, const nestgrid::TriangleBudget& search) {
+                take(draw(search, threshold,
                           [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
             };
             for (const std::int64_t budget : options_.budgets) {
-                const auto most = static_cast<std::uint64_t>(budget);
-                take_at(most, threshold_for(most, criterion_at));
+                const nestgrid::TriangleBudget search =
+                    find_for(static_cast<std::uint64_t>(budget), criterion_at);
+                take_at(search.threshold, search);
             }
-            for (const ThresholdText& t : thresholds) take_at(0, indicators.threshold(t));
+            for (const ThresholdText& t : thresholds) take_at(indicators.threshold(t), {});
         });
     }
 
 private:
     template <class Draw>
-    Drawn draw(std::uint64_t budget, double threshold, const Draw& draw_into) {
+    Drawn draw(const nestgrid::TriangleBudget& search, double threshold, const Draw& draw_into) {
         Drawn drawn;
-        drawn.budget = budget;
+        drawn.search = search;
         drawn.time = moment_.time();
         drawn.threshold = threshold;
         const double start = now();
@@ -128,29 +129,25 @@ private:
     }
     /// The least threshold at which the surface keeps within a number of triangles.
     template <class CriterionAt>
-    double threshold_for(std::uint64_t budget, const CriterionAt& criterion_at) const {
+    nestgrid::TriangleBudget find_for(std::uint64_t budget, const CriterionAt& criterion_at) const {
         const nestgrid::IsosurfaceOptions options{.cap = what_.cap};
         return moment_.indicators().with_offsets([&](const auto& offsets) {
             if (what_.isovalue && what_.function != nullptr) {
                 return nestgrid::least_threshold(
-                           [&](double threshold, std::uint64_t most) {
-                               return count_both(criterion_at(threshold), most);
-                           },
-                           offsets.greatest() - offsets.least(), budget)
-                    .threshold;
+                    [&](double threshold, std::uint64_t most) {
+                        return count_both(criterion_at(threshold), most);
+                    },
+                    offsets.greatest() - offsets.least(), budget);
             }
             if (what_.function != nullptr) {
                 return find_threshold(hierarchy_, *what_.function, criterion_at, offsets, budget,
-                                      options, executor_)
-                    .threshold;
+                                      options, executor_);
             }
             if (what_.isovalue) {
                 return nestgrid::find_threshold<3>(hierarchy_, *what_.isovalue, criterion_at,
-                                                   offsets, budget, options, executor_)
-                    .threshold;
+                                                   offsets, budget, options, executor_);
             }
-            return find_shading_threshold(hierarchy_, criterion_at, offsets, budget, {}, executor_)
-                .threshold;
+            return find_shading_threshold(hierarchy_, criterion_at, offsets, budget, {}, executor_);
         });
     }
     /// Counts the triangles of the slice and of the isosurface beside it.
@@ -206,7 +203,7 @@ private:
 
 /// What everybody wants to know of a surface comes first.
 Row row_of(const Drawn& d, const ColouredSurface& what) {
-    Row row = begin_row(d.time, d.budget, d.threshold);
+    Row row = begin_row(d.time, d.search.max_triangles, d.threshold);
     row.add("triangles", d.report.triangles).add("vertices", d.report.vertices);
     row.add("error_bound", bound_of(d.slice)).add("open_edges", d.report.open_edges);
     row.add("area", d.report.area).add("seconds", d.seconds);
@@ -231,9 +228,10 @@ void report_isolines(const Drawn& d, const std::vector<double>& values, Report& 
             ++(d.isolines.closed(i) ? rings : open);
             length += d.isolines.length(i);
         }
-        Row row = begin_row(d.time, d.budget, d.threshold);
+        Row row = begin_row(d.time, d.search.max_triangles, d.threshold);
         row.add("isoline", value).add("rings", rings).add("open_lines", open);
-        report.add_row("isolines", row.add("length", length), keys_of(d.time, d.budget) + 1);
+        report.add_row("isolines", row.add("length", length),
+                       keys_of(d.time, d.search.max_triangles) + 1);
     }
 }
 
@@ -244,13 +242,16 @@ void report_drawn(const DrawnField& field, const ColouredSurface& what, Report& 
     if (field.preroll_seconds > 0) report.add("preroll_seconds", field.preroll_seconds);
     std::uint64_t triangles = 0;
     double seconds = 0;
+    std::vector<nestgrid::TriangleBudget> searches;
     for (const Drawn& d : field.surfaces) {
-        report.add_row("surfaces", row_of(d, what), keys_of(d.time, d.budget));
+        searches.push_back(d.search);
+        report.add_row("surfaces", row_of(d, what), keys_of(d.time, d.search.max_triangles));
         report_isolines(d, field.values, report);
         triangles += d.report.triangles + d.isosurface_report.triangles;
         seconds += d.seconds;
     }
     report_sum(field.surfaces.size(), triangles, "triangles", seconds, report);
+    say_why_not_filled(searches, report);
     if (std::ranges::any_of(field.surfaces,
                             [](const Drawn& d) { return d.slice.bound_says_nothing(); })) {
         say_nothing_bounded(report);
@@ -286,7 +287,6 @@ void add_range(const Drawn& d, DrawnField& field) {
         field.greatest = std::max(field.greatest, value);
     }
 }
-
 
 void write(const SurfaceOptions& options, const DrawnField& field, const ColouredSurface& what,
            Report& report) {

@@ -102,7 +102,6 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
         for (const std::uint64_t budget : request.budgets) {
             tell_share(run, request);
             Extraction e;
-            e.budget = budget;
             const double start = now();
             e.search = indicators.with_offsets([&](const auto& offsets) {
                 return nestgrid::find_threshold<dimension>(hierarchy, request.isovalue,

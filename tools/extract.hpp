@@ -47,8 +47,7 @@ struct ExtractionRequest {
 struct Extraction {
     std::optional<double> time;  ///< where it is between frames
     double threshold = 0;
-    std::uint64_t budget = 0;         ///< 0: none
-    nestgrid::TriangleBudget search;  ///< of the threshold for the budget
+    nestgrid::TriangleBudget search;  ///< of the threshold; max_triangles is 0 where none was
     double search_seconds = 0;
     vtkSmartPointer<vtkPolyData> surface;  ///< where it is kept
     nestgrid::TraversalCounts counts;

@@ -21,7 +21,7 @@ void say_why_empty(const ExtractionRun& run, double isovalue, Report& report) {
 /// What everybody wants to know of a surface comes first.
 Row row_of(const Extraction& e, bool in_space) {
     const nestgrid::SurfaceReport& r = e.report;
-    Row row = begin_row(e.time, e.budget, e.threshold);
+    Row row = begin_row(e.time, e.search.max_triangles, e.threshold);
     row.add(in_space ? "triangles" : "segments", r.triangles).add("vertices", r.vertices);
     row.add("error_bound", bound_of(e.bounds));
     if (in_space) row.add("open_edges", r.open_edges).add("area", r.area);
@@ -36,7 +36,7 @@ Row row_of(const Extraction& e, bool in_space) {
     }
     row.add("inspect_calls", e.counts.calls).add("visited", e.counts.visited);
     row.add("extracted", e.counts.extracted);
-    if (e.budget > 0) {
+    if (e.search.max_triangles > 0) {
         row.add("search_trials", static_cast<std::uint64_t>(e.search.trials));
         row.add("search_triangles", e.search.extracted).add("search_seconds", e.search_seconds);
     }
@@ -109,6 +109,19 @@ void say_nothing_bounded(Report& report) {
     report.say("the error bound says nothing: it is no less than the range of the data allows");
 }
 
+void say_why_not_filled(const std::vector<nestgrid::TriangleBudget>& searches, Report& report) {
+    std::vector<std::string> reasons;
+    for (const nestgrid::TriangleBudget& search : searches) {
+        const std::string reason = search.max_triangles > 0 ? search.reason() : std::string();
+        if (!reason.empty()) reasons.push_back(reason);
+    }
+    if (reasons.empty()) return;
+    const std::size_t others = reasons.size() - 1;
+    report.say(others == 0
+                   ? reasons.front()
+                   : reasons.front() + " (" + grouped(others) + " more surfaces have less)");
+}
+
 std::size_t keys_of(const std::optional<double>& time, std::uint64_t budget) {
     return 1 + (time ? 1 : 0) + (budget > 0 ? 1 : 0);
 }
@@ -142,14 +155,17 @@ void report_surfaces(const ExtractionRun& run, double isovalue, const Seconds& s
     if (seconds.draw > 0) report.add("draw_seconds", seconds.draw);
     std::uint64_t simplices = 0;
     double drawing = 0;
+    std::vector<nestgrid::TriangleBudget> searches;
     for (const Extraction& e : run.surfaces) {
-        report.add_row("surfaces", row_of(e, in_space), keys_of(e.time, e.budget));
+        searches.push_back(e.search);
+        report.add_row("surfaces", row_of(e, in_space), keys_of(e.time, e.search.max_triangles));
         simplices += e.report.triangles;
         drawing += e.seconds;
     }
     if (contour) report.add_row("vtk", row_of(*contour));
     report_sum(run.surfaces.size(), simplices, in_space ? "triangles" : "segments", drawing,
                report);
+    say_why_not_filled(searches, report);
     if (std::ranges::any_of(run.surfaces,
                             [](const Extraction& e) { return e.bounds.bound_says_nothing(); })) {
         say_nothing_bounded(report);

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "extract.hpp"
 #include "hierarchy.hpp"
@@ -30,6 +31,9 @@ Row begin_row(const std::optional<double>& time, std::uint64_t budget, double th
 Cell bound_of(const nestgrid::ErrorBounds& bounds);
 /// The sentence for results whose bound promises nothing.
 void say_nothing_bounded(Report& report);
+/// Why there are fewer triangles than the budgets allow, as a sentence about the first of several.
+/// \param searches whose max_triangles is 0 where there was none
+void say_why_not_filled(const std::vector<nestgrid::TriangleBudget>& searches, Report& report);
 /// How many of the first cells of such a row tell it from the others.
 std::size_t keys_of(const std::optional<double>& time, std::uint64_t budget);
 

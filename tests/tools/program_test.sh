@@ -46,6 +46,7 @@ cmp -s one.vtp three.vtp || fail "three threads draw something else"
     --max-triangles $((finest / 2)) >out || fail "budgets"
 [ "$(value threshold | head -1)" = 0 ] && [ "$(value max_triangles | tail -1)" = $((finest / 2)) ] ||
     fail "budgets: $(cat out)"
+grep -q "^$finest of $((2 * finest)) triangles: nothing is left out" out || fail "why: $(cat out)"
 "$program" isosurface v.vti --value 130 --threshold 50 --box=-100,100,-100,100,-100,100 >out ||
     fail "box"
 [ "$(value triangles)" = "$finest" ] || fail "box around everything: $(value triangles)"

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from typing import TYPE_CHECKING, Any, ClassVar, Iterable, Iterator, Sequence, TypeVar
 
@@ -141,7 +140,7 @@ class _Result(_Extracted):
 
     @property
     def threshold(self) -> float:
-        """The threshold that was used, found or given; nan for a slice within max_triangles."""
+        """The threshold that was used, found or given."""
         return self._data.threshold
 
     @property
@@ -158,8 +157,7 @@ class _Result(_Extracted):
         rows = super()._rows()
         bound = "the bound says nothing" if self.bound_says_nothing else f"{self.error_bound:.3g}"
         rows.append(("error at most", bound))
-        if not math.isnan(self.threshold):
-            rows.append(("threshold", f"{self.threshold:.6g}"))
+        rows.append(("threshold", f"{self.threshold:.6g}"))
         return rows
 
     def _size(self) -> str:
@@ -193,8 +191,16 @@ class Surface(_Result):
         """
         return self._data.normals
 
+    @property
+    def budget_reason(self) -> str:
+        """Why there are less than nine tenths of max_triangles, as a sentence; empty elsewhere."""
+        return self._data.budget_reason
+
     def report(self) -> dict[str, int | float | bool]:
-        """Counts, area, enclosed volume, and whether the surface is closed and a manifold."""
+        """Counts, area, enclosed volume, and whether the surface is closed and a manifold.
+
+        area_behind is that of triangles whose backs a normal of their vertices shows.
+        """
         return self._data.report()
 
     def outlines(self) -> Segments:

@@ -47,14 +47,14 @@ py::dict report_of(const std::shared_ptr<Drawn>& drawn) {
     using namespace py::literals;
     const SurfaceReport r =
         interruptible(1, [drawn](const Call&) { return surface_report(drawn->surface); });
-    return py::dict("vertices"_a = r.vertices, "edges"_a = r.edges, "triangles"_a = r.triangles,
-                    "open_edges"_a = r.open_edges, "boundary_edges"_a = r.boundary_edges,
-                    "nonmanifold_edges"_a = r.nonmanifold_edges,
-                    "misoriented_edges"_a = r.misoriented_edges,
-                    "nonmanifold_vertices"_a = r.nonmanifold_vertices,
-                    "degenerate_triangles"_a = r.degenerate_triangles,
-                    "components"_a = r.components, "euler"_a = r.euler, "area"_a = r.area,
-                    "volume"_a = r.volume, "closed"_a = r.closed(), "manifold"_a = r.manifold());
+    return py::dict(
+        "vertices"_a = r.vertices, "edges"_a = r.edges, "triangles"_a = r.triangles,
+        "open_edges"_a = r.open_edges, "boundary_edges"_a = r.boundary_edges,
+        "nonmanifold_edges"_a = r.nonmanifold_edges, "misoriented_edges"_a = r.misoriented_edges,
+        "nonmanifold_vertices"_a = r.nonmanifold_vertices,
+        "degenerate_triangles"_a = r.degenerate_triangles, "components"_a = r.components,
+        "euler"_a = r.euler, "area"_a = r.area, "area_behind"_a = r.area_behind,
+        "volume"_a = r.volume, "closed"_a = r.closed(), "manifold"_a = r.manifold());
 }
 
 /// The numbers of a result, for pickling.
@@ -99,7 +99,8 @@ py::tuple state_of_surface(const py::object& self, const Drawn& d) {
     };
     return py::make_tuple(numbers_of(d), array(0.0, s.vertices), array(0.0, s.normals),
                           array(0.0, s.attributes), array(std::uint32_t{}, s.simplices),
-                          array(std::uint32_t{}, s.element_of), array(std::uint32_t{}, s.boundary));
+                          array(std::uint32_t{}, s.element_of), array(std::uint32_t{}, s.boundary),
+                          d.budget_reason);
 }
 std::shared_ptr<Drawn> surface_of_state(const py::tuple& state) {
     auto drawn = std::make_shared<Drawn>();
@@ -113,6 +114,7 @@ std::shared_ptr<Drawn> surface_of_state(const py::tuple& state) {
     s.simplices = values_in<Surface<3>::Simplex, std::uint32_t>(state[4]);
     s.element_of = values_in<std::uint32_t, std::uint32_t>(state[5]);
     s.boundary = values_in<Surface<3>::Ridge, std::uint32_t>(state[6]);
+    drawn->budget_reason = state[7].cast<std::string>();
     return drawn;
 }
 
@@ -165,6 +167,7 @@ auto on(const Function& function) {
 void bind_surface(py::module_& m) {
     py::class_<Drawn, std::shared_ptr<Drawn>> c(m, "Surface");
     bind_numbers(c);
+    c.def_readonly("budget_reason", &Drawn::budget_reason);
     c.def_property_readonly("vertices", on<Drawn>([](const py::object& self, const Drawn& d) {
                                 return points_on(self, d.surface.vertices);
                             }))

@@ -84,9 +84,14 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
             .progress = progress_of(call)};
 }
 
-Drawn drawn_of(Isosurface<3> result, double threshold) {
-    return {static_cast<const ErrorBounds&>(result), std::move(result.surface), result.counts,
-            threshold, result.cancelled};
+/// \param search of the threshold; its max_triangles is 0 where the threshold was given
+Drawn drawn_of(Isosurface<3> result, const TriangleBudget& search) {
+    return {static_cast<const ErrorBounds&>(result),
+            std::move(result.surface),
+            result.counts,
+            search.threshold,
+            search.max_triangles > 0 ? search.reason() : std::string(),
+            result.cancelled};
 }
 
 bool is_default(const Projection& projection) {
@@ -102,17 +107,16 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
         const Criteria criteria(source, projection, call);
         const IsosurfaceOptions options = options_of(request, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
-            double threshold = criteria.threshold();
+            TriangleBudget search{.threshold = criteria.threshold()};
             if (projection.max_triangles > 0) {
-                threshold = criteria.with_offsets([&](const auto& offsets) {
+                search = criteria.with_offsets([&](const auto& offsets) {
                     return find_threshold<3>(hierarchy, isovalue, criterion_at, offsets,
-                                             projection.max_triangles, options, call.executor())
-                        .threshold;
+                                             projection.max_triangles, options, call.executor());
                 });
             }
-            return drawn_of(isosurface<3>(hierarchy, isovalue, criterion_at(threshold),
+            return drawn_of(isosurface<3>(hierarchy, isovalue, criterion_at(search.threshold),
                                           criteria.bounds(), options, call.executor()),
-                            threshold);
+                            search);
         });
     });
 }
@@ -124,21 +128,20 @@ Drawn draw_slice(const Source& source, const LevelFunction& function, const Surf
         const bool everything =
             projection.threshold.value_or(0) == 0 && projection.max_triangles == 0;
         if (is_default(projection) && everything) {
-            return drawn_of(slice(hierarchy, function, options, call.executor()), 0);
+            return drawn_of(slice(hierarchy, function, options, call.executor()), {});
         }
         const Criteria criteria(source, projection, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
-            double threshold = criteria.threshold();
+            TriangleBudget search{.threshold = criteria.threshold()};
             if (projection.max_triangles > 0) {
-                threshold = criteria.with_offsets([&](const auto& offsets) {
+                search = criteria.with_offsets([&](const auto& offsets) {
                     return find_threshold(hierarchy, function, criterion_at, offsets,
-                                          projection.max_triangles, options, call.executor())
-                        .threshold;
+                                          projection.max_triangles, options, call.executor());
                 });
             }
-            return drawn_of(slice(hierarchy, function, criterion_at(threshold), criteria.bounds(),
-                                  options, call.executor()),
-                            threshold);
+            return drawn_of(slice(hierarchy, function, criterion_at(search.threshold),
+                                  criteria.bounds(), options, call.executor()),
+                            search);
         });
     });
 }
@@ -171,8 +174,12 @@ Drawn draw_height_field(const Source& source, std::optional<double> scale, doubl
                 scale ? height_field(hierarchy, *scale, s, criteria.bounds(), options,
                                      call.executor())
                       : shading(hierarchy, s, criteria.bounds(), options, call.executor());
-            return Drawn{static_cast<const ErrorBounds&>(result), std::move(result.surface),
-                         result.counts, criteria.threshold(), result.cancelled};
+            return Drawn{static_cast<const ErrorBounds&>(result),
+                         std::move(result.surface),
+                         result.counts,
+                         criteria.threshold(),
+                         {},
+                         result.cancelled};
         });
     });
 }

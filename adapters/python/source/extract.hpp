@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <optional>
+#include <string>
 
 #include <nestgrid/algorithms/domains.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
@@ -40,6 +41,7 @@ struct Drawn : ErrorBounds {
     Surface<3> surface;
     TraversalCounts counts;
     double threshold = 0;
+    std::string budget_reason;  ///< why there are fewer triangles than max_triangles, or empty
     bool cancelled = false;
 };
 struct DrawnLines : ErrorBounds {

@@ -196,6 +196,22 @@ def test_frame_budget_keeps_a_number_of_triangles(gyroid):
         nestgrid.FrameBudget(0, 1)
 
 
+def test_budgets_that_are_not_filled_say_why(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    finest = len(volume.isosurface(0.5).triangles)
+    plane = ((16, 16, 16), (1, 2, 3))
+    assert volume.isosurface(0.5, max_triangles=finest // 2).budget_reason == ""
+    assert volume.isosurface(0.5).budget_reason == ""
+    all_of_it = f"{finest} of {2 * finest} triangles: nothing is left out"
+    assert volume.isosurface(0.5, max_triangles=2 * finest).budget_reason == all_of_it
+    assert "nothing" in volume.slice(plane=plane, max_triangles=10**9).budget_reason
+    # One fold, all of whose nodes have one indicator.
+    fold = nestgrid.Volume(np.abs(np.arange(33.0) - 16)[None, None, :] * np.ones((33, 33, 1)))
+    surface = fold.isosurface(4.5, max_triangles=1000)
+    assert len(surface.triangles) < 900
+    assert "share one indicator, and the next lesser threshold" in surface.budget_reason
+
+
 def test_two_threads_at_once(gyroid):
     expected = [nestgrid.Volume(gyroid).isosurface(0.1 * i, 0.1, threads=1) for i in range(8)]
     volume = nestgrid.Volume(gyroid)
