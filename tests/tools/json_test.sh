@@ -34,7 +34,7 @@ grep -qxE "wrote a.vtp \\($(value triangles | sed -E ':a; s/([0-9])([0-9]{3})($|
     fail "wrote: $(cat out)"
 
 # One shape for one and for many thresholds, budgets and times.
-columns() { "$program" "$@" | awk '!NF { getline; $1 = $1; print }' | grep -v '^nothing\|^in all\|^wrote'; }
+columns() { "$program" "$@" | awk '!NF { getline; $1 = $1; print }' | grep -v '^nothing\|^in all\|^wrote\|^[0-9]* of '; }
 for command in "${iso[*]}" "slice v.vti --axis z --at 17" "boundary v.vti" "isolines v.vti --axis z --at 17 --count 3"; do
     one=$(columns $command --threshold 1)
     [ "$one" = "$(columns $command --threshold 1 --threshold 2)" ] || fail "$command: other columns for two"
