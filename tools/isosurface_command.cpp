@@ -76,7 +76,7 @@ void check_for(const Options& o, const InputField& field) {
         refuse_options(command, {"--cap", "--no-normals"}, "is for surfaces, not for isolines");
     }
     const std::string format = ending_of(o.surface.output);
-    if (o.surface.picture.image.empty() && format == ".stl") {
+    if (o.surface.picture.image.empty() && (format == ".stl" || format == ".ply")) {
         refuse_options(command, {"--no-normals"}, "changes no " + format + " file");
     }
 }
