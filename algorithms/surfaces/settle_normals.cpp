@@ -21,7 +21,10 @@ constexpr double least_of_gradient = 0.2;  // with each triangle
 constexpr double least_with_mean = 0.5;    // of a gradient that says anything
 constexpr double least_of_mean = 0.02;     // with each triangle; more than eight bits round away
 
-/// A direction of the triangles around a vertex, of unit length, and twice their area.
+/// Triangles of less height, in distances from the origin, have no direction.
+constexpr double least_height = 1e-10;
+
+/// The direction of a triangle, of unit length, and twice its area.
 struct FanTriangle {
     Point direction;
     double area;
@@ -37,15 +40,19 @@ Point first_agreeing(const Point& from, const Point& to, std::span<const Point> 
         const double after = dot(to, triangle);
         if (before < least) way = std::max(way, (least - before) / (after - before));
     }
-    const Point direction = (1 - way) * from + way * to;
-    return (1 / norm(direction)) * direction;
+    Point direction = (1 - way) * from + way * to;
+    direction = (1 / norm(direction)) * direction;
+    // Opposite directions have hardly any between them.
+    return least_cosine(direction, fan) > 0 ? direction : to;
 }
 
 class SettledNormals {
 public:
     SettledNormals(std::span<const Triangle> triangles, std::span<const Point> x,
                    std::span<Point> normals)
-        : triangles_{triangles}, x_{x}, normals_{normals}, place_(normals.size(), accepted) {}
+        : triangles_{triangles}, x_{x}, normals_{normals}, place_(normals.size(), accepted) {
+        for (const Point& at : x) extent_ = std::max(extent_, norm(at));
+    }
 
     std::size_t run() {
         refuse();
@@ -59,8 +66,16 @@ public:
 private:
     static constexpr std::uint32_t accepted = std::numeric_limits<std::uint32_t>::max();
 
-    /// Twice the area vector.
-    Point area(const Triangle& t) const { return cross(x_[t[1]] - x_[t[0]], x_[t[2]] - x_[t[0]]); }
+    /// The direction of a triangle and twice its area, which is 0 where rounding decides about the
+    /// direction.
+    FanTriangle look_at(const Triangle& t) const {
+        const Point a = x_[t[1]] - x_[t[0]];
+        const Point b = x_[t[2]] - x_[t[0]];
+        const Point n = cross(a, b);
+        const double area = norm(n);
+        if (area <= least_height * extent_ * std::max(norm(a), norm(b))) return {{0, 0, 0}, 0};
+        return {(1 / area) * n, area};
+    }
 
     template <class Function>
     void for_each_of_fans(const Function& function) const;
@@ -72,6 +87,7 @@ private:
     std::span<const Triangle> triangles_;
     std::span<const Point> x_;
     std::span<Point> normals_;
+    double extent_ = 0;                   // the greatest distance from the origin
     std::vector<std::uint32_t> place_;    // by vertex: its place among the refused
     std::vector<std::uint32_t> refused_;  // vertices whose normals are refused
     std::vector<std::uint32_t> first_;    // of each of these: its first triangle, and the end
@@ -82,12 +98,11 @@ private:
 /// Refuses normals whose cosine with a triangle is too small.
 void SettledNormals::refuse() {
     for (const Triangle& t : triangles_) {
-        const Point n = area(t);
-        const double length = norm(n);
-        if (length == 0) continue;
+        const FanTriangle seen = look_at(t);
+        if (seen.area == 0) continue;
         for (const std::uint32_t v : t) {
-            if (place_[v] != accepted || dot(normals_[v], n) >= least_of_gradient * length)
-                continue;
+            if (place_[v] != accepted) continue;
+            if (dot(normals_[v], seen.direction) >= least_of_gradient) continue;
             place_[v] = static_cast<std::uint32_t>(refused_.size());
             refused_.push_back(v);
         }
@@ -99,11 +114,10 @@ template <class Function>
 void SettledNormals::for_each_of_fans(const Function& function) const {
     for (const Triangle& t : triangles_) {
         if (std::ranges::all_of(t, [&](auto v) { return place_[v] == accepted; })) continue;
-        const Point n = area(t);
-        const double length = norm(n);
-        if (length == 0) continue;
+        const FanTriangle seen = look_at(t);
+        if (seen.area == 0) continue;
         for (const std::uint32_t v : t) {
-            if (place_[v] != accepted) function(place_[v], FanTriangle{(1 / length) * n, length});
+            if (place_[v] != accepted) function(place_[v], seen);
         }
     }
 }

@@ -18,7 +18,8 @@ namespace nestgrid {
 /// of the mean, where that is less than 0.4); one that is more than 60 degrees away from the mean
 /// becomes the mean. Where the mean itself is behind a triangle, the direction whose least cosine
 /// with the triangles is greatest takes its place. Where even that cosine is not above 0, the fan is
-/// folded over itself: the normal is then behind some of its triangles.
+/// folded over itself: the normal is then behind some of its triangles. Triangles so flat that
+/// rounding decides about their direction do not count.
 ///
 /// Surfaces that isosurface() and its relatives draw with normals have settled ones.
 /// \param surface whose normals are of unit length, or 0 where none is known; all are made where
