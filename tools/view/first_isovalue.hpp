@@ -20,7 +20,10 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include <nestgrid/error.hpp>
 
 namespace nestgrid::view {
 
@@ -35,13 +38,18 @@ struct ValueSample {
 };
 
 /// \param at at(i) is value i
+/// \throw InvalidInput where a value is not finite
 template <class At>
 ValueSample value_sample_of(std::size_t count, const At& at) {
     ValueSample sample;
     if (count == 0) return sample;
     sample.least = sample.greatest = static_cast<double>(at(std::size_t{0}));
-    for (std::size_t i = 1; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         const auto value = static_cast<double>(at(i));
+        if (!std::isfinite(value)) {
+            throw InvalidInput("a value of the field is not a usable number: " +
+                               std::to_string(value));
+        }
         sample.least = std::min(sample.least, value);
         sample.greatest = std::max(sample.greatest, value);
     }

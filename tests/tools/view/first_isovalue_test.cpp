@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include <first_isovalue.hpp>
@@ -214,6 +215,16 @@ TEST(FirstIsovalue, LiesWithinTheValues) {
     EXPECT_EQ(isovalue_of(std::vector{3.0, 4.0}), 3.5);
     const auto slope = in_cube([](double x, double, double) { return 5 + x; });
     EXPECT_NEAR(isovalue_of(slope), 5, 0.1);
+}
+
+TEST(FirstIsovalue, OfValuesThatAreNotFiniteIsRefused) {
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        for (const std::size_t place : {std::size_t{0}, std::size_t{7}, std::size_t{199}}) {
+            std::vector<double> values(200, 1.0);
+            values[place] = bad;
+            EXPECT_THROW(isovalue_of(values), nestgrid::InvalidInput);
+        }
+    }
 }
 
 }  // namespace
