@@ -134,12 +134,13 @@ void Triangulation<Real>::raise_error_bound(const View& view) {
     std::array<double, max_corners> u{};
     for (std::size_t i = 0; i < view.corner_count(); ++i) u[i] = polygon_.u(i);
     const Extent corners = Extent::of(std::span(u).first(view.corner_count()));
-    const double corner = corner_offset(view, polygon_.keys(), *graph_.bounds);
     const bool quadrilaterals = graph_.walk->hierarchy().facts().only_shape == Shape::quadrilateral;
     const double chord = polygon_.chord(view.is_leaf() || quadrilaterals);
-    const double off = (view.is_leaf() ? 0 : below_) + corner;
+    const Bounds& bounds = *graph_.bounds;
+    const double off =
+        projected_away(view, polygon_.keys(), view.is_leaf() ? 0 : below_, bounds, bounds);
     drawn_.surface.raise_error_bound(
-        std::min(off + chord, greatest_difference(corners, corners, off, *graph_.bounds)));
+        std::min(off + chord, greatest_difference(corners, corners, off, bounds)));
 }
 
 template <class Real>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include <indicators/lattice_deviations.hpp>
 #include <indicators/preroll.hpp>
 #include <indicators/spread.hpp>
 #include <indicators/stars.hpp>
@@ -72,6 +73,18 @@ HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy,
     prepare(hierarchy, leaf_errors, executor);
 }
 
+HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy, NodeError error,
+                                             const Executor& executor, const Spread& spread)
+    : spread_{spread}, error_{error} {
+    prepare(hierarchy, {}, executor);
+}
+
+HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy, NodeError error,
+                                             const Executor& executor, const Spread& spread)
+    : spread_{spread}, error_{error} {
+    prepare(hierarchy, {}, executor);
+}
+
 template <class Real>
 void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
                                     const Executor& executor) {
@@ -81,16 +94,26 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
     own_errors_ = static_cast<bool>(leaf_errors);
     hanging_ = engine::find_hanging_nodes(hierarchy);
     const bool measures = spread_.slope > 0;
-    const bool plain = spread_.factor == 1 && !measures && !own_errors_;
+    const bool deviations = error_ == NodeError::deviation;
+    const bool plain = spread_.factor == 1 && !measures && !own_errors_ && !deviations;
     if (hierarchy.facts().knows_stars && plain) {
         facts_ = engine::sweep_stars(hierarchy, entries_);
         node_count_ = hierarchy.facts().node_count;
         return;
     }
+    if (deviations && engine::bisects_by_keys(hierarchy)) {
+        facts_ = engine::sweep_stars(hierarchy, entries_);
+        engine::sweep_lattice_deviations(hierarchy, spread_, entries_, executor);
+        node_count_ = hierarchy.facts().node_count;
+        return;
+    }
     const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true, .positions = measures},
                                   hanging());
-    engine::Sweeps sweeps(hierarchy.facts().node_count, own_errors_, spread_);
-    facts_ = engine::walk_preroll(walk, leaf_errors, measures, sweeps, executor);
+    const engine::MadeOf made_of = deviations    ? engine::MadeOf::deviations
+                                   : own_errors_ ? engine::MadeOf::leaf_errors
+                                                 : engine::MadeOf::offsets;
+    engine::Sweeps sweeps(hierarchy.facts().node_count, made_of, spread_);
+    facts_ = engine::walk_preroll(walk, {&leaf_errors, measures, deviations}, sweeps, executor);
     sweeps.saturate();
     // No element above a crossing node stops, whatever its level.
     facts_.one_level_a_node = sweeps.one_level_a_node() && hanging_.crossing() == nullptr;
@@ -107,6 +130,10 @@ void HierarchicalIndicator::update_dirty(const Hierarchy<Real>& hierarchy,
                                ? "an indicator made of errors of leaves is updated with them"
                                : "an indicator made of offsets is updated without errors of "
                                  "leaves");
+    }
+    if (error_ == NodeError::deviation) {
+        *this = HierarchicalIndicator(hierarchy, error_, SequentialExecutor{}, spread_);
+        return;
     }
     HangingNodes found;
     const bool same_grid = hierarchy.epoch() == epoch_;

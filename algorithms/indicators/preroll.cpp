@@ -10,17 +10,18 @@ namespace nestgrid::engine {
 namespace {
 
 template <class Real>
-detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const LeafErrors& leaf_errors,
-                                       bool measures, Sweeps& sweeps, const Executor& executor) {
+detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const PrerollRequest& request,
+                                       Sweeps& sweeps, const Executor& executor) {
     struct Part {
         PrerollLog log;
         detail::PrerollFacts facts;
     };
     using LoggingVisitor = PrerollVisitor<Real, PrerollLog>;
     PrerollLog above;
-    LoggingVisitor visitor(walk, leaf_errors, measures, above);
+    LoggingVisitor visitor(walk, request, above);
     const std::size_t wanted = 64 * executor.concurrency();  // many parts, so that logs stay short
     const Frontier<Real> frontier(walk, visitor, wanted);
+    visitor.finish();
     above.repeat(sweeps);
     detail::PrerollFacts facts = visitor.facts();
     const std::size_t entries = frontier.entry_count();
@@ -29,8 +30,9 @@ detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const LeafErrors&
         parts.size(),
         [&](std::size_t i) {
             parts[i] = std::make_unique<Part>();
-            LoggingVisitor below(walk, leaf_errors, measures, parts[i]->log);
+            LoggingVisitor below(walk, request, parts[i]->log);
             frontier.run(walk, i * entries / parts.size(), (i + 1) * entries / parts.size(), below);
+            below.finish();
             parts[i]->facts = below.facts();
         },
         [&](std::size_t i) {
@@ -44,19 +46,18 @@ detail::PrerollFacts walk_with_threads(const Walk<Real>& walk, const LeafErrors&
 }  // namespace
 
 template <class Real>
-detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const LeafErrors& leaf_errors,
-                                  bool measures, Sweeps& sweeps, const Executor& executor) {
-    if (executor.concurrency() > 1) {
-        return walk_with_threads(walk, leaf_errors, measures, sweeps, executor);
-    }
-    PrerollVisitor<Real, Sweeps> visitor(walk, leaf_errors, measures, sweeps);
+detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const PrerollRequest& request,
+                                  Sweeps& sweeps, const Executor& executor) {
+    if (executor.concurrency() > 1) return walk_with_threads(walk, request, sweeps, executor);
+    PrerollVisitor<Real, Sweeps> visitor(walk, request, sweeps);
     walk.run(visitor);
+    visitor.finish();
     return visitor.facts();
 }
 
-template detail::PrerollFacts walk_preroll(const Walk<float>&, const LeafErrors&, bool, Sweeps&,
+template detail::PrerollFacts walk_preroll(const Walk<float>&, const PrerollRequest&, Sweeps&,
                                            const Executor&);
-template detail::PrerollFacts walk_preroll(const Walk<double>&, const LeafErrors&, bool, Sweeps&,
+template detail::PrerollFacts walk_preroll(const Walk<double>&, const PrerollRequest&, Sweeps&,
                                            const Executor&);
 
 }  // namespace nestgrid::engine

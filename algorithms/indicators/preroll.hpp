@@ -9,14 +9,19 @@
 
 namespace nestgrid::engine {
 
+/// What a preroll looks at beside values.
+struct PrerollRequest {
+    const LeafErrors* leaf_errors;  ///< empty where leaves have none
+    bool measures = false;          ///< distances count; the walk must carry positions then
+    bool deviations = false;        ///< of elements
+};
+
 /// Tells `sweeps` of all splits of a hierarchy, and of its leaves where leaves have errors, else of
 /// its coarse leaves.
 /// \param walk must carry values and keys
-/// \param leaf_errors empty where leaves have none
-/// \param measures whether distances count; the walk must carry positions then
 /// \throw InvalidInput where a value or an error is not usable
 template <class Real>
-detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const LeafErrors& leaf_errors,
-                                  bool measures, Sweeps& sweeps, const Executor& executor);
+detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const PrerollRequest& request,
+                                  Sweeps& sweeps, const Executor& executor);
 
 }  // namespace nestgrid::engine

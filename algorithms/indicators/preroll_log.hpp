@@ -9,8 +9,8 @@
 
 namespace nestgrid::engine {
 
-/// Logs the splits and leaves that a part of a preroll meets, and tells Sweeps of them in this
-/// order.
+/// Logs the splits, leaves and deviations that a part of a preroll meets, and tells Sweeps of them
+/// in this order.
 class PrerollLog {
 public:
     template <class Offset>
@@ -20,9 +20,15 @@ public:
         for (std::size_t n = 0; n < s.rule->new_nodes.size(); ++n) numbers_.push_back(offset(n));
     }
     void leaf(std::span<const NodeKey> corners, float error) {
-        items_.push_back({nullptr, 0, 0, 0, corners.size()});
+        items_.push_back({nullptr, leaf_level, 0, 0, corners.size()});
         keys_.insert(keys_.end(), corners.begin(), corners.end());
         numbers_.push_back(error);
+    }
+    void deviation(const Deviation& d) {
+        items_.push_back({nullptr, deviation_level, 0, 0, d.made.size()});
+        keys_.insert(keys_.end(), d.made.begin(), d.made.end());
+        numbers_.push_back(float_above(d.deviation));
+        numbers_.push_back(float_above(d.stop));
     }
 
     void repeat(Sweeps& sweeps) const {
@@ -31,9 +37,12 @@ public:
         for (const Item& i : items_) {
             const auto of = keys.first(i.keys);
             keys = keys.subspan(i.keys);
-            if (i.rule == nullptr) {
+            if (i.rule == nullptr && i.level == leaf_level) {
                 sweeps.leaf(of, numbers.front());
                 numbers = numbers.subspan(1);
+            } else if (i.rule == nullptr) {
+                sweeps.deviation({of, numbers[0], numbers[1]});
+                numbers = numbers.subspan(2);
             } else {
                 sweeps.split({i.rule, i.level, i.outside, i.reach, of},
                              [&](std::size_t n) { return numbers[n]; });
@@ -45,16 +54,19 @@ public:
     void clear() { *this = {}; }
 
 private:
+    static constexpr int leaf_level = -1;
+    static constexpr int deviation_level = -2;
+
     struct Item {
-        const Rule* rule;
-        int level;
+        const Rule* rule;  // null for a leaf or a deviation
+        int level;         // or one of the two above
         NodeMask outside;
         float reach;
         std::size_t keys;
     };
     std::vector<Item> items_;
     std::vector<NodeKey> keys_;
-    std::vector<float> numbers_;  // offsets of new nodes, errors of leaves
+    std::vector<float> numbers_;  // offsets of new nodes, errors of leaves, deviations
 };
 
 }  // namespace nestgrid::engine

@@ -8,6 +8,7 @@
 #include <string>
 
 #include <indicators/offset.hpp>
+#include <indicators/preroll.hpp>
 #include <indicators/preroll_log.hpp>
 #include <indicators/spread.hpp>
 #include <nestgrid/detail/interpolate.hpp>
@@ -27,15 +28,14 @@ class PrerollVisitor final : public TaskVisitor<Real> {
 public:
     using View = ElementView<Real>;
 
-    PrerollVisitor(const Walk<Real>& walk, const LeafErrors& leaf_errors, bool measures,
-                   Receiver& receiver)
-        : walk_{&walk}, leaf_errors_{&leaf_errors}, measures_{measures}, receiver_{&receiver} {}
+    PrerollVisitor(const Walk<Real>& walk, const PrerollRequest& request, Receiver& receiver)
+        : walk_{&walk}, request_{&request}, receiver_{&receiver}, deviations_(walk) {}
 
     const detail::PrerollFacts& facts() const { return facts_; }
 
     bool sees_hidden() const override { return true; }
     Leaves leaves(const Rule&, const Real*, NodeMask which, bool) override {
-        return {0, *leaf_errors_ ? which : NodeMask{0}};
+        return {0, *request_->leaf_errors ? which : NodeMask{0}};
     }
 
     /// Elements for which `enters` is false are left out, with all below them.
@@ -45,7 +45,7 @@ public:
         if (enters_ != nullptr && !(*enters_)(view, split)) return {Visit::skip, 0};
         if (view.level == 0) add_coarse_values(view);
         if (split.rule != nullptr) return {};
-        if (*leaf_errors_) {
+        if (*request_->leaf_errors) {
             receiver_->leaf(corner_keys(view), error_of(view));
         } else if (view.level == 0) {
             receiver_->leaf(corner_keys(view), 0);  // the nodes of a coarse leaf count, too
@@ -75,13 +75,17 @@ public:
                                  nestgrid::detail::interpolate(rule.new_nodes[n], value, stride);
                              return offset_above(value[(corners + n) * stride], mean);
                          });
+        if (request_->deviations) deviations_.enter(view, split, value, left_);
     }
+    /// To be called when the walk is over.
+    void finish() { deviations_.finish(left_); }
 
     void extract(const View&) override {}
 
     Decision look(const View&, const Split&) override { return {}; }
     void undo() override {}
     void restart() override {
+        deviations_.clear();
         if constexpr (std::is_same_v<Receiver, PrerollLog>) receiver_->clear();
     }
 
@@ -101,12 +105,12 @@ private:
 
     /// How far the split hands `stop` on; 0 where distances do not count.
     float reach(const View& view, const Split& split) {
-        if (!measures_) return 0;
+        if (!request_->measures) return 0;
         return reach_of(*split.rule, walk_->split_positions(view, split, positions_));
     }
 
     float error_of(const View& leaf) const {
-        const double error = (*leaf_errors_)(leaf.element());
+        const double error = (*request_->leaf_errors)(leaf.element());
         if (!(error >= 0)) {
             throw InvalidInput("the error of a leaf is not a usable number: " +
                                std::to_string(error));
@@ -135,9 +139,12 @@ private:
     }
 
     const Walk<Real>* walk_;
-    const LeafErrors* leaf_errors_;
-    bool measures_;  // distances count
+    const PrerollRequest* request_;
     Receiver* receiver_;
+    PathDeviations<Real> deviations_;
+    std::function<void(const Deviation&)> left_ = [this](const Deviation& d) {
+        if constexpr (requires { receiver_->deviation(d); }) receiver_->deviation(d);
+    };
     const ElementTest<Real>* enters_ = nullptr;
     detail::PrerollFacts facts_;
     std::array<NodeKey, max_corners + max_new_nodes> keys_;

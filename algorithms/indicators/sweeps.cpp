@@ -13,6 +13,16 @@ void Sweeps::leaf(std::span<const NodeKey> corners, float error) {
     }
 }
 
+void Sweeps::deviation(const Deviation& d) {
+    const Entry entry{bfloat16_above(float_above(d.stop)),
+                      bfloat16_above(float_above(d.deviation))};
+    for (const std::size_t at : numbers(d.made)) {
+        Entry& of = nodes_[at].entry;
+        of.stop = std::max(of.stop, entry.stop);
+        of.bound = std::max(of.bound, entry.bound);
+    }
+}
+
 void Sweeps::raise(NodeKey key, const Entry& known) {
     Node& node = nodes_[numbers({&key, 1}).front()];
     node.entry.stop = std::max(node.entry.stop, known.stop);
@@ -24,6 +34,7 @@ void Sweeps::saturate() {
           [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
               return sweep_split(rule, of, reach);
           });
+    if (made_of_ == MadeOf::deviations) return;
     for (Node& node : nodes_) node.entry.bound = std::max(node.entry.bound, node.bound());
 }
 
@@ -33,8 +44,9 @@ inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> o
     const auto hand = [&](const Below& b) {
         return Below{hand_on(spread_, b.stop, reach), b.bound};
     };
+    const bool sums = made_of_ != MadeOf::deviations;
     const auto of_node = [&](std::size_t node) {
-        return Below{nodes_[node].entry.stop, nodes_[node].bound()};
+        return Below{nodes_[node].entry.stop, sums ? nodes_[node].bound() : std::uint16_t{0}};
     };
     const auto raise = [&](std::size_t node, const Below& to) {
         Node& at = nodes_[node];

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <indicators/fine_to_coarse.hpp>
+#include <indicators/path_deviations.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid::engine {
@@ -25,24 +26,32 @@ struct MetSplit {
     std::span<const NodeKey> keys;  ///< of the corners and the new nodes behind them
 };
 
+/// What the numbers of nodes are made of.
+enum class MadeOf : std::uint8_t {
+    offsets,      ///< both numbers
+    leaf_errors,  ///< `stop`; bounds of offsets
+    deviations,   ///< both numbers; bounds are not swept
+};
+
 /// All nodes and splits of a hierarchy, while their entries are computed.
 class Sweeps {
 public:
     /// \param dense how many dense keys there are, or 0
-    /// \param of_leaves whether `stop` comes from errors of leaves and not from offsets
     /// \param spread how `stop` is handed from finer nodes to coarser ones
-    Sweeps(std::size_t dense, bool of_leaves, const Spread& spread)
+    Sweeps(std::size_t dense, MadeOf made_of, const Spread& spread)
         : number_of_{dense},
           nodes_(number_of_.count()),
           splits_{nodes_.size()},
           spread_{spread},
-          of_leaves_{of_leaves} {}
+          made_of_{made_of} {}
 
     /// \param offset offset(n) is |U_delta| of new node n, rounded up, 0 where the node hangs
     template <class Offset>
     void split(const MetSplit& s, Offset&& offset);
     /// A leaf and its error, or a coarse leaf and 0.
     void leaf(std::span<const NodeKey> corners, float error);
+    /// What is known of the deviation of an element.
+    void deviation(const Deviation& d);
     /// A node whose numbers are known to be at least these.
     void raise(NodeKey node, const detail::IndicatorEntry& known);
 
@@ -70,6 +79,7 @@ private:
         std::uint16_t finer = 0;   // largest bound of finer nodes
         std::uint8_t made_on = 0;  // 1 + level, modulo 255; 0: not known yet
 
+        /// The recursive sum.
         std::uint16_t bound() const {
             return bfloat16_above(sum_above(offset, bfloat16_value(finer)));
         }
@@ -95,7 +105,7 @@ private:
     std::vector<Node> nodes_;
     SplitsByLevel splits_;
     Spread spread_;
-    bool of_leaves_;
+    MadeOf made_of_;
     bool one_level_ = true;  // each node was created on one level
     bool one_step_ = true;   // no new node is a parent of another one of its split
     std::array<std::size_t, max_corners + max_new_nodes> numbers_{};
@@ -116,9 +126,9 @@ void Sweeps::split(const MetSplit& s, Offset&& offset) {
         // Every element that makes a node has the same parents for it, but for crossing nodes, at
         // which S does not hold.
         if (is_new || (s.outside >> n & 1U) != 0) node.offset = std::max(node.offset, offset(n));
-        const std::uint16_t own = (s.outside >> n & 1U) != 0 ? bfloat16_infinity
-                                  : of_leaves_               ? std::uint16_t{0}
-                                                             : bfloat16_above(node.offset);
+        const std::uint16_t own = (s.outside >> n & 1U) != 0        ? bfloat16_infinity
+                                  : made_of_ == MadeOf::leaf_errors ? std::uint16_t{0}
+                                                                    : bfloat16_above(node.offset);
         node.entry.stop = std::max(node.entry.stop, own);
     }
     splits_.add(static_cast<std::size_t>(s.level), rule, number, s.reach);

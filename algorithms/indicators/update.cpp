@@ -150,9 +150,10 @@ detail::PrerollFacts sweep_dirty(const Walk<Real>& walk, const DirtyNodes& dirty
                                  const detail::IndicatorEntries& entries,
                                  const LeafErrors& leaf_errors, const Spread& spread,
                                  const std::function<void(NodeKey, detail::IndicatorEntry)>& put) {
-    Sweeps sweeps(0, static_cast<bool>(leaf_errors), spread);
+    Sweeps sweeps(0, leaf_errors ? MadeOf::leaf_errors : MadeOf::offsets, spread);
     DirtySweeps receiver(dirty, entries, sweeps);
-    PrerollVisitor<Real, DirtySweeps> visitor(walk, leaf_errors, spread.slope > 0, receiver);
+    const PrerollRequest request{.leaf_errors = &leaf_errors, .measures = spread.slope > 0};
+    PrerollVisitor<Real, DirtySweeps> visitor(walk, request, receiver);
     const ElementTest<Real> has_dirty_corner = [&](const ElementView<Real>& view, const Split&) {
         std::array<NodeKey, max_corners> keys;
         walk.corners(view, keys.data(), nullptr);

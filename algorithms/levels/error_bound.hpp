@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <span>
 
 #include <levels/element_cuts.hpp>
@@ -55,6 +56,22 @@ double corner_offset(const ElementView<Real>& view, const std::array<NodeKey, ma
     return view.made_by == nullptr ? greatest : greatest * view.made_by->steps;
 }
 
+/// How far U may be from P_S U on an element that stops.
+/// \param below the bound of what S projected away below it
+template <class Real>
+double projected_away(const ElementView<Real>& view, const std::array<NodeKey, max_corners>& keys,
+                      double below, const Bounds& bounds, const auto& corner_bounds) {
+    if (view.interpolated == 0 || !bounds.corners_bound_elements()) {
+        return below + corner_offset(view, keys, corner_bounds);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned left = view.interpolated; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        least = std::min(least, bounds.offset_bound(keys[i]));
+    }
+    return least;
+}
+
 /// How far U may be from the level on what is drawn in an element, or on a slice from the colour of
 /// component 0: the bound of what S projected away below it, the offsets of its interpolated
 /// corners, and what the flatness of triangles adds in shapes other than simplices.
@@ -63,7 +80,8 @@ template <class Real>
 double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& search, Real below) {
     const ElementView<Real>& view = element.view();
     const Topology& t = view.topology();
-    const double bound = static_cast<double>(below) + corner_offset(view, element.keys(), search);
+    const double bound =
+        projected_away(view, element.keys(), static_cast<double>(below), search.bounds(), search);
     if (t.corners == t.dimension + 1U) return bound;
     const auto data = element.data(0);
     const auto u = std::span(data).first(t.corners);

@@ -57,6 +57,7 @@ void measure(const std::string& name, const Grid& grid, const Field& field, doub
     const double tau = 0x1p-20 * range;
     Contest contest(rounds, Clock::processor);
     contest.add("offset", [&] { HierarchicalIndicator{h}; });
+    contest.add("deviation", [&] { HierarchicalIndicator{h, NodeError::deviation}; });
     contest.add("visual", [&] { visual_indicator(h, {.tau = tau}); });
     contest.add("visual_finds_tau", [&] { visual_indicator(h); });
     contest.add("numerical", [&] { numerical_indicator(h); });
@@ -66,7 +67,7 @@ void measure(const std::string& name, const Grid& grid, const Field& field, doub
     contest.run();
     Contest::print_figure(name + "_offset_ns_per_node", contest.time("offset") * 1e6 / nodes);
     for (const char* other :
-         {"visual", "visual_finds_tau", "numerical", "wavelet", "norm", "geometry"}) {
+         {"deviation", "visual", "visual_finds_tau", "numerical", "wavelet", "norm", "geometry"}) {
         Contest::print_figure(name + "_" + other + "_over_offset",
                               contest.time(other) / contest.time("offset"));
     }
@@ -80,6 +81,9 @@ void measure(const std::string& name, const Grid& grid, const Field& field, doub
     const SweptIndicator numerical = numerical_indicator(h);
     print_visited("offset", "at_0.5%", Threshold(&offsets, 0.005 * range));
     print_visited("offset", "at_2%", Threshold(&offsets, 0.02 * range));
+    const HierarchicalIndicator deviations(h, NodeError::deviation);
+    print_visited("deviation", "at_0.5%", Threshold(&deviations, 0.005 * range));
+    print_visited("deviation", "at_2%", Threshold(&deviations, 0.02 * range));
     print_visited("visual", "at_0.25", Threshold(&visual, 0.25));
     print_visited("visual", "at_0.5", Threshold(&visual, 0.5));
     print_visited("numerical", "at_4%", Threshold(&numerical, 0.04 * range));
