@@ -147,9 +147,24 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
         ->type_name("COUNT")
         ->take_all()
         ->excludes("--threshold");
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--error",
+            [&options](const std::vector<std::string>& errors) {
+                options.thresholds = errors;
+                options.projection.indicator = "deviation";
+            },
+            "or let the data and what is drawn of them differ by at most this, in units of the "
+            "data "
+            "or in percent of their range")
+        ->type_name("NUMBER[%]")
+        ->take_all()
+        ->excludes("--threshold")
+        ->excludes("--max-triangles");
     command.add_option("-o,--output", options.output, "write .vtp, .ply, .stl, .obj or .gltf")
         ->type_name("FILE");
     add_projection_options(command, options.projection);
+    command.get_option("--error")->excludes("--indicator");
     command
         .add_option("--threads", options.threads,
                     "how many to use; the surface is the same with any [all]")

@@ -18,7 +18,7 @@ namespace {
 
 using nestgrid::InvalidInput;
 
-/// The chosen indicator; nothing where offsets are chosen.
+/// The chosen indicator; nothing where offsets or deviations are chosen.
 /// \param range of the data
 template <class Real>
 std::optional<nestgrid::SweptIndicator> swept_indicator(const nestgrid::Hierarchy<Real>& hierarchy,
@@ -62,12 +62,13 @@ void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_len
 void add_projection_options(CLI::App& command, ProjectionChoice& choice) {
     command
         .add_option("--indicator", choice.indicator,
-                    "what --threshold limits: offset, |data - mean|; visual, folds from 0 to 2; "
+                    "what --threshold limits: offset, |data - mean|; deviation, |data - what is "
+                    "drawn|; visual, folds from 0 to 2; "
                     "numerical, jumps of the gradient; wavelet, coefficients; geometry, |position "
                     "- mean| of curved grids")
         ->type_name("NAME")
         ->group("Detail")
-        ->check(one_of({"offset", "visual", "numerical", "wavelet", "geometry"}))
+        ->check(one_of({"offset", "deviation", "visual", "numerical", "wavelet", "geometry"}))
         ->capture_default_str();
     command
         .add_option("--blend", choice.blend,
@@ -95,11 +96,15 @@ FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames, Project
       lens_{std::move(lens)},
       least_{std::numeric_limits<double>::infinity()},
       greatest_{-least_} {
-    const nestgrid::Spread spread{.factor = choice_.indicator == "offset" ? choice_.blend : 1};
+    const bool deviations = choice_.indicator == "deviation";
+    const nestgrid::NodeError error =
+        deviations ? nestgrid::NodeError::deviation : nestgrid::NodeError::offset;
+    const nestgrid::Spread spread{
+        .factor = choice_.indicator == "offset" || deviations ? choice_.blend : 1};
     for (const SharedHierarchy& frame : frames) {
         std::visit(
             [&](const auto& hierarchy) {
-                offsets_.emplace_back(*hierarchy, nestgrid::LeafErrors{}, executor, spread);
+                offsets_.emplace_back(*hierarchy, error, executor, spread);
             },
             frame);
         least_ = std::min(least_, offsets_.back().least());

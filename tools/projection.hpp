@@ -53,7 +53,8 @@ public:
 
     const ProjectionChoice& choice() const { return choice_; }
     const std::optional<LensRequest>& lens() const { return lens_; }
-    /// Of each frame, spread for blending where the choice compares thresholds with them.
+    /// Of each frame, or its deviations where these are chosen; spread for blending where the
+    /// choice compares thresholds with them.
     const std::vector<nestgrid::HierarchicalIndicator>& offsets() const { return offsets_; }
     /// The chosen indicator of each of several frames, where it is that of a time between them,
     /// too: the numerical and the wavelet one. Else empty.
@@ -74,8 +75,8 @@ private:
     double greatest_;
 };
 
-/// The indicators of a field at one moment: that of offsets, which gives bounds, the chosen one,
-/// and the sizes of elements for a lens. The prerolls must outlive it.
+/// The indicators of a field at one moment: that of offsets or deviations, which gives bounds, the
+/// chosen one, and the sizes of elements for a lens. The prerolls must outlive it.
 class ChosenIndicator {
 public:
     /// \param hierarchy the field at that moment; an indicator that the prerolls do not have is

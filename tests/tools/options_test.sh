@@ -129,6 +129,10 @@ done
 # What is drawn.
 for command in isosurface slice isolines boundary; do
     effect $command "$raw ${base[$command]}" --max-triangles 3000
+    effect $command "$raw ${base[$command]}" --error 30
+    for option in '--threshold 1' '--max-triangles 900' '--indicator visual'; do
+        refused 2 'error excludes|excludes --error' $command $raw ${base[$command]} --error 30 $option
+    done
     effect $command "$raw ${base[$command]}" --output kept/x.vtp
     effect $command "$raw ${base[$command]}" -o kept/x.vtp
     "$program" $command $raw ${base[$command]} --threads 1 -o one.vtp >out && "$program" $command $raw ${base[$command]} --threads 3 -o three.vtp >out
@@ -188,6 +192,7 @@ for command in height surface; do
     void $command 'is for .vti and .nestgrid' "hills.pgm $options" --array value
     refused 1 'within 1e-06 seconds' $command hills.pgm $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
     effect $command "hills.pgm $options" --threshold 5
+    effect $command "hills.pgm $options" --error 5
     effect $command "hills.pgm $options" --max-triangles 900
     effect $command "hills.pgm $options" -o kept/x.vtp
     effect $command "hills.pgm $options" --output kept/x.vtp

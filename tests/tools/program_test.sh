@@ -47,6 +47,13 @@ cmp -s one.vtp three.vtp || fail "three threads draw something else"
 [ "$(value threshold | head -1)" = 0 ] && [ "$(value max_triangles | tail -1)" = $((finest / 2)) ] ||
     fail "budgets: $(cat out)"
 grep -q "^$finest of $((2 * finest)) triangles: nothing is left out" out || fail "why: $(cat out)"
+# An error that is asked for is kept.
+for error in 5 20 60 10%; do
+    "$program" isosurface v.vti --value 130 --error $error >out || fail "error $error: $(cat out)"
+    awk -v b="$(value error_bound)" -v t="$(value threshold)" 'BEGIN { exit !(0 < b && b <= t) }' ||
+        fail "error $error: $(cat out)"
+    [ "$(value open_edges)" = 0 ] || fail "error $error: an open surface"
+done
 "$program" isosurface v.vti --value 130 --threshold 50 --box=-100,100,-100,100,-100,100 >out ||
     fail "box"
 [ "$(value triangles)" = "$finest" ] || fail "box around everything: $(value triangles)"

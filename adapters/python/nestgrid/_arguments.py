@@ -26,7 +26,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 #: What a threshold is compared with.
-Indicator = Literal["offset", "visual", "numerical", "wavelet", "geometry"]
+Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
 #: Types of samples, as NumPy calls them.
 SampleType = Literal[
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"
@@ -276,6 +276,11 @@ SHARED = {
         "at least 0: detail up to it is left out, in the units of the indicator; None: 0, or "
         "with a lens infinity, so that the lens decides alone",
     ),
+    "error": Argument(
+        optional(not_negative),
+        "at least 0, in the place of threshold, max_triangles and indicator: the data and their "
+        "projection, which is drawn, differ by at most this, in units of the data",
+    ),
     "max_triangles": Argument(
         optional(whole(1)),
         "at least 1: the least threshold with no more triangles is found and used; threshold is "
@@ -283,8 +288,9 @@ SHARED = {
     ),
     "indicator": Argument(
         name_of(Indicator),
-        '"offset": |data - mean| in units of the data; "visual": folds, 2 sin(angle / 2), from 0 '
-        'to 2; "numerical": jumps of the gradient times the diameter, in units of the data; '
+        '"offset": |data - mean| in units of the data; "deviation": |data - what is drawn|, so '
+        'that the threshold is the error; "visual": folds, 2 sin(angle / 2), from 0 to 2; '
+        '"numerical": jumps of the gradient times the diameter, in units of the data; '
         '"wavelet": coefficients in units of the data; "geometry": |position - mean| on curved '
         "grids, in units of length",
     ),

@@ -84,6 +84,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        error: float | None = None,
         normals: bool = True,
         cap: bool = False,
         at_nodes: bool = False,
@@ -100,7 +101,7 @@ class Field:
         Raises InvalidInput where an argument makes no sense, a value is not finite, or even the
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
         """
-        projection = _projection(threshold, max_triangles, indicator, blend, lens)
+        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
         options = (normals, cap, elements, at_nodes)
         return Surface._of(
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
@@ -122,6 +123,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        error: float | None = None,
         normals: bool = False,
         elements: bool = False,
         threads: int = 0,
@@ -140,7 +142,7 @@ class Field:
             raise InvalidInput("slice(): a slice needs one of plane, sphere and cylinder")
         ((name, parts),) = shapes
         function = getattr(_nestgrid, name)(*parts)
-        projection = _projection(threshold, max_triangles, indicator, blend, lens)
+        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
         return Surface._of(
             _nestgrid.slice(self._source, function, normals, elements, projection, threads), self
         )
@@ -154,6 +156,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        error: float | None = None,
         threads: int = 0,
     ) -> Lines:
         """Lines on which a two-dimensional field has the given values, in one pass.
@@ -162,7 +165,7 @@ class Field:
 
         Raises InvalidInput also for a field of dimension 3: its slices have isolines().
         """
-        projection = _projection(threshold, None, indicator, blend, lens)
+        projection = _projection(threshold, None, indicator, blend, lens, error)
         return Lines._of(
             _nestgrid.isolines(self._source, several(values), projection, threads), self
         )
@@ -177,6 +180,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        error: float | None = None,
         elements: bool = False,
         threads: int = 0,
     ) -> Surface:
@@ -188,7 +192,7 @@ class Field:
 
         Raises InvalidInput also for a field of dimension 3.
         """
-        projection = _projection(threshold, None, indicator, blend, lens)
+        projection = _projection(threshold, None, indicator, blend, lens, error)
         return Surface._of(
             _nestgrid.height_field(self._source, scale, flatness, elements, projection, threads),
             self,
@@ -203,6 +207,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        error: float | None = None,
         threads: int = 0,
     ) -> np.ndarray:
         """The field at points, float64 of their shape without the last axis; nan outside.
@@ -216,7 +221,7 @@ class Field:
             raise InvalidInput(f"probe(): points have {width} coordinates, not {self.dimension}")
         at = np.zeros((*points.shape[:-1], 3))
         at[..., :width] = points
-        projection = _projection(threshold, None, indicator, blend, lens)
+        projection = _projection(threshold, None, indicator, blend, lens, error)
         return _nestgrid.probe(self._source, at, projection, threads).reshape(points.shape[:-1])
 
     def _size(self) -> str:
@@ -251,6 +256,11 @@ def _projection(
     indicator: Indicator,
     blend: float,
     lens: LensLike | None,
+    error: float | None,
 ) -> _nestgrid.Projection:
+    if error is not None:
+        if threshold is not None or max_triangles is not None or indicator != "offset":
+            raise InvalidInput("error is given alone: it is the threshold of the deviation")
+        threshold, indicator = error, "deviation"
     compiled = lens._lens if isinstance(lens, Lens) else None
     return _nestgrid.Projection(threshold, max_triangles, indicator, blend, compiled)

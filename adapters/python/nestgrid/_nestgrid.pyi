@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
-_Indicator = Literal["offset", "visual", "numerical", "wavelet", "geometry"]
+_Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
 
 class InvalidInput(ValueError):
     """An argument that cannot be worked with; the sentence says which, and why."""

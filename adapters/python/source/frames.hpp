@@ -48,15 +48,15 @@ private:
               own_(&hierarchy_) {}
 
         AnyHierarchy hierarchy() const override { return &hierarchy_; }
-        /// Offsets, bounds, the numerical and the wavelet indicator are sums of those of the
-        /// frames; others are made of this field.
+        /// Offsets, deviations, bounds, the numerical and the wavelet indicator are sums of those
+        /// of the frames; others are made of this field.
         ChosenIndicator choose(const std::string& name, double blend,
                                const Call& call) const override {
-            if (name == "offset") {
-                const auto offsets = key_frames(blend, call);
-                return {offsets, offsets, offsets.get()};
+            if (const auto error = node_error(name)) {
+                const auto numbers = key_frames(*error, blend, call);
+                return {numbers, numbers, numbers.get()};
             }
-            const auto bounds = key_frames(1, call);
+            const auto bounds = key_frames(NodeError::offset, 1, call);
             if (name == "numerical" || name == "wavelet") {
                 const auto swept = sum_of_frames<SweptKeyFrames>(
                     [&](Prerolls& frame) { return frame.swept(name, blend, call); });
@@ -68,15 +68,16 @@ private:
             return frames_->prerolls_.front()->sizes(slope, call);
         }
         std::array<double, 2> range(const Call& call) const override {
-            const auto offsets = key_frames(1, call);
+            const auto offsets = key_frames(NodeError::offset, 1, call);
             return {offsets->least(), offsets->greatest()};
         }
         void clear() override { own_.clear(); }
 
     private:
-        std::shared_ptr<const KeyFrames> key_frames(double blend, const Call& call) const {
+        std::shared_ptr<const KeyFrames> key_frames(NodeError error, double blend,
+                                                    const Call& call) const {
             return sum_of_frames<KeyFrames>(
-                [&](Prerolls& frame) { return frame.offsets(blend, call); });
+                [&](Prerolls& frame) { return frame.of_nodes(error, blend, call); });
         }
         /// An indicator that adds up those of the frames, with what it borrows.
         /// \param of gives the indicator of one frame, of its prerolls

@@ -31,7 +31,8 @@ SweptIndicator swept_indicator(const Hierarchy<Real>& hierarchy, const std::stri
     if (name == "wavelet") return wavelet_indicator(hierarchy, {.spread = spread});
     if (name != "geometry") {
         throw InvalidInput("the indicator '" + name +
-                           "' is none of offset, visual, numerical, wavelet and geometry");
+                           "' is none of offset, deviation, visual, numerical, wavelet and "
+                           "geometry");
     }
     if (!hierarchy.offers(Feature::new_positions)) {
         throw InvalidInput(
@@ -42,12 +43,13 @@ SweptIndicator swept_indicator(const Hierarchy<Real>& hierarchy, const std::stri
 
 }  // namespace
 
-std::shared_ptr<const HierarchicalIndicator> Prerolls::offsets(double blend, const Call& call) {
+std::shared_ptr<const HierarchicalIndicator> Prerolls::of_nodes(NodeError error, double blend,
+                                                                const Call& call) {
     const std::scoped_lock lock(mutex_);
-    return kept(offsets_, blend, [&] {
+    return kept(of_nodes_, {error, blend}, [&] {
         return call.with(hierarchy_, [&](const auto& hierarchy) {
-            return std::make_shared<const HierarchicalIndicator>(
-                hierarchy, LeafErrors{}, call.executor(), Spread{.factor = blend});
+            return std::make_shared<const HierarchicalIndicator>(hierarchy, error, call.executor(),
+                                                                 Spread{.factor = blend});
         });
     });
 }
@@ -76,7 +78,7 @@ std::shared_ptr<const SweptIndicator> Prerolls::sizes(double slope, const Call& 
 
 void Prerolls::clear() {
     const std::scoped_lock lock(mutex_);
-    offsets_.clear();
+    of_nodes_.clear();
     swept_.clear();
     sizes_.clear();
 }

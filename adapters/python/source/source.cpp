@@ -11,9 +11,9 @@ Prerolls& PrerolledSource::prerolls() const {
 
 ChosenIndicator PrerolledSource::choose(const std::string& name, double blend,
                                         const Call& call) const {
-    if (name == "offset") {
-        const auto offsets = prerolls().offsets(blend, call);
-        return {offsets, offsets, offsets.get()};
+    if (const auto error = node_error(name)) {
+        const auto numbers = prerolls().of_nodes(*error, blend, call);
+        return {numbers, numbers, numbers.get()};
     }
     const auto swept = prerolls().swept(name, blend, call);
     const auto bounds = prerolls().offsets(1, call);

@@ -212,6 +212,31 @@ def test_budgets_that_are_not_filled_say_why(gyroid):
     assert "share one indicator, and the next lesser threshold" in surface.budget_reason
 
 
+def test_an_error_that_is_asked_for_is_kept(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    before = len(volume.isosurface(0.5).triangles)
+    for error in (0.02, 0.1, 0.5):
+        surface = volume.isosurface(0.5, error=error)
+        assert 0 < surface.error_bound <= error
+        assert surface.report()["open_edges"] == 0
+        assert 0 < len(surface.triangles) < before
+        before = len(surface.triangles)
+        same = volume.isosurface(0.5, error, indicator="deviation")
+        assert np.array_equal(same.vertices, surface.vertices)
+        plane = ((16, 16, 16), (1, 2, 3))
+        assert volume.slice(plane=plane, error=error).error_bound <= error
+        exact = volume.slice(plane=plane)
+        projected = volume.probe(exact.vertices, error=error)
+        assert np.abs(projected - exact.attributes[:, 0]).max() <= error * (1 + 1e-6)
+    budget = volume.isosurface(0.5, max_triangles=5000, indicator="deviation")
+    assert budget.error_bound <= budget.threshold
+    for others in ({"threshold": 1}, {"max_triangles": 9}, {"indicator": "visual"}):
+        with refused("error is given alone"):
+            volume.isosurface(0.5, error=0.1, **others)
+    with refused("error"):
+        volume.isosurface(0.5, error=-1)
+
+
 def test_two_threads_at_once(gyroid):
     expected = [nestgrid.Volume(gyroid).isosurface(0.1 * i, 0.1, threads=1) for i in range(8)]
     volume = nestgrid.Volume(gyroid)
