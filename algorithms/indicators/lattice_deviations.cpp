@@ -91,10 +91,9 @@ std::vector<Real> values_by_key(const Hierarchy<Real>& hierarchy) {
 }
 
 /// Raises a number that several threads may raise.
-void raise(std::uint16_t& number, std::uint16_t to) {
-    const std::atomic_ref<std::uint16_t> at(number);
-    std::uint16_t now = at.load(std::memory_order_relaxed);
-    while (now < to && !at.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
+void raise(std::atomic<std::uint16_t>& number, std::uint16_t to) {
+    std::uint16_t now = number.load(std::memory_order_relaxed);
+    while (now < to && !number.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
     }
 }
 
@@ -106,7 +105,7 @@ template <class Real>
 class DeviationWalk {
 public:
     DeviationWalk(std::span<const Rule* const> rules, std::span<const Real> values,
-                  std::span<std::uint16_t> deviations)
+                  std::span<std::atomic<std::uint16_t>> deviations)
         : rules_{rules},
           values_{values},
           deviations_{deviations},
@@ -175,7 +174,7 @@ private:
 
     std::span<const Rule* const> rules_;
     std::span<const Real> values_;
-    std::span<std::uint16_t> deviations_;
+    std::span<std::atomic<std::uint16_t>> deviations_;
     std::size_t columns_;
     std::vector<double> rows_;      // of the corners of the coarse element, then by level
     std::vector<double> greatest_;  // by level: the deviation of the element that the walk is in
@@ -194,7 +193,7 @@ void sweep_lattice_deviations(const Hierarchy<Real>& hierarchy, const Spread& sp
                               detail::IndicatorEntries& entries, const Executor& executor) {
     const std::vector<const Rule*> rules = rules_by_level(hierarchy);
     const std::vector<Real> values = values_by_key(hierarchy);
-    std::vector<std::uint16_t> deviations(values.size(), 0);
+    std::vector<std::atomic<std::uint16_t>> deviations(values.size());
     if (!rules.empty()) {
         const std::size_t coarse = hierarchy.coarse_count();
         const std::size_t tasks = std::min(coarse, 16 * executor.concurrency());
@@ -217,7 +216,7 @@ void sweep_lattice_deviations(const Hierarchy<Real>& hierarchy, const Spread& sp
             },
             [](std::size_t) {});
     }
-    std::vector<std::uint16_t> stops = deviations;
+    std::vector<std::uint16_t> stops(deviations.begin(), deviations.end());
     for (std::size_t node = 0; node < stops.size(); ++node) {
         if (entries.dense[node].stop == bfloat16_infinity) stops[node] = bfloat16_infinity;
     }

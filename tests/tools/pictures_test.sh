@@ -30,7 +30,7 @@ for range in 1,0 1,1 1 nan,1 0,1,2 ''; do
     refused 1 'is no range' "${slice[@]}" --image p.png --range "$range"
 done
 refused 1 'scale-bar has no length in --perspective' "${slice[@]}" --image p.png --scale-bar mm --perspective
-refused 1 'no name of a .png picture' "${slice[@]}" --image p.vtp
+refused 1 'names no known format, which is .png' "${slice[@]}" --image p.vtp
 
 command -v Xvfb >/dev/null || exit $((failures > 0))
 
@@ -44,8 +44,8 @@ plain() {
     run "$@" "${options[@]}"
     mv p.png plain.png
 }
-common=("--background #203040" "--background transparent" "--view top" "--view 10,70" "--view 0,0,200,5,12,17"
-    "--perspective --view 30,30" "--opacity 0.4" "--title word" --axes "--scale-bar mm" --orientation --detail "--size 300x200")
+common=("--background #203040" "--background transparent" "--view right" "--view 10,70" "--view 0,0,200,5,12,17"
+    "--perspective --view 30,30" "--opacity 0.4" "--title word" --axes "--scale-bar mm" --orientation --detail)
 coloured=("--colours magma" "--colours viridis_r" "--range 0,300")
 for command in surface slice; do
     declare -n arguments=$command
@@ -60,6 +60,8 @@ for option in "${coloured[@]}"; do
     differs "${slice[@]}" $option
 done
 differs "${slice[@]}" --outlines
+run "${slice[@]}" --image p.png --size 300x200
+cmp -s p.png plain.png && fail "--size: no effect"
 differs "${slice[@]}" --with-isosurface 130
 differs "${slice[@]}" --threshold 30
 
