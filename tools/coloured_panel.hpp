@@ -18,7 +18,7 @@
 
 /// One surface and what it cost.
 struct Drawn {
-    std::optional<double> time;  ///< where it is between frames
+    std::optional<double> time;       ///< where it is between frames
     nestgrid::TriangleBudget search;  ///< of the threshold; max_triangles is 0 where none was
     double threshold = 0;
     nestgrid::Slice slice;  ///< or an isosurface without one

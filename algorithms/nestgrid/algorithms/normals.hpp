@@ -17,8 +17,8 @@ namespace nestgrid {
 /// towards the mean of these triangles, weighted by area, until it agrees (to half the least cosine
 /// of the mean, where that is less than 0.4); one that is more than 60 degrees away from the mean
 /// becomes the mean. Where the mean itself is behind a triangle, the direction whose least cosine
-/// with the triangles is greatest takes its place. Where even that cosine is not above 0, the fan is
-/// folded over itself: the normal is then behind some of its triangles. Triangles so flat that
+/// with the triangles is greatest takes its place. Where even that cosine is not above 0, the fan
+/// is folded over itself: the normal is then behind some of its triangles. Triangles so flat that
 /// rounding decides about their direction do not count.
 ///
 /// Surfaces that isosurface() and its relatives draw with normals have settled ones.
