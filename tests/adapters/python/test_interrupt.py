@@ -180,7 +180,7 @@ except KeyboardInterrupt:
 def test_same_result_afterwards(volume):
     interrupted(lambda: volume.isosurface(0.5))
     gc.collect()
-    region = {"lens": ((0, 0, 0), 20), "threshold": 0.2}
+    region = {"lens": ((0, 0, 0), 20)}
     first = volume.isosurface(0.5, **region)
     again = nestgrid.Volume(volume.array).isosurface(0.5, **region)
     np.testing.assert_array_equal(first.vertices, again.vertices)
