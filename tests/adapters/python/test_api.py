@@ -61,7 +61,7 @@ def test_wrong_arguments():
         volume.isosurface(np.nan)
     with refused("threshold is not a number >= 0"):
         volume.isosurface(3, threshold=-1)
-    with refused("is none of offset, visual"):
+    with refused("is none of offset, deviation, visual"):
         volume.isosurface(3, indicator="ofset")
     with refused("for curved grids"):
         volume.isosurface(3, indicator="geometry")
