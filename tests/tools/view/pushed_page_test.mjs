@@ -10,7 +10,7 @@ import { addressOf, check, finish, pushedFrame } from './checks.mjs';
 import { Browser, count } from './chromium.mjs';
 
 const [program, browserPath, folder] = process.argv.slice(2);
-const steps = 150;
+const steps = 300;  // ten a second: a slow browser turns the first before the last has come
 const start = (last) => spawn(program, [`${last}`], { stdio: ['pipe', 'pipe', 'inherit'] });
 
 const browser = await Browser.open(browserPath, resolve(folder));
