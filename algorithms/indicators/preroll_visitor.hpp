@@ -143,7 +143,7 @@ private:
     Receiver* receiver_;
     PathDeviations<Real> deviations_;
     std::function<void(const Deviation&)> left_ = [this](const Deviation& d) {
-        if constexpr (requires { receiver_->deviation(d); }) receiver_->deviation(d);
+        receiver_->deviation(d);
     };
     const ElementTest<Real>* enters_ = nullptr;
     detail::PrerollFacts facts_;

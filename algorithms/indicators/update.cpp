@@ -130,6 +130,7 @@ public:
         raise_clean(corners);
         sweeps_->leaf(corners, error);
     }
+    void deviation(const Deviation&) {}  // those are made anew
 
 private:
     void raise_clean(std::span<const NodeKey> nodes) {
