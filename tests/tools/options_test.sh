@@ -126,6 +126,9 @@ for command in isosurface slice isolines boundary probe info; do
     echo "$command --time" >>covered
 done
 
+void info 'chooses nothing' two.nestgrid --array x
+refused 1 'no point data array' info v.vti --array none && echo "info --array" >>covered
+
 # What is drawn.
 for command in isosurface slice isolines boundary; do
     effect $command "$raw ${base[$command]}" --max-triangles 3000
