@@ -10,6 +10,7 @@
 #include <nestgrid/error.hpp>
 
 #include "input_file.hpp"
+#include "number_list.hpp"
 #include "solid.hpp"
 
 namespace {
@@ -27,19 +28,10 @@ constexpr const char* known =
 }
 
 /// \throw nestgrid::InvalidInput unless there are so many finite numbers between commas
-std::vector<double> numbers_of(const std::string& text, const std::string& list,
-                               std::size_t count) {
-    std::vector<double> numbers;
-    const char* at = list.c_str();
-    while (numbers.size() < count) {
-        char* end = nullptr;
-        numbers.push_back(std::strtod(at, &end));
-        const bool last = numbers.size() == count;
-        if (end == at || !std::isfinite(numbers.back()) || *end != (last ? '\0' : ',')) {
-            refuse(text);
-        }
-        at = end + 1;
-    }
+std::vector<double> lens_numbers(const std::string& text, const std::string& list,
+                                 std::size_t count) {
+    std::vector<double> numbers = numbers_of(list);
+    if (numbers.size() != count) refuse(text);
     return numbers;
 }
 
@@ -89,12 +81,12 @@ Distance domain_of(const std::string& text) {
     const std::string kind = text.substr(0, colon);
     const std::string list = text.substr(colon + 1);
     if (kind == "ball") {
-        const auto n = numbers_of(text, list, 4);
+        const auto n = lens_numbers(text, list, 4);
         if (n[3] < 0) throw nestgrid::InvalidInput("the radius of '" + text + "' is negative");
         return nestgrid::Ball{point_at(n, 0), n[3]};
     }
     if (kind == "box") {
-        const auto n = numbers_of(text, list, 6);
+        const auto n = lens_numbers(text, list, 6);
         if (!(n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5])) {
             throw nestgrid::InvalidInput("'" + text +
                                          "' is empty: bounds are x,x,y,y,z,z in ascending order");
@@ -102,15 +94,15 @@ Distance domain_of(const std::string& text) {
         return nestgrid::Box{{n[0], n[2], n[4]}, {n[1], n[3], n[5]}};
     }
     if (kind == "halfspace") {
-        const auto n = numbers_of(text, list, 6);
+        const auto n = lens_numbers(text, list, 6);
         return nestgrid::HalfSpace(point_at(n, 0), point_at(n, 3));
     }
     if (kind == "cone") {
-        const auto n = numbers_of(text, list, 7);
+        const auto n = lens_numbers(text, list, 7);
         return nestgrid::Cone(point_at(n, 0), point_at(n, 3), n[6] * std::numbers::pi / 180);
     }
     if (kind == "frustum") {
-        const auto n = numbers_of(text, list, 13);
+        const auto n = lens_numbers(text, list, 13);
         const nestgrid::PerspectiveCamera camera{.eye = point_at(n, 0),
                                                  .towards = point_at(n, 3),
                                                  .up = point_at(n, 6),

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <set>
 #include <vector>
 
+#include <indicators/rules_by_level.hpp>
 #include <indicators/split_kinds.hpp>
 #include <indicators/star_sweep.hpp>
 #include <walk/walk.hpp>
@@ -17,64 +17,9 @@ namespace nestgrid::engine {
 namespace {
 
 constexpr std::size_t most_corners = 4;  // of a simplex
-constexpr std::size_t most_levels = 96;
 
 /// The mean of two keys whose sum is even.
 NodeKey middle_key(NodeKey a, NodeKey b) { return (a & b) + ((a ^ b) >> 1U); }
-
-/// Looks at one split of each kind, as SplitKinds does.
-template <class Real>
-class KeyCheck final : private Visitor<Real> {
-public:
-    explicit KeyCheck(const Hierarchy<Real>& hierarchy)
-        : walk_(hierarchy, {.values = false, .keys = true}) {
-        walk_.run(*this);
-    }
-    bool holds() const { return holds_; }
-
-private:
-    bool sees_hidden() const override { return true; }
-    Decision inspect(const ElementView<Real>& view, const Split& split) override {
-        if (split.rule == nullptr || !holds_) return {Visit::skip};
-        const Rule& rule = *split.rule;
-        const std::size_t corners = view.corner_count();
-        holds_ = view.level < static_cast<int>(most_levels) &&
-                 corners == view.topology().dimension + 1U && rule.new_nodes.size() == 1 &&
-                 rule.new_nodes[0].mean == Mean::midpoint && rule.children.size() == 2;
-        if (!holds_) return {Visit::skip};
-        SplitKeys room;
-        const auto keys = walk_.split_keys(view, split, room);
-        const NodeKey a = keys[rule.new_nodes[0].parent[0]];
-        const NodeKey b = keys[rule.new_nodes[0].parent[1]];
-        holds_ = ((a ^ b) & 1U) == 0 && keys[corners] == middle_key(a, b);
-        KeyOffsets kind{view.level};
-        for (const NodeKey key : keys) kind.push_back(key_offset(keys[0], key));
-        return {kinds_.insert(std::move(kind)).second ? Visit::descend : Visit::skip};
-    }
-    void extract(const ElementView<Real>&) override {}
-
-    Walk<Real> walk_;
-    std::set<KeyOffsets> kinds_;  // the level, and offsets of all nodes of a split from its first
-    bool holds_ = true;
-};
-
-/// The rules by which the elements of each level are split, coarse ones first.
-template <class Real>
-std::vector<const Rule*> rules_by_level(const Hierarchy<Real>& hierarchy) {
-    std::vector<const Rule*> rules;
-    const std::unique_ptr<Task> task = hierarchy.open();
-    Coarse coarse;
-    std::array<Family, 2> families;
-    hierarchy.coarse(task.get(), 0, coarse, families[0]);
-    for (;;) {
-        const Member& element = families[rules.size() % 2].members[0];
-        if (element.rule == nullptr) return rules;
-        rules.push_back(element.rule);
-        constexpr NodeMask first_child = 1;
-        hierarchy.enter(task.get(), element.element, *element.rule, 0, nullptr, first_child,
-                        families[rules.size() % 2]);
-    }
-}
 
 /// The values at all nodes, by key.
 template <class Real>
@@ -185,7 +130,22 @@ private:
 template <class Real>
 bool bisects_by_keys(const Hierarchy<Real>& hierarchy) {
     const HierarchyFacts& facts = hierarchy.facts();
-    return facts.knows_stars && facts.knows_star_positions && KeyCheck<Real>(hierarchy).holds();
+    if (!facts.knows_stars || !facts.knows_star_positions) return false;
+    bool holds = true;
+    const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
+    for_each_split_kind(walk, [&](const ElementView<Real>& view, const Split& split,
+                                  std::span<const NodeKey> keys) {
+        const Rule& rule = *split.rule;
+        const std::size_t corners = view.corner_count();
+        const Stencil& made = rule.new_nodes[0];
+        holds = holds && corners == view.topology().dimension + 1U && rule.new_nodes.size() == 1 &&
+                made.mean == Mean::midpoint;
+        if (!holds) return;
+        const NodeKey a = keys[made.parent[0]];
+        const NodeKey b = keys[made.parent[1]];
+        holds = ((a ^ b) & 1U) == 0 && keys[corners] == middle_key(a, b);
+    });
+    return holds;
 }
 
 template <class Real>
@@ -217,9 +177,6 @@ void sweep_lattice_deviations(const Hierarchy<Real>& hierarchy, const Spread& sp
             [](std::size_t) {});
     }
     std::vector<std::uint16_t> stops(deviations.begin(), deviations.end());
-    for (std::size_t node = 0; node < stops.size(); ++node) {
-        if (entries.dense[node].stop == bfloat16_infinity) stops[node] = bfloat16_infinity;
-    }
     sweep_rows(hierarchy, spread, stops);
     for (std::size_t node = 0; node < stops.size(); ++node) {
         entries.dense[node] = {stops[node], deviations[node]};

@@ -17,8 +17,7 @@ namespace nestgrid::engine {
 template <class Real>
 bool bisects_by_keys(const Hierarchy<Real>& hierarchy);
 
-/// Raises the entries to deviations, and saturates `stop`. Requires bisects_by_keys().
-/// \param entries as sweep_stars() makes them; their infinite stops stay
+/// Fills the dense entries, which have room. Requires bisects_by_keys().
 template <class Real>
 void sweep_lattice_deviations(const Hierarchy<Real>& hierarchy, const Spread& spread,
                               detail::IndicatorEntries& entries, const Executor& executor);

@@ -27,7 +27,7 @@ public:
 template <class Real>
 SweptIndicator sweep_diameters_of_rows(const Hierarchy<Real>& hierarchy, const Spread& spread) {
     engine::require_spread(spread);
-    const engine::SplitKinds<Real> kinds(hierarchy);
+    const engine::SplitKinds kinds(hierarchy);
     std::vector<std::uint16_t> sizes(hierarchy.facts().node_count, 0);
     hierarchy.star_rows([&](const StarRow& row) {
         if (row.gathers) return;

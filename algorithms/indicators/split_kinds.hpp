@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kinds of splits of a grid that knows its stars (StarRow): one split of a kind stands for all.
+// Two splits are of one kind where a translation maps one to the other.
 #pragma once
 
 #include <algorithm>
@@ -25,17 +26,52 @@ inline KeyOffset key_offset(NodeKey from, NodeKey to) {
     return static_cast<KeyOffset>(to) - static_cast<KeyOffset>(from);
 }
 
-/// Walks a hierarchy down to one split of each kind, and keeps diameters and distances of these.
-/// Two splits are of one kind where a translation maps one to the other.
-template <class Real>
-class SplitKinds final : private Visitor<Real> {
+/// Walks down where splits are of a new kind.
+template <class Real, class Function>
+class SplitKindVisitor final : public Visitor<Real> {
 public:
-    explicit SplitKinds(const Hierarchy<Real>& hierarchy)
-        : walk_(hierarchy, {.values = false, .keys = true, .positions = true}) {
-        walk_.run(*this);
+    SplitKindVisitor(const Walk<Real>& walk, const Function& function)
+        : walk_{&walk}, function_{&function} {}
+
+    bool sees_hidden() const override { return true; }
+    Decision inspect(const ElementView<Real>& view, const Split& split) override {
+        if (split.rule == nullptr) return {Visit::skip};
+        SplitKeys of_split;
+        const auto keys = walk_->split_keys(view, split, of_split);
+        KeyOffsets kind;
+        for (const NodeKey key : keys) kind.push_back(key_offset(keys[0], key));
+        if (!kinds_.insert(std::move(kind)).second) return {Visit::skip};
+        (*function_)(view, split, keys);
+        return {Visit::descend};
     }
-    SplitKinds(const SplitKinds&) = delete;
-    SplitKinds& operator=(const SplitKinds&) = delete;
+    void extract(const ElementView<Real>&) override {}
+
+private:
+    const Walk<Real>* walk_;
+    const Function* function_;
+    std::set<KeyOffsets> kinds_;  // offsets of all nodes of a split from its first one
+};
+
+/// Calls function(view, split, keys of the corners and new nodes) for one split of each kind.
+/// \param walk must carry keys
+template <class Real, class Function>
+void for_each_split_kind(const Walk<Real>& walk, const Function& function) {
+    SplitKindVisitor<Real, Function> visitor(walk, function);
+    walk.run(visitor);
+}
+
+/// The diameters and distances of one split of each kind.
+class SplitKinds {
+public:
+    template <class Real>
+    explicit SplitKinds(const Hierarchy<Real>& hierarchy) {
+        const Walk<Real> walk(hierarchy, {.values = false, .keys = true, .positions = true});
+        for_each_split_kind(walk, [&](const ElementView<Real>& view, const Split& split,
+                                      std::span<const NodeKey> keys) {
+            SplitPositions positions;
+            add(*split.rule, keys, walk.split_positions(view, split, positions));
+        });
+    }
 
     /// The greatest diameter of the elements that make a node with these parents; 0 for a node of
     /// the coarse grid.
@@ -53,25 +89,16 @@ public:
 
 private:
     template <class Map>
-    static auto found(const Map& map, const typename Map::key_type& key) {
+    static typename Map::mapped_type found(const Map& map, const typename Map::key_type& key) {
         const auto at = map.find(key);
         if (at != map.end()) return at->second;
         throw GridError("a star row of the grid has a node that no split makes");
     }
 
-    bool sees_hidden() const override { return true; }
-    /// Goes down where a split is of a new kind.
-    Decision inspect(const ElementView<Real>& view, const Split& split) override {
-        if (split.rule == nullptr) return {Visit::skip};
-        SplitKeys of_split;
-        SplitPositions positions;
-        const Rule& rule = *split.rule;
-        const std::size_t corners = view.corner_count();
-        const auto keys = walk_.split_keys(view, split, of_split);
-        KeyOffsets kind;
-        for (const NodeKey key : keys) kind.push_back(key_offset(keys[0], key));
-        if (!kinds_.insert(std::move(kind)).second) return {Visit::skip};
-        const auto x = walk_.split_positions(view, split, positions);
+    /// \param keys of the corners and, behind them, of the new nodes
+    /// \param x their positions
+    void add(const Rule& rule, std::span<const NodeKey> keys, std::span<const Point> x) {
+        const auto corners = static_cast<std::size_t>(rule.corner_count());
         const double of_element = diameter_of(x.first(corners));
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             const NodeKey made = keys[corners + n];
@@ -85,9 +112,7 @@ private:
                 reach = std::max(reach, distance);
             }
         }
-        return {Visit::descend};
     }
-    void extract(const ElementView<Real>&) override {}
 
     static KeyOffsets parents(const Stencil& stencil, std::span<const NodeKey> keys, NodeKey made) {
         KeyOffsets offsets;
@@ -98,8 +123,6 @@ private:
         return offsets;
     }
 
-    Walk<Real> walk_;
-    std::set<KeyOffsets> kinds_;             // offsets of all nodes of a split from its first one
     std::map<KeyOffsets, double> diameter_;  // by the offsets of parents from their node
     std::map<KeyOffset, float> reach_;       // by the offset of a new node from a corner
 };

@@ -74,7 +74,7 @@ private:
         return greatest;
     }
 
-    std::optional<SplitKinds<Real>> kinds_;  // where distances count
+    std::optional<SplitKinds> kinds_;  // where distances count
     Spread spread_;
     Etas* etas_;
     Etas gathered_;  // of nodes that stand for all new nodes of their element

@@ -10,6 +10,7 @@
 #include <indicators/offset.hpp>
 #include <indicators/packed_entries.hpp>
 #include <indicators/packed_round_up.hpp>
+#include <indicators/rules_by_level.hpp>
 #include <nestgrid/detail/mean.hpp>
 
 namespace nestgrid::engine {
@@ -149,21 +150,11 @@ private:
 /// Adds the rules of one element of each level, because all elements of a level are split alike.
 template <class Real>
 void add_splits(const Hierarchy<Real>& hierarchy, detail::PrerollFacts& facts) {
-    const std::unique_ptr<Task> task = hierarchy.open();
-    Coarse coarse;
-    std::array<Family, 2> families;
-    hierarchy.coarse(task.get(), 0, coarse, families[0]);
-    constexpr NodeMask first_child = 1;
-    for (std::size_t level = 0;; ++level) {
-        const Member& element = families[level % 2].members[0];
-        if (element.rule == nullptr) return;
-        const Rule& rule = *element.rule;
-        facts.largest_split = std::max(facts.largest_split, rule.new_nodes.size());
-        facts.all_divided = facts.all_divided && rule.divides_all;
-        facts.longest_chain = std::max(facts.longest_chain, rule.steps);
+    for (const Rule* rule : rules_by_level(hierarchy)) {
+        facts.largest_split = std::max(facts.largest_split, rule->new_nodes.size());
+        facts.all_divided = facts.all_divided && rule->divides_all;
+        facts.longest_chain = std::max(facts.longest_chain, rule->steps);
         ++facts.finest_level;
-        hierarchy.enter(task.get(), element.element, rule, 0, nullptr, first_child,
-                        families[(level + 1) % 2]);
     }
 }
 
