@@ -42,12 +42,10 @@ vtkSmartPointer<vtkImageData> render(vtkRenderer* renderer, double width, double
     return pixels;
 }
 
-}  // namespace
-
-void draw_picture(const std::vector<Panel>& panels, const PictureStyle& style,
-                  const fs::path& path) {
+/// Draws a picture into a file. Needs a display.
+void draw(const std::vector<Panel>& panels, const PictureStyle& style, const Layout& layout,
+          const fs::path& path) {
     constexpr std::int64_t most_pixels = 16 << 20;
-    const Layout layout = make_layout(panels, style);
     // Edges are smooth because each pixel is the mean of several; a huge picture has none to spare.
     const int factor = std::int64_t{layout.width} * layout.height > most_pixels ? 1 : 2;
     Canvas canvas(layout.width, layout.height, style.background);
@@ -69,14 +67,17 @@ void draw_picture(const std::vector<Panel>& panels, const PictureStyle& style,
     canvas.write(path);
 }
 
+}  // namespace
+
 void write_picture(const std::vector<Panel>& panels, const PictureStyle& style,
                    const fs::path& path) {
-    make_layout(panels, style);  // refuses what does not fit, here and not in the other process
+    // Refuses what does not fit, here and not in the other process.
+    const Layout layout = make_layout(panels, style);
     const fs::path temporary = temporary_beside(path);
     std::error_code error;
     try {
         run_with_display([&] {
-            draw_picture(panels, style, temporary);
+            draw(panels, style, layout, temporary);
             return fs::exists(temporary) && fs::file_size(temporary) > 0;
         });
     } catch (const nestgrid::IoError&) {

@@ -64,11 +64,6 @@ struct PictureStyle {
     bool detail = false;  ///< each panel again below, magnified and with its triangles
 };
 
-/// Draws a picture. Needs a display.
-/// \param path where it is written
-void draw_picture(const std::vector<Panel>& panels, const PictureStyle& style,
-                  const std::filesystem::path& path);
-
 /// Draws a picture in a process of its own (virtual_display.hpp). The file appears complete, by
 /// rename, or not at all.
 /// \throw nestgrid::IoError
