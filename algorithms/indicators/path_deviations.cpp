@@ -125,8 +125,8 @@ void PathDeviations<Real>::take_new_nodes(const Real* value, Level& at) {
     }
 }
 
-/// Where a split makes one node, S drops it and all below, or nothing at the corners of children.
-/// Else a child may stop with corners that were dropped, while another new node was kept.
+/// Where a split makes several nodes, S may keep some of them and drop others: then a child may
+/// stop at once, with dropped corners, whose offsets add to its own deviation.
 template <class Real>
 double PathDeviations<Real>::stop_of(const Level& at, double deviation) {
     if (at.rule->new_nodes.size() == 1) return deviation;

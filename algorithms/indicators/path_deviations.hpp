@@ -18,7 +18,7 @@
 
 namespace nestgrid::engine {
 
-/// What an element that is left hands to the new nodes of its split.
+/// The deviation of an element, which the new nodes of its split take.
 struct Deviation {
     std::span<const NodeKey> made;  ///< keys of the new nodes
     double deviation;  ///< |U - I U| is at most this in the element, where I U interpolates there

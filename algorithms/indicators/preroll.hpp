@@ -9,7 +9,7 @@
 
 namespace nestgrid::engine {
 
-/// What a preroll looks at beside values.
+/// What a preroll computes beside offsets.
 struct PrerollRequest {
     const LeafErrors* leaf_errors;  ///< empty where leaves have none
     bool measures = false;          ///< distances count; the walk must carry positions then

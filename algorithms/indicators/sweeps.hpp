@@ -26,7 +26,7 @@ struct MetSplit {
     std::span<const NodeKey> keys;  ///< of the corners and the new nodes behind them
 };
 
-/// What the numbers of nodes are made of.
+/// From what Sweeps computes stop and bound of nodes.
 enum class MadeOf : std::uint8_t {
     offsets,      ///< both numbers
     leaf_errors,  ///< `stop`; bounds of offsets
@@ -50,7 +50,7 @@ public:
     void split(const MetSplit& s, Offset&& offset);
     /// A leaf and its error, or a coarse leaf and 0.
     void leaf(std::span<const NodeKey> corners, float error);
-    /// What is known of the deviation of an element.
+    /// Raises the new nodes of an element to its deviation.
     void deviation(const Deviation& d);
     /// A node whose numbers are known to be at least these.
     void raise(NodeKey node, const detail::IndicatorEntry& known);

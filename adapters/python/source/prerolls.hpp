@@ -17,7 +17,8 @@
 
 namespace nestgrid::python {
 
-/// What numbers an indicator of this name has, where these give bounds, too; else nothing.
+/// What a HierarchicalIndicator measures under this name; nothing for the name of another
+/// indicator.
 inline std::optional<NodeError> node_error(const std::string& name) {
     if (name == "offset") return NodeError::offset;
     if (name == "deviation") return NodeError::deviation;

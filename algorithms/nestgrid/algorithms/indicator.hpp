@@ -82,7 +82,7 @@ protected:
     Bounds& operator=(Bounds&&) noexcept = default;
 };
 
-/// What the numbers of a node are made of.
+/// What a HierarchicalIndicator measures.
 enum class NodeError : std::uint8_t {
     offset,     ///< |U - sum omega U| at nodes: the preroll is cheapest
     deviation,  ///< |U - I U| on elements: the threshold is what U and P_S U differ by at most

@@ -8,8 +8,9 @@
 // are bfloat16, so that the elements that stop change at these thresholds only.
 // Promise: the threshold that is found keeps within the number, and it is 0, or the bfloat16 number
 // below it (less by 1/256 to 1/128 of it) does not.
-// Where many elements have one indicator, much less than the number may be left: end() and reason()
-// say so, and what the next threshold would give.
+// Where many elements have the same indicator, they go on at one threshold, and the surface above it
+// may have far fewer triangles than asked for: end() and reason() say so, and what the next threshold
+// would give.
 // Not promised: that no lesser threshold keeps within the number. Triangles get fewer as the
 // threshold grows, but not at each step: a coarser element may cut a fold that finer ones miss.
 // Under criteria that blend, and between frames, vertices also move between bfloat16 numbers, and
