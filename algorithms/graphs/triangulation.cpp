@@ -15,7 +15,7 @@ Triangulation<Real>::Triangulation(const Graph<Real>& graph, const SurfaceBuilde
       polygon_{*graph.walk, graph.shape},
       drawn_{{builder, graph.walk->hierarchy().facts().node_count}} {
     drawn_.nodes.begin(graph.walk->components());
-    drawn_.surface.begin(builder, nullptr, false);
+    drawn_.surface.begin(builder, {}, false);
 }
 
 template <class Real>

@@ -220,7 +220,11 @@ auto ElementContour<dimension, Real>::vertex(std::uint8_t edge) -> Number {
         const Topology& t = cuts_->view().topology();
         const auto& [a, b] = t.edge[edge];
         const auto& u = cuts_->u();
-        const double fraction = std::clamp(u[a] / (u[a] - u[b]), 0.0, 1.0);
+        double fraction = std::clamp(u[a] / (u[a] - u[b]), 0.0, 1.0);
+        if (cuts_->cuts_finest()) {
+            const double from_lower = cuts_->cut(edge).fraction;
+            fraction = u[a] < u[b] ? from_lower : 1 - from_lower;
+        }
         reference = t.reference[a] + fraction * (t.reference[b] - t.reference[a]);
     }
     const Number v = surface_->vertex_between(cuts_->name(edge), [&] { return cuts_->cut(edge); });

@@ -25,6 +25,7 @@ SurfaceCut ElementCuts<Real>::cut(std::uint8_t edge) const {
     const std::size_t component = level_->component;
     const std::size_t low = value(0, component) >= level_->value ? 1 : 0;
     const std::size_t high = 1 - low;
+    if (maximal == nullptr && cuts_finest()) return finest_cut(corner[low], corner[high]);
     SurfaceCut cut;
     cut.node = {key(low), key(high)};
     cut.fraction = level_->fraction(value(low, component), value(high, component));
@@ -37,6 +38,31 @@ SurfaceCut ElementCuts<Real>::cut(std::uint8_t edge) const {
     return cut;
 }
 
+/// The cut of the edge between two corners on its finest piece.
+template <class Real>
+SurfaceCut ElementCuts<Real>::finest_cut(std::size_t low, std::size_t high) const {
+    const auto& [from, to] = finest_.find(*view_, low, high, *level_);
+    const auto value = [](const auto& end, std::size_t component) {
+        return static_cast<double>(end.value[component]);
+    };
+    const std::size_t component = level_->component;
+    const double fraction = level_->fraction(value(from, component), value(to, component));
+    SurfaceCut cut;
+    cut.node = {key_[low], key_[high]};
+    cut.fraction = from.along + fraction * (to.along - from.along);
+    cut.x = from.x + fraction * (to.x - from.x);
+    for (std::size_t i = 0; i < attributes_.size(); ++i) {
+        const double a = value(from, first_attribute_ + i);
+        attributes_[i] = a + fraction * (value(to, first_attribute_ + i) - a);
+    }
+    cut.attributes = attributes_;
+    if (to.along - from.along < 1) {
+        const double drawn = u_[low] + cut.fraction * (u_[high] - u_[low]);
+        off_level_ = std::max(off_level_, std::abs(drawn));
+    }
+    return cut;
+}
+
 template <class Real>
 void ElementCuts<Real>::positions_of(std::span<const std::uint8_t> edges, unsigned inside,
                                      Point* out) const {
@@ -46,7 +72,8 @@ void ElementCuts<Real>::positions_of(std::span<const std::uint8_t> edges, unsign
             *out++ = cut(edge).x;
         } else {
             const auto [low, high] = ends(edge, inside);
-            *out++ = between(low, high, fraction_between(low, high));
+            *out++ = cuts_finest() ? finest_cut(low, high).x
+                                   : between(low, high, fraction_between(low, high));
         }
     }
 }

@@ -6,6 +6,7 @@
 
 #include <contours/cell_contour.hpp>
 #include <contours/level.hpp>
+#include <levels/finest_piece.hpp>
 #include <nestgrid/detail/geometry.hpp>
 #include <nestgrid/detail/key_table.hpp>
 #include <surfaces/surface_builder.hpp>
@@ -26,6 +27,7 @@ public:
         : walk_{&walk},
           components_{walk.components()},
           first_attribute_{first_attribute},
+          finest_{walk},
           attributes_(components_ - first_attribute) {}
 
     /// Loads positions, and keys where asked for, of the corners of an element.
@@ -33,9 +35,12 @@ public:
         view_ = &view;
         walk_->corners(view, keys ? key_.data() : nullptr, x_.data());
     }
+    /// Chooses whether edges are cut on their finest pieces (finest_piece.hpp).
+    void set_finest(bool finest) { cuts_finest_ = finest; }
     /// Sets the level that cuts the loaded element.
     void set_level(const Level<Real>& level) {
         level_ = &level;
+        off_level_ = 0;
         const Real* const value = view_->value + level.component;
         for (std::size_t i = 0; i < view_->corner_count(); ++i) {
             u_[i] = static_cast<double>(value[i * components_]) - level.value;
@@ -69,12 +74,17 @@ public:
         const auto& [a, b] = view_->topology().edge[edge];
         return {key_[a], key_[b]};
     }
+    /// Whether edges of the element that no maximal edge contains are cut on finest pieces.
+    bool cuts_finest() const { return cuts_finest_ && !view_->is_leaf(); }
+    /// How far P_S U was from the level at the cuts so far, at most.
+    double off_level() const { return off_level_; }
     /// The cut of an edge.
     SurfaceCut cut(std::uint8_t edge) const;
     /// The cut of an edge that no maximal edge contains, without attributes.
     /// \param inside the corners inside the level, one bit each
     NESTGRID_INLINE SurfaceCut plain_cut(std::uint8_t edge, unsigned inside) const {
         const auto [low, high] = ends(edge, inside);
+        if (cuts_finest()) return finest_cut(low, high);
         const double fraction = fraction_between(low, high);
         return {between(low, high, fraction), {key_[low], key_[high]}, fraction, {}};
     }
@@ -121,9 +131,14 @@ private:
         return x_[low] + fraction * (x_[high] - x_[low]);
     }
 
+    SurfaceCut finest_cut(std::size_t low, std::size_t high) const;
+
     const Walk<Real>* walk_;
     std::size_t components_;
     std::size_t first_attribute_;
+    mutable FinestPiece<Real> finest_;
+    bool cuts_finest_ = false;
+    mutable double off_level_ = 0;
     const View* view_ = nullptr;
     const Level<Real>* level_ = nullptr;
     std::array<NodeKey, max_corners> key_{};

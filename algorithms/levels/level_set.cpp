@@ -51,21 +51,23 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     counts_of_first_walk_ = {};
     tally_ = SimplexTally();
     deepest_ = 0;
-    normals_.begin(false);
-    NodeGradients* const gradients = options_->normals ? &normals_.sums() : nullptr;
-    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        surfaces_[i].begin(builders[i], gradients, options_->verify);
-        transitions_[i].record.clear();
-        transitions_[i].drawn_below = &transitions_[i].record;
-    }
     const bool records = dimension == 3 && search.may_stop_apart();
     walks_.begin(records ? Pass::record : Pass::only,
                  records ? search.bounds().finest_level() : -1);
     at_hand_.plainly = draws_plainly();
-    const bool suits = walk_->function_count() > 0
-                           ? bisects_slices()
-                           : at_hand_.plainly && walk_->hierarchy().facts().knows_patches;
+    const bool suits = walk_->function_count() > 0 ? bisects_slices() : suits_patches();
     bisects_ = suits && search.fits_patches() && !records && !surfaces_.empty();
+    finest_ = cuts_finest();
+    at_hand_.cuts.set_finest(finest_);
+    normals_.begin(false);
+    VertexNormals normals;
+    normals.with_vertices = options_->normals && bisects_;
+    if (options_->normals && !bisects_) normals.gradients = &normals_.sums();
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        surfaces_[i].begin(builders[i], normals, options_->verify);
+        transitions_[i].record.clear();
+        transitions_[i].drawn_below = &transitions_[i].record;
+    }
     at_hand_.loads_keys = options_->normals || options_->cap || options_->at_nodes ||
                           (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
@@ -90,11 +92,30 @@ void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
     for (LevelSurface<dimension>& surface : surfaces_) surface.count_only();
 }
 
-/// Whether the options ask for vertices and triangles alone.
+/// Whether the options ask for vertices, triangles and perhaps normals alone.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::draws_plainly() const {
-    return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->normals &&
-           !options_->reference && !options_->at_nodes && options_->position_bounds == nullptr;
+    return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->reference &&
+           !options_->at_nodes && options_->position_bounds == nullptr;
+}
+
+/// Whether patches can draw what the options ask for.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::suits_patches() const {
+    const HierarchyFacts& facts = walk_->hierarchy().facts();
+    return facts.knows_patches && at_hand_.plainly &&
+           (!options_->normals || facts.gradients_at_nodes);
+}
+
+/// Whether edges are cut on their finest pieces, which needs elements that stop to conform: else an
+/// element beside finer ones would cut an edge at another place than these do.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::cuts_finest() const {
+    if (options_->cuts != Cuts::finest || options_->at_nodes || search_->may_stop_apart()) {
+        return false;
+    }
+    return std::ranges::none_of(search_->levels(),
+                                [&](const Level<Real>& level) { return search_->is_slice(level); });
 }
 
 /// Whether slices by one affine function, and nothing else, are drawn, of a grid that bisects the
@@ -144,7 +165,8 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
     result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
     result.counts.extracted = surfaces_[i].extracted();
     result.range_bound = range_bound(search_->levels()[i], *search_);
-    result.error_bound = std::min(surfaces_[i].error_bound(), result.range_bound);
+    const double error_bound = surfaces_[i].error_bound() + surfaces_[i].off_level();
+    result.error_bound = std::min(error_bound, result.range_bound);
     result.position_bound = surfaces_[i].position_bound();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
     result.table_bytes = normals_.memory_bytes() + walks_.memory_bytes();
@@ -212,9 +234,14 @@ void LevelSet<dimension, Real>::report_progress(std::uint64_t calls, std::uint64
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::takes(const View& view) {
     if (!bisects_ || (walk_->function_count() > 0 && is_near_boundary(view))) return false;
-    const PatchTarget<dimension, Real> target{
-        search_->levels(), surfaces_, &tally_, &deepest_, at_hand_.cuts.attribute_count() > 0,
-        options_->at_nodes};
+    const PatchTarget<dimension, Real> target{search_->levels(),
+                                              surfaces_,
+                                              &tally_,
+                                              &deepest_,
+                                              at_hand_.cuts.attribute_count() > 0,
+                                              options_->at_nodes,
+                                              options_->normals,
+                                              finest_};
     draw_in_patches(*walk_, view, *search_, target, *this);
     return true;
 }
@@ -345,6 +372,7 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);
     surface.raise_error_bound(error_bound(at_hand_.cuts, *search_, at_hand_.bound));
+    surface.raise_off_level(at_hand_.cuts.off_level());
     if (options_->position_bounds != nullptr) {
         surface.raise_position_bound(
             position_bound(at_hand_.cuts, *options_->position_bounds, at_hand_.position_bound));

@@ -74,6 +74,8 @@ private:
     void load(const View& view, bool draws);
     unsigned boundary_in_slice(const View& view, const Level<Real>& level) const;
     bool draws_plainly() const;
+    bool suits_patches() const;
+    bool cuts_finest() const;
     bool bisects_slices() const;
     bool is_near_boundary(const View& view) const;
     void report_progress(std::uint64_t calls, std::uint64_t visited) const;
@@ -125,6 +127,7 @@ private:
     TraversalCounts counts_of_first_walk_;
     int deepest_ = 0;
     bool bisects_ = false;  // takes() walks bisections in patches
+    bool finest_ = false;   // edges are cut on their finest pieces
     LevelTasks<dimension, Real> tasks_;
 };
 

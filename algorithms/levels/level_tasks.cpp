@@ -72,12 +72,13 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
         LevelSurface<dimension>& surface = leader.surfaces_[i];
         surface.add_extracted(drawn.surfaces_[i].extracted());
         surface.raise_error_bound(drawn.surfaces_[i].error_bound());
+        surface.raise_off_level(drawn.surfaces_[i].off_level());
         surface.raise_position_bound(drawn.surfaces_[i].position_bound());
         if (leader.walks_.is_recording()) {
             leader.transitions_[i].record.append(drawn.transitions_[i].record);
         }
         if (surface.counts_only()) continue;
-        surface.add_part(task.parts[i], drawn.surfaces_[i].at_nodes());
+        surface.add_part(task.parts[i], &drawn.surfaces_[i]);
         surface.builder().flush_if_full();
     }
     leader.report_progress(0, 0);

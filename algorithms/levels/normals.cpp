@@ -63,14 +63,19 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
     const View& view = element.view();
     const std::size_t corners = view.corner_count();
     const std::size_t components = element.walk().components();
+    std::array<CornerGradient, max_corners> drawn;
     Gradients exact;  // fetched at the first corner that needs one
     bool asked = false;
-    std::array<double, max_corners> value{};
-    for (std::size_t i = 0; i < corners; ++i) value[i] = view.value[i * components];
+    std::array<double, max_corners> value;
+    if (!own_) {
+        for (std::size_t i = 0; i < corners; ++i) value[i] = view.value[i * components];
+        corner_gradients(view.topology(), std::span(element.positions()).first(corners),
+                         std::span(value).first(corners), std::span(drawn).first(corners));
+    }
     for (std::size_t i = 0; i < corners; ++i) {
         const Slot slot = sums_.slot(element.keys()[i]);
         if (!own_) {
-            add(slot, corner_gradient(view.topology(), element.positions(), value, i));
+            add(slot, drawn[i]);
         } else if (!sums_.known(slot)) {
             const bool interpolated = (view.interpolated >> i & 1U) != 0;
             if (!interpolated && !asked) {

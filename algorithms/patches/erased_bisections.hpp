@@ -11,6 +11,7 @@
 #include <nestgrid/detail/operations.hpp>
 #include <nestgrid/hierarchy.hpp>
 #include <patches/bisection_walk.hpp>
+#include <patches/edge_pieces.hpp>
 #include <patches/mean_values.hpp>
 
 namespace nestgrid::detail {
@@ -25,6 +26,9 @@ public:
     virtual Point position(std::size_t place) const = 0;
     virtual void cuts(std::span<const BatchEdge> edges, const CutLevel& cut,
                       WidePoint* to) const = 0;
+    /// Sets to[i] to a piece of edges[i] (edge_pieces.hpp), not in a walk over MeanValues.
+    virtual void pieces(std::span<const BatchEdge> edges, const PieceQuestion& question,
+                        EdgePiece* to) const = 0;
     /// Sets to[i] to what a vertex at places[i] carries, in a walk over MeanValues.
     virtual void carried(std::span<const std::uint16_t> places, double* to) const = 0;
     virtual Handle element(std::size_t id, std::size_t part) const = 0;
@@ -137,6 +141,10 @@ private:
         void cuts(std::span<const BatchEdge> edges, const CutLevel& cut,
                   WidePoint* to) const override {
             of->cuts(edges, cut, to);
+        }
+        void pieces(std::span<const BatchEdge> edges, const PieceQuestion& question,
+                    EdgePiece* to) const override {
+            if constexpr (!GivesMeans<Field>) find_pieces(*of, *field, edges, question, to);
         }
         void carried(std::span<const std::uint16_t> places, double* to) const override {
             if constexpr (GivesMeans<Field>) {

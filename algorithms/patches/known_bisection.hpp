@@ -31,6 +31,7 @@
 //     template <bool whole> value_type value_at(Node, NodeKey)
 //                                                   the value at a node; `whole` is true only
 //                                                   where whole() is
+//     Point gradient_at(Node)                       optional: the gradient of the data at a node
 // or, where values at new nodes are means of those at their parents,
 //     value_type mean(value_type a, value_type b)   of Packs of values, too (mean_values.hpp)
 //

@@ -13,6 +13,7 @@
 
 #include <contours/contour_filling.hpp>
 #include <contours/level.hpp>
+#include <patches/edge_pieces.hpp>
 #include <patches/patch_contour_run.hpp>
 #include <surfaces/level_surface.hpp>
 #include <surfaces/simplex_tally.hpp>
@@ -28,6 +29,8 @@ struct PatchTarget {
     int* deepest;           ///< depth of the deepest element drawn so far
     bool carries = false;   ///< whether vertices carry a value (mean_values.hpp)
     bool at_nodes = false;  ///< whether to tell the surfaces which vertices lie at nodes
+    bool normals = false;   ///< whether vertices have normals from gradients at nodes
+    bool finest = false;    ///< whether to cut edges on their finest pieces
 };
 
 /// Draws one selection from a batch.
@@ -281,6 +284,8 @@ private:
     void find_vertices(std::span<const BatchEdge> cuts, Number* v);
     void make_vertices(std::span<const BatchEdge> cuts, Number* v);
     void add_vertices(std::span<const BatchEdge> cuts);
+    void cut(std::span<const BatchEdge> cuts, bool adds, WidePoint* to);
+    void cut_pieces(std::span<const BatchEdge> cuts, bool adds, WidePoint* to);
     void carry(std::span<const BatchEdge> cuts, double* to) const;
     void put_at_nodes(std::span<const BatchEdge> cuts, const Number* v);
     CutLevel cut_level() const { return {level_->value, level_->least_fraction}; }

@@ -84,7 +84,7 @@ template <int dimension, class Real, class Patches>
 NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
     std::span<const BatchEdge> cuts) {
     std::array<WidePoint, Run::most_cuts> x;
-    patches_->cuts(cuts, cut_level(), x.data());
+    cut(cuts, true, x.data());
     std::array<double, Run::most_cuts> carried;
     if (target_->carries) carry(cuts, carried.data());
     const auto attributes = [&](std::size_t i) -> std::span<const double> {
@@ -99,7 +99,7 @@ NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
     }
     const NodeKey* const key = patches_->keys[0];
     const SubtreeNode* const in_subtree = patches_->in_subtree[0];
-    constexpr double not_asked_for = 0;  // only normals need it, which patches do not draw
+    constexpr double not_asked_for = 0;  // patches make normals at once
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const auto& [low, high] = cuts[i];
         if (is_within_root(in_subtree[low], in_subtree[high])) {
@@ -107,6 +107,45 @@ NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::add_vertices(
         } else {
             builder.add_shared({key[low], key[high]}, not_asked_for, Point(x[i]), attributes(i));
         }
+    }
+}
+
+/// Sets to[i] to the point at which the level cuts cuts[i].
+/// \param adds whether these are new vertices, whose normals are added, too, where they have some
+template <int dimension, class Real, class Patches>
+NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::cut(std::span<const BatchEdge> cuts,
+                                                                 bool adds, WidePoint* to) {
+    if (!target_->finest && !target_->normals) return patches_->cuts(cuts, cut_level(), to);
+    cut_pieces(cuts, adds, to);
+}
+
+/// Does so piece by piece, for normals and for cuts on finest pieces.
+template <int dimension, class Real, class Patches>
+NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::cut_pieces(
+    std::span<const BatchEdge> cuts, bool adds, WidePoint* to) {
+    const bool normals = adds && target_->normals;
+    const Real* const value = patches_->values[0];
+    std::array<EdgePiece, 64> some;
+    while (!cuts.empty()) {
+        const auto now = cuts.first(std::min(cuts.size(), some.size()));
+        patches_->pieces(now, {level_->value, target_->finest, normals}, some.data());
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            const EdgePiece& piece = some[i];
+            const double fraction = level_->fraction(piece.value[0], piece.value[1]);
+            const WidePoint low(piece.x[0]);
+            *to++ = low + fraction * (WidePoint(piece.x[1]) - low);
+            if (normals) {
+                surface_->add_normal((1 - fraction) * piece.gradient[0] +
+                                     fraction * piece.gradient[1]);
+            }
+            if (adds && piece.along[1] - piece.along[0] < 1) {
+                const double along = piece.along[0] + fraction * (piece.along[1] - piece.along[0]);
+                const double low_u = static_cast<double>(value[now[i].low]) - level_->value;
+                const double high_u = static_cast<double>(value[now[i].high]) - level_->value;
+                surface_->raise_off_level(low_u + along * (high_u - low_u));
+            }
+        }
+        cuts = cuts.subspan(now.size());
     }
 }
 
@@ -151,7 +190,7 @@ template <int dimension, class Real, class Patches>
 NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::verify_vertices(
     std::span<const BatchEdge> cuts, const Number* v) {
     std::array<WidePoint, Run::most_cuts> x;
-    patches_->cuts(cuts, cut_level(), x.data());
+    cut(cuts, false, x.data());
     for (std::size_t i = 0; i < cuts.size(); ++i) surface_->verify(v[i], Point(x[i]));
 }
 

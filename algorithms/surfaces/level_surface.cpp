@@ -12,20 +12,22 @@
 namespace nestgrid::engine {
 
 template <int dimension>
-void LevelSurface<dimension>::begin(Builder builder, NodeGradients* gradients, bool verify) {
+void LevelSurface<dimension>::begin(Builder builder, const VertexNormals& normals, bool verify) {
     builder_ = std::move(builder);
-    gradients_ = gradients;
+    normals_ = normals;
     verifies_ = verify;
     counts_only_ = false;
     numbers_.clear();
     within_.begin_again(0);
     where_.clear();
+    of_vertices_.clear();
     simplices_.clear();
     at_nodes_.clear();
     is_at_node_.clear();
-    keeps_simplices_ = gradients != nullptr && builder_.target() == nullptr;
+    keeps_simplices_ = makes_normals() && builder_.target() == nullptr;
     extracted_ = 0;
     error_bound_ = 0;
+    off_level_ = 0;
     position_bound_ = 0;
 }
 
@@ -38,9 +40,9 @@ auto LevelSurface<dimension>::add(const SurfaceCut& cut) -> Number {
         return number;
     }
     builder_.add_vertex(cut.x, cut.attributes);
-    if (gradients_ != nullptr) {
-        where_.push_back(
-            {gradients_->slot(cut.node[0]), gradients_->slot(cut.node[1]), cut.fraction});
+    if (normals_.gradients != nullptr) {
+        where_.push_back({normals_.gradients->slot(cut.node[0]),
+                          normals_.gradients->slot(cut.node[1]), cut.fraction});
     }
     return number;
 }
@@ -50,7 +52,7 @@ auto LevelSurface<dimension>::add_unnamed(std::span<const Point> x,
                                           std::span<const double> attributes) -> Number {
     const Number first = builder_.next_vertex();
     if (none - first < x.size()) throw_too_many_vertices();
-    if (gradients_ != nullptr) where_.resize(where_.size() + x.size(), {none, none, 0.0});
+    if (normals_.gradients != nullptr) where_.resize(where_.size() + x.size(), {none, none, 0.0});
     builder_.add_vertices(x, attributes);
     return first;
 }
@@ -64,7 +66,7 @@ void LevelSurface<dimension>::verify(Number number, const Point& x) const {
 
 template <int dimension>
 void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
-                                       const VerticesAtNodes& at_nodes) {
+                                       const LevelSurface* drawn) {
     const Surface<dimension>& surface = part.surface;
     if (!builder_.shares_vertices()) return builder_.hand_over(surface);
     constexpr std::size_t ahead = 16;
@@ -80,6 +82,11 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
         const std::size_t first = number.size();
         if (first == end) return;
         const Number next = add_unnamed(x.subspan(first, end - first), attributes(first, end));
+        if (normals_.with_vertices) {
+            const auto from = drawn->of_vertices_.begin();
+            of_vertices_.insert(of_vertices_.end(), from + static_cast<std::ptrdiff_t>(first),
+                                from + static_cast<std::ptrdiff_t>(end));
+        }
         number.resize(end);
         std::iota(number.data() + first, number.data() + end, next);
     };
@@ -89,6 +96,7 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
         const SharedVertex& v = part.shared[i];
         add_own(v.number);
         number.push_back(vertex(name_of(v), [&] {
+            if (normals_.with_vertices) of_vertices_.push_back(drawn->of_vertices_[v.number]);
             return SurfaceCut{x[v.number], v.node, v.fraction,
                               attributes(v.number, v.number + std::size_t{1})};
         }));
@@ -98,6 +106,8 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
         for (Number& v : ridge) v = number[v];
         builder_.add_boundary(ridge);
     }
+    const VerticesAtNodes none_at_nodes;
+    const VerticesAtNodes& at_nodes = drawn == nullptr ? none_at_nodes : drawn->at_nodes_;
     for (std::size_t i = 0; i < at_nodes.vertex.size(); ++i) {
         put_at_node(number[at_nodes.vertex[i]], at_nodes.node[i],
                     std::span(at_nodes.attributes).subspan(i * stride, stride));
@@ -113,11 +123,11 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
 /// The gradient at a vertex, interpolated between its nodes; 0 where neither node has a gradient.
 template <int dimension>
 Point LevelSurface<dimension>::gradient_at(const Where& where) const {
-    const bool low = where.low != none && gradients_->known(where.low);
-    const bool high = where.high != none && gradients_->known(where.high);
+    const bool low = where.low != none && normals_.gradients->known(where.low);
+    const bool high = where.high != none && normals_.gradients->known(where.high);
     if (!low && !high) return {0, 0, 0};
-    const Point a = gradients_->mean(low ? where.low : where.high);
-    const Point b = gradients_->mean(high ? where.high : where.low);
+    const Point a = normals_.gradients->mean(low ? where.low : where.high);
+    const Point b = normals_.gradients->mean(high ? where.high : where.low);
     return (1 - where.fraction) * a + where.fraction * b;
 }
 
@@ -130,6 +140,19 @@ std::vector<Point> LevelSurface<dimension>::normals_from_gradients() const {
         const Point g = gradient_at(where);
         const double length = norm(g);
         normals.push_back(length > 0 ? (-1 / length) * g : Point{0, 0, 0});
+    }
+    return normals;
+}
+
+/// The normals that came with the vertices.
+template <int dimension>
+std::vector<Point> LevelSurface<dimension>::normals_of_vertices() const {
+    std::vector<Point> normals;
+    normals.reserve(of_vertices_.size());
+    for (const auto& [x, y, z] : of_vertices_) {
+        const Point n{x, y, z};
+        const double length = norm(n);
+        normals.push_back(length > 0 ? (1 / length) * n : n);
     }
     return normals;
 }
@@ -158,13 +181,15 @@ void LevelSurface<3>::merge_at_nodes() {
 template <int dimension>
 void LevelSurface<dimension>::finish(bool merges_at_nodes) {
     std::vector<Point> normals;
-    if (gradients_ != nullptr) normals = normals_from_gradients();
+    if (makes_normals()) {
+        normals = normals_.with_vertices ? normals_of_vertices() : normals_from_gradients();
+    }
     if (merges_at_nodes) {
         builder_.set_normals(std::move(normals));
         merge_at_nodes();
         builder_.change([&](auto& surface) { normals = std::move(surface.normals); });
     }
-    if (gradients_ == nullptr) return;
+    if (!makes_normals()) return;
     settle(normals);
     builder_.set_normals(std::move(normals));
 }

@@ -11,6 +11,12 @@
 
 namespace nestgrid::engine {
 
+/// How the vertices of a surface get their normals.
+struct VertexNormals {
+    NodeGradients* gradients = nullptr;  ///< at nodes, between which they are interpolated; or null
+    bool with_vertices = false;          ///< add_normal() is called for each new vertex
+};
+
 /// Names vertices, numbers those that are new, and hands them and the simplices to a builder. A
 /// vertex with a known name gets the number it has, where the builder shares vertices; else every
 /// vertex is new.
@@ -29,11 +35,10 @@ public:
           numbers_{node_count > 0 && std::uint64_t{node_count} <= std::uint64_t{1} << 32U} {}
 
     /// Begins an empty surface, and keeps its memory.
-    /// \param gradients at nodes, where normals are wanted here; else null
-    void begin(Builder builder, NodeGradients* gradients, bool verify);
-    /// Makes no normals, because another LevelSurface makes those of this part.
+    void begin(Builder builder, const VertexNormals& normals, bool verify);
+    /// Does not complete normals, because another LevelSurface does so for this part.
     void leave_normals() {
-        gradients_ = nullptr;
+        normals_.gradients = nullptr;
         keeps_simplices_ = false;
     }
     /// Only counts from now on. The caller must drop simplices by forget_element().
@@ -82,9 +87,19 @@ public:
         builder_.add_simplex(corners, reference);
         if (keeps_simplices_) simplices_.push_back(corners);
     }
+    /// Adds the normal of a new vertex, in the order of the vertices.
+    /// \param gradient of the data there
+    NESTGRID_INLINE void add_normal(const Point& gradient) {
+        const double length = norm(gradient);
+        const double scale = length > 0 ? -1 / length : 0;
+        of_vertices_.push_back({static_cast<float>(scale * gradient[0]),
+                                static_cast<float>(scale * gradient[1]),
+                                static_cast<float>(scale * gradient[2])});
+    }
     /// Appends a part. Numbers its vertices in their order; those that earlier parts have keep
     /// their numbers.
-    void add_part(const SurfacePart<dimension>& part, const VerticesAtNodes& at_nodes = {});
+    /// \param drawn what the part was drawn by, where this says more of vertices than the part
+    void add_part(const SurfacePart<dimension>& part, const LevelSurface* drawn = nullptr);
 
     /// Whether it was noted that a vertex lies at a node.
     bool is_at_node(Number vertex) const {
@@ -108,6 +123,9 @@ public:
     /// Raises the bound of |U - level| on the surface to `bound` at least.
     void raise_error_bound(double bound) { error_bound_ = std::max(error_bound_, bound); }
     double error_bound() const { return error_bound_; }
+    /// Notes that a vertex on an edge lies where P_S U differs from the level by this.
+    void raise_off_level(double off) { off_level_ = std::max(off_level_, std::abs(off)); }
+    double off_level() const { return off_level_; }
     void raise_position_bound(double bound) { position_bound_ = std::max(position_bound_, bound); }
     double position_bound() const { return position_bound_; }
 
@@ -116,7 +134,8 @@ public:
     void finish(bool merges_at_nodes);
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
-               simplices_.size() * sizeof(Simplex) + at_nodes_.node.capacity() * sizeof(NodePlace);
+               of_vertices_.capacity() * sizeof(Normal) + simplices_.size() * sizeof(Simplex) +
+               at_nodes_.node.capacity() * sizeof(NodePlace);
     }
 
 private:
@@ -126,21 +145,27 @@ private:
         double fraction;
     };
 
+    bool makes_normals() const { return normals_.gradients != nullptr || normals_.with_vertices; }
     Point gradient_at(const Where& where) const;
     std::vector<Point> normals_from_gradients() const;
+    std::vector<Point> normals_of_vertices() const;
     void settle(std::vector<Point>& normals) const;
     void merge_at_nodes();
 
     Builder builder_;
     VertexNumbers numbers_;
     SubtreeVertices within_;  // vertices in subtrees of bisections
-    NodeGradients* gradients_ = nullptr;
-    std::deque<Where> where_;  // by vertex, where normals are wanted
+    using Normal = std::array<float, 3>;
+
+    VertexNormals normals_;
+    std::deque<Where> where_;          // by vertex, where normals are interpolated between nodes
+    std::vector<Normal> of_vertices_;  // by vertex, where they come with vertices
     VerticesAtNodes at_nodes_;
     std::vector<bool> is_at_node_;   // by vertex: whether it is among at_nodes_
     std::deque<Simplex> simplices_;  // all of them, where a sink takes them and normals are wanted
     std::uint64_t extracted_ = 0;
     double error_bound_ = 0;
+    double off_level_ = 0;
     double position_bound_ = 0;
     bool keeps_simplices_ = false;
     bool verifies_ = false;

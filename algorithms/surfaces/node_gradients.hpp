@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include <contours/cell_contour.hpp>
 #include <nestgrid/keys.hpp>
 #include <nestgrid/shape.hpp>
 #include <walk/gradient.hpp>
@@ -42,6 +43,26 @@ inline CornerGradient corner_gradient(const Topology& t, std::span<const Point> 
     const DualVectors dual = dual_vectors(along, t.dimension);
     if (dual.volume == 0) return {};
     return {dual.gradient(rise), std::abs(dual.volume)};
+}
+
+/// The gradients at all corners. Where the map from the reference element is affine, all corners
+/// have the same axes, and a simplex has the same gradient at all of them.
+/// \param out as many as corners
+inline void corner_gradients(const Topology& t, std::span<const Point> x,
+                             std::span<const double> value, std::span<CornerGradient> out) {
+    if (t.corners == t.dimension + 1U) {
+        std::ranges::fill(out, corner_gradient(t, x, value, 0));
+        return;
+    }
+    if (t.dimension == 3 && t.corners == 8 && detail::is_parallelepiped(x.first<8>())) {
+        const DualVectors dual = dual_vectors({x[1] - x[0], x[2] - x[0], x[4] - x[0]}, 3);
+        for (std::size_t i = 0; i < 8; ++i) {
+            const auto rise = [&](std::size_t axis) { return value[i | axis] - value[i & ~axis]; };
+            out[i] = {dual.gradient({rise(1), rise(2), rise(4)}), std::abs(dual.volume)};
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = corner_gradient(t, x, value, i);
 }
 
 /// Gradients at nodes: the weighted mean of the gradients that are added at each.

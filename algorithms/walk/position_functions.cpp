@@ -104,6 +104,7 @@ HierarchyFacts widened(HierarchyFacts facts, std::size_t front) {
     facts.components += static_cast<int>(front);
     facts.features &= ~static_cast<unsigned>(Feature::gradients);
     facts.knows_stars = facts.knows_star_positions = facts.knows_patches = false;
+    facts.gradients_at_nodes = false;
     return facts;
 }
 

@@ -87,6 +87,7 @@ struct HierarchyFacts {
     bool knows_star_positions = false;  ///< star_rows() and node_position() work
     bool knows_patches = false;         ///< bisection_rows() or bisect() work
     bool bisects_means = false;         ///< bisection_rows() or bisect_means() work
+    bool gradients_at_nodes = false;    ///< bisect() hands over gradients at any node
     bool fills_rows = false;            ///< every node is in a star row
     bool decodes = false;               ///< values at new nodes need those at the corners
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ

@@ -64,23 +64,23 @@ std::size_t expect_in_front(const Surface<3>& s) {
 }
 
 /// Where vertices may lie.
-enum class Cuts {
+enum class CutPlaces {
     on_edges,
     near_nodes,  // where values are those of the level, nearly or exactly
 };
 
 /// In tetrahedra each cut edge points to the front of all triangles around its vertex, but where
 /// the cut keeps its distance from a node at which the level passes.
-void expect_nothing_behind(const Surface<3>& s, Cuts cuts) {
+void expect_nothing_behind(const Surface<3>& s, CutPlaces cuts) {
     const std::size_t folded = expect_in_front(s);
     const bool simplices =
         std::ranges::all_of(s.shape_of, [](Shape shape) { return shape == Shape::tetrahedron; });
-    EXPECT_LE(2 * folded, simplices && cuts == Cuts::on_edges ? 0 : s.vertices.size());
+    EXPECT_LE(2 * folded, simplices && cuts == CutPlaces::on_edges ? 0 : s.vertices.size());
 }
 
 /// Of surfaces at 0 of a field.
-Cuts cuts_of(const NodalSamples& samples) {
-    return samples.generic ? Cuts::on_edges : Cuts::near_nodes;
+CutPlaces cuts_of(const NodalSamples& samples) {
+    return samples.generic ? CutPlaces::on_edges : CutPlaces::near_nodes;
 }
 
 template <class Family>
@@ -102,7 +102,7 @@ TYPED_TEST(Normals, OfIsosurfacesAgreeWithTheirTriangles) {
                     SCOPED_TRACE("at nodes");
                     options.at_nodes = true;
                     expect_nothing_behind(isosurface(grid, field, 0.0, offsets, options).surface,
-                                          Cuts::near_nodes);
+                                          CutPlaces::near_nodes);
                 }
             }
         });
@@ -121,11 +121,11 @@ TYPED_TEST(Normals, OfBandsAndSlicesAgreeWithTheirTriangles) {
                 const Threshold s(&offsets, threshold);
                 const IsosurfaceOptions options{.normals = true};
                 expect_nothing_behind(isoband(grid, field, -0.1, 0.2, s, offsets, options).surface,
-                                      Cuts::near_nodes);
+                                      CutPlaces::near_nodes);
                 const auto drawn =
                     slices(grid, field, {{&plane, &sphere}, {0.0}}, s, offsets, options);
                 for (const Slice& slice : drawn) {
-                    expect_nothing_behind(slice.surface, Cuts::near_nodes);
+                    expect_nothing_behind(slice.surface, CutPlaces::near_nodes);
                 }
             }
         });
@@ -149,7 +149,7 @@ void expect_nothing_behind_on_lattice() {
                     .threshold = threshold * data.range, .normals = true, .at_nodes = at_nodes};
                 expect_nothing_behind(
                     isosurface(grid, field, data.isovalue, offsets, options).surface,
-                    Cuts::near_nodes);
+                    CutPlaces::near_nodes);
             }
         }
     }

@@ -41,6 +41,18 @@ struct ErrorBounds {
     }
 };
 
+/// Where a level set cuts an edge of an element.
+enum class Cuts : std::uint8_t {
+    /// Where P_S U passes through the level: linearly between the ends of the edge. On tetrahedra
+    /// the threshold on deviations (indicator.hpp) is then the error.
+    linear,
+    /// Where U does: the edge is halved at its nodes, as long as there are any, and the half whose
+    /// ends differ is kept; the last piece is cut linearly. At equal numbers of triangles the
+    /// distance to the true surface is 0.3 to 0.7 of that of linear cuts (root mean square), while
+    /// `error_bound` grows by how far P_S U is from the level at the vertices.
+    finest,
+};
+
 /// How finely isosurfaces and slices are drawn, and what is kept of them.
 struct IsosurfaceOptions {
     /// epsilon, in the units of the data: offsets up to it are projected away.
@@ -48,6 +60,9 @@ struct IsosurfaceOptions {
     /// The largest number of triangles (segments), beside which `threshold` is not used: the least
     /// threshold that keeps within it is found (triangle_budget.hpp). 0 asks for none.
     std::uint64_t max_triangles = 0;
+    /// Linear without regard to this: edges of elements that may stop beside finer ones (octrees,
+    /// red-green refinement, hanging nodes), slices, and surfaces with vertices at nodes.
+    Cuts cuts = Cuts::linear;
     /// Unit normals from gradients: the field's own where it offers them, else the mean of the
     /// gradients of the extracted elements around a node, weighted by volume.
     bool normals = false;

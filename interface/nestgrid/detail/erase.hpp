@@ -287,6 +287,9 @@ private:
             facts.knows_star_positions = nestgrid::knows_stars(grid);
         }
         if constexpr (may_know_patches_) facts.knows_patches = knows_patches(grid, field, facts);
+        if constexpr (requires(typename Grid::Node node) { field.gradient_at(node); }) {
+            facts.gradients_at_nodes = facts.knows_patches;
+        }
         facts.bisects_means = bisects_means_;
         return facts;
     }

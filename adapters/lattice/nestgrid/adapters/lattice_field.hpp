@@ -18,7 +18,7 @@ public:
 
     /// \throw InvalidInput where the number of samples is not that of the lattice
     LatticeField(const Grid& grid, std::span<const Sample> samples)
-        : grid_{&grid}, samples_{samples} {
+        : grid_{&grid}, samples_{samples}, dual_{dual_axes(grid.geometry())} {
         if (samples.size() != grid.sample_count()) {
             throw InvalidInput("the field has " + std::to_string(samples.size()) +
                                " samples, but the lattice " + std::to_string(grid.sample_count()));
@@ -70,8 +70,10 @@ public:
 
     /// Central differences of the samples, one-sided at the boundary.
     void corner_gradients(const Element& e, std::span<Point> out) const {
-        for (std::size_t k = 0; k < corners_; ++k) out[k] = gradient(grid_->corner_place(e, k));
+        for (std::size_t k = 0; k < corners_; ++k) out[k] = gradient_at(grid_->corner_place(e, k));
     }
+    /// The same at any node (known_bisection.hpp).
+    Point gradient_at(typename Grid::Place p) const;
 
 private:
     static constexpr std::size_t corners_ = static_cast<std::size_t>(Grid::max_corners);
@@ -82,36 +84,44 @@ private:
     NESTGRID_INLINE value_type at(typename Grid::Place p) const {
         return static_cast<value_type>(samples_[grid_->sample(p)]);
     }
-    Point gradient(typename Grid::Place p) const;
+    static std::array<Point, 3> dual_axes(const LatticeGeometry<Grid::dimension>& geometry);
 
     const Grid* grid_;
     std::span<const Sample> samples_;
+    std::array<Point, 3> dual_;  // times the rises from sample to sample: the gradient
 };
 
 template <class Grid, class Sample>
-Point LatticeField<Grid, Sample>::gradient(typename Grid::Place p) const {
-    constexpr int dim = Grid::dimension;
-    const LatticeGeometry<dim>& g = grid_->geometry();
+Point LatticeField<Grid, Sample>::gradient_at(typename Grid::Place p) const {
     const std::size_t centre = grid_->sample(p);
-    Point along{0, 0, 0};  // per unit length along the axes
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+    Point gradient{0, 0, 0};
+    for (std::size_t d = 0; d < static_cast<std::size_t>(Grid::dimension); ++d) {
         const std::size_t x = std::min<std::size_t>(grid_->at(p, d), grid_->samples(d) - 1);
         const std::size_t up = x + 1 < grid_->samples(d) ? 1 : 0;
         const std::size_t down = x > 0 ? 1 : 0;
         const double rise = static_cast<double>(samples_[centre + up * grid_->sample_stride(d)]) -
                             static_cast<double>(samples_[centre - down * grid_->sample_stride(d)]);
-        along[d] = rise / (static_cast<double>(up + down) * g.spacing[d]);
+        gradient = gradient + (up + down == 2 ? 0.5 * rise : rise) * dual_[d];
     }
-    // The gradient is the inverse transpose of the direction matrix times `along`.
+    return gradient;
+}
+
+/// The columns of the inverse transpose of the direction matrix, each divided by the spacing.
+template <class Grid, class Sample>
+std::array<Point, 3> LatticeField<Grid, Sample>::dual_axes(
+    const LatticeGeometry<Grid::dimension>& g) {
+    constexpr int dim = Grid::dimension;
     std::array<Point, 3> axis{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
         for (std::size_t r = 0; r < 3; ++r) axis[d][r] = g.direction[r][d];
     }
     if (dim == 2) axis[2] = cross(axis[0], axis[1]);
     const double volume = dot(axis[0], cross(axis[1], axis[2]));
-    return (along[0] / volume) * cross(axis[1], axis[2]) +
-           (along[1] / volume) * cross(axis[2], axis[0]) +
-           (along[2] / volume) * cross(axis[0], axis[1]);
+    std::array<Point, 3> dual{};
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+        dual[d] = (1 / (volume * g.spacing[d])) * cross(axis[(d + 1) % 3], axis[(d + 2) % 3]);
+    }
+    return dual;
 }
 
 }  // namespace nestgrid
