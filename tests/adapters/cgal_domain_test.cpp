@@ -59,6 +59,9 @@ TEST(CgalSolid, IsALipschitzDistance) {
 TEST(CgalSolid, IsRefusedWithoutAClosedSurface) {
     const auto solid = [](const Mesh& mesh) { nestgrid::CgalSolid<P>{mesh}; };
     expect_refused([&] { solid(Mesh{}); }, "empty");
+    Mesh vertex_alone;
+    vertex_alone.add_vertex(P(0, 0, 0));
+    expect_refused([&] { solid(vertex_alone); }, "empty");
     expect_refused([&] { solid(dented_cube(false)); }, "open");
     Mesh cube;
     CGAL::make_hexahedron(P(0, 0, 0), P(1, 0, 0), P(1, 1, 0), P(0, 1, 0), P(0, 1, 1), P(0, 0, 1),

@@ -29,7 +29,10 @@ public:
     /// \param surface must not intersect itself; must outlive the domain and stay as it is
     /// \throw InvalidInput where the surface is empty, open, or has other faces than triangles
     explicit CgalSolid(const CGAL::Surface_mesh<P>& surface) {
-        if (CGAL::is_empty(surface)) throw InvalidInput("the surface of a solid is empty");
+        // CGAL::is_empty() asks for vertices, which may lie in no face.
+        if (surface.number_of_faces() == 0) {
+            throw InvalidInput("the surface of a solid is empty");
+        }
         if (!CGAL::is_closed(surface)) throw InvalidInput("the surface of a solid is open");
         if (!CGAL::is_triangle_mesh(surface)) {
             throw InvalidInput("the surface of a solid has faces that are no triangles");
