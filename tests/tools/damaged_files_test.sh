@@ -4,12 +4,12 @@
 #
 # Damages files of one format and hands them to the program (see mutate_files.cpp).
 # Arguments: the folder of the program's tests, the program, the format. The environment variable
-# NESTGRID_DAMAGED_FILES says how many files, by default 200.
+# NESTGRID_DAMAGED_FILES says how many files, by default 100.
 set -euo pipefail
 tools=$1
 program=$2
 format=$3
-count=${NESTGRID_DAMAGED_FILES:-200}
+count=${NESTGRID_DAMAGED_FILES:-100}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$tools/make_volumes" "$work"
@@ -30,7 +30,9 @@ printf '%s\n' 'NDims = 3' 'DimSize = 20 24 18' 'ElementType = MET_UCHAR' \
 isosurface=(isosurface IN --threshold 5% -o OUT.vtp)
 mesh=(mesh IN --read-limit 2 -o OUT.nestgrid)
 volume=("${isosurface[@]}" --value 130 --read-limit 2)
-mutate() { "$tools/mutate_files" "$program" "$count" "$work" "$@"; }
+# Names are found once, not in the child of each file.
+export LD_BIND_NOW=1
+mutate() { "$tools/mutate_files" "$count" "$work" "$@"; }
 case $format in
 mhd) mutate v.mhd v.zraw -- "${volume[@]}" && mutate plain.mhd v.raw -- "${volume[@]}" ;;
 nhdr) mutate v.nhdr v.raw -- "${volume[@]}" && mutate packed.nhdr v.raw.gz -- "${volume[@]}" ;;

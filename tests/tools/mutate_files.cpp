@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Damages files and hands them to the program, which must read each or refuse it with one sentence,
-// within the limit of time given to it, and leave no file behind where it refuses.
+// within the limit of time given to it, and leave no file behind where it refuses. The program is
+// linked, and runs in a child process for each file: to start it takes longer than to read a file.
 //
-// Arguments: the program; how many files; a folder with good ones, and the names of those that make
+// Arguments: how many files; a folder with good ones, and the names of those that make
 // one input together, the named one first; "--" and arguments of the program, where IN, at the end
 // of an argument, stands for that first file and OUT for a file that is written.
 #include <fcntl.h>
@@ -16,6 +17,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -23,6 +25,8 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "program.hpp"
 
 namespace {
 
@@ -46,32 +50,37 @@ public:
               return std::mt19937(sequence);
           }()} {}
 
-    std::size_t below(std::size_t limit) { return limit == 0 ? 0 : random_() % limit; }
-
-    void apply(Bytes& bytes) {
-        for (std::size_t i = 0, count = 1 + below(2); i < count && !bytes.empty(); ++i) {
-            apply_one(bytes);
-        }
+    /// Damages one of several files. Every kind of damage, in heads and anywhere, in every file: the
+    /// number of the damage goes through them all; what is done there, and more of it, is random.
+    void apply(std::vector<Bytes>& files, std::size_t number) {
+        Bytes& bytes = files[number / (2 * kinds) % files.size()];
+        if (bytes.empty()) return;
+        apply_one(bytes, number % kinds, number / kinds % 2 == 0);
+        if (below(2) == 0 && !bytes.empty()) apply_one(bytes, below(kinds), below(2) == 0);
     }
 
 private:
-    /// Half of all places are among the first 400, where headers are.
-    std::size_t place(const Bytes& bytes) {
-        return below(below(2) == 0 ? std::min<std::size_t>(400, bytes.size()) : bytes.size());
+    static constexpr std::size_t kinds = 9;
+
+    std::size_t below(std::size_t limit) { return limit == 0 ? 0 : random_() % limit; }
+
+    /// \param in_head among the first 400, where headers are
+    std::size_t place(const Bytes& bytes, bool in_head) {
+        return below(in_head ? std::min<std::size_t>(400, bytes.size()) : bytes.size());
     }
 
-    void apply_one(Bytes& bytes) {
-        const std::size_t at = place(bytes);
+    void apply_one(Bytes& bytes, std::size_t kind, bool in_head) {
+        const std::size_t at = place(bytes, in_head);
         const std::size_t length = std::min(bytes.size() - at, 1 + below(20));
-        switch (below(9)) {
+        switch (kind) {
             case 0:  // bits
                 for (std::size_t i = 0, count = 1 + below(8); i < count; ++i) {
-                    bytes[place(bytes)] ^= static_cast<char>(1U << below(8));
+                    bytes[place(bytes, in_head)] ^= static_cast<char>(1U << below(8));
                 }
                 break;
             case 1:  // bytes
                 for (std::size_t i = 0, count = 1 + below(8); i < count; ++i) {
-                    bytes[place(bytes)] = static_cast<char>(below(256));
+                    bytes[place(bytes, in_head)] = static_cast<char>(below(256));
                 }
                 break;
             case 2:
@@ -84,10 +93,10 @@ private:
                 bytes.erase(at, length);
                 break;
             case 5:
-                bytes.insert(at, bytes.substr(place(bytes), length));
+                bytes.insert(at, bytes.substr(place(bytes, below(2) == 0), length));
                 break;
             case 6:
-                bytes.resize(below(bytes.size()));
+                bytes.resize(at);
                 break;
             default:
                 change_digit(bytes, at);
@@ -114,9 +123,10 @@ struct Run {
 
 int open_for_writing(const char* path) { return open(path, O_WRONLY | O_CREAT | O_TRUNC, 0644); }
 
-/// Runs a command in the current folder, its streams to the files "out" and "err".
+/// Runs the program in the current folder, its streams to the files "out" and "err".
 Run run(const std::vector<std::string>& command) {
     const auto start = std::chrono::steady_clock::now();
+    std::fflush(stdout);
     const pid_t child = fork();
     if (child == 0) {
         std::vector<char*> words;
@@ -124,8 +134,7 @@ Run run(const std::vector<std::string>& command) {
         words.push_back(nullptr);
         dup2(open_for_writing("out"), STDOUT_FILENO);
         dup2(open_for_writing("err"), STDERR_FILENO);
-        execv(words[0], words.data());
-        _exit(126);
+        std::exit(run_program(static_cast<int>(command.size()), words.data()));
     }
     Run result;
     do {
@@ -167,7 +176,6 @@ std::string litter(const std::vector<std::string>& expected) {
 }
 
 struct Arguments {
-    std::string program;
     int count;
     fs::path folder;
     std::vector<std::string> files;
@@ -175,7 +183,7 @@ struct Arguments {
 };
 
 std::vector<std::string> command_of(const Arguments& arguments, std::string& output) {
-    std::vector<std::string> command{arguments.program};
+    std::vector<std::string> command{"nestgrid"};
     for (const std::string& word : arguments.rest) {
         command.push_back(word);
         if (word.ends_with("IN")) {
@@ -205,7 +213,7 @@ int damage_and_run(const Arguments& arguments) {
     for (int i = 0; i < arguments.count; ++i) {
         std::vector<Bytes> bytes = good;
         // The first of all is not damaged: it must be read.
-        if (i > 0) damage.apply(bytes[damage.below(bytes.size())]);
+        if (i > 0) damage.apply(bytes, static_cast<std::size_t>(i));
         for (std::size_t k = 0; k < bytes.size(); ++k) {
             std::ofstream(arguments.files[k], std::ios::binary) << bytes[k];
         }
@@ -231,11 +239,10 @@ int damage_and_run(const Arguments& arguments) {
 int main(int argc, char** argv) {
     const std::vector<std::string> words(argv + 1, argv + argc);
     const auto split = std::find(words.begin(), words.end(), "--");
-    if (words.size() < 5 || split - words.begin() < 4) return 2;
-    const Arguments arguments{words[0],
-                              std::stoi(words[1]),
-                              fs::absolute(words[2]),
-                              {words.begin() + 3, split},
+    if (words.size() < 4 || split - words.begin() < 3) return 2;
+    const Arguments arguments{std::stoi(words[0]),
+                              fs::absolute(words[1]),
+                              {words.begin() + 2, split},
                               {split + 1, words.end()}};
     std::string folder = (fs::temp_directory_path() / "damagedXXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) return 2;
