@@ -18,8 +18,12 @@ std::string millions(std::uint64_t count) {
 }
 
 nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request) {
+    const bool finest = !request.budgets.empty() && request.projection.indicator != "deviation";
     nestgrid::IsosurfaceOptions options{
-        .normals = request.normals, .cap = request.cap, .at_nodes = request.at_nodes};
+        .cuts = request.cuts.value_or(finest ? nestgrid::Cuts::finest : nestgrid::Cuts::linear),
+        .normals = request.normals,
+        .cap = request.cap,
+        .at_nodes = request.at_nodes};
     if (request.progress) {
         options.progress = [&](const nestgrid::TraversalCounts& counts) {
             request.progress("looked at " + millions(counts.calls) + " elements");

@@ -35,6 +35,9 @@ struct ExtractionRequest {
     bool cap = false;
     bool normals = true;
     bool at_nodes = false;
+    /// Where edges are cut; nothing: on their finest pieces where `budgets` are asked for, but for
+    /// deviations, whose error linear cuts keep.
+    std::optional<nestgrid::Cuts> cuts{};
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
     /// Told how many of all surfaces are drawn; or empty.

@@ -27,6 +27,7 @@ struct Options {
     bool cap = false;
     bool flat = false;
     bool at_nodes = false;
+    std::string cuts;
     bool against_vtk = false;
 };
 
@@ -49,6 +50,9 @@ ExtractionRequest request_of(const Options& o) {
     ExtractionRequest request{
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     const SurfaceOptions& s = o.surface;
+    if (!o.cuts.empty()) {
+        request.cuts = o.cuts == "finest" ? nestgrid::Cuts::finest : nestgrid::Cuts::linear;
+    }
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
     request.projection = s.projection;
@@ -185,6 +189,14 @@ Command add_isosurface(CLI::App& program) {
                    "put vertices at samples that equal the isovalue, instead of slivers around "
                    "them")
         ->group("Surface");
+    isosurface
+        ->add_option("--cuts", o->cuts,
+                     "where edges are cut: linear keeps the error, finest lies nearer to the data "
+                     "[finest with --max-triangles]")
+        ->type_name("KIND")
+        ->check(CLI::IsMember({"linear", "finest"}))
+        ->group("Surface")
+        ->excludes("--at-nodes");
     isosurface
         ->add_flag("--against-vtk", o->against_vtk,
                    "compare with VTK's own contour of the same samples")

@@ -154,6 +154,7 @@ void isosurface 'changes no .ply file' "$raw --value 130 -o kept/x.ply" --no-nor
 void isosurface 'is for surfaces, not for isolines' "hills.pgm --value 60" --cap
 void isosurface 'is for surfaces, not for isolines' "hills.pgm --value 60 -o kept/x.vtp" --no-normals
 effect isosurface "$raw --value 130" --at-nodes
+effect isosurface "$raw --value 130 --threshold 20" --cuts finest
 effect isosurface "$raw --value 130" --against-vtk
 void isosurface 'is for one volume' "hills.pgm --value 60" --against-vtk
 

@@ -129,6 +129,7 @@ public:
             if (!request_.isovalue) return;
             const bool normals = request_.normals != NormalType::none;
             options.normals = normals && !request_.moving;
+            options.cuts = Cuts::finest;
             parts.push_back({"isosurface", isosurface<3>(hierarchy, *request_.isovalue, criterion,
                                                          moment_.bounds(), options, executor_)});
             if (parts.back().drawn.cancelled) throw FrameAbandoned{};

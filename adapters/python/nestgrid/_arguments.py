@@ -26,6 +26,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 #: What a threshold is compared with.
+Cuts = Literal["linear", "finest"]
 Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
 #: Types of samples, as NumPy calls them.
 SampleType = Literal[

@@ -11,9 +11,11 @@ import numpy as np
 
 from . import _html, _nestgrid
 from ._arguments import (
+    Cuts,
     Indicator,
     InvalidType,
     flag,
+    name_of,
     not_negative,
     number,
     numbers,
@@ -74,7 +76,7 @@ class Field:
         """Forgets what was computed of the values: call it after changing the array."""
         self._source.clear()
 
-    @takes(level=number, cap=flag, at_nodes=flag)
+    @takes(level=number, cap=flag, at_nodes=flag, cuts=optional(name_of(Cuts)))
     def isosurface(
         self,
         level: float,
@@ -88,6 +90,7 @@ class Field:
         normals: bool = True,
         cap: bool = False,
         at_nodes: bool = False,
+        cuts: Cuts | None = None,
         elements: bool = False,
         threads: int = 0,
     ) -> Surface:
@@ -97,12 +100,20 @@ class Field:
         cap       whether to close the surface along the boundary of the domain, around what is at
                   least the level
         at_nodes  whether to draw no slivers around nodes at which the field has the value
+        cuts      where edges of coarse elements are cut: "linear" between their ends, which keeps
+                  the error that is asked for; "finest" where the finest data have the value, which
+                  lies nearer to the data (not at nodes, nor on octrees). None: "finest" where
+                  max_triangles is given, but for the indicator "deviation"
 
         Raises InvalidInput where an argument makes no sense, a value is not finite, or even the
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
         """
         projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
-        options = (normals, cap, elements, at_nodes)
+        if cuts is None:
+            finest = max_triangles is not None and indicator != "deviation"
+        else:
+            finest = cuts == "finest"
+        options = (normals, cap, elements, at_nodes, finest)
         return Surface._of(
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
         )

@@ -178,6 +178,7 @@ def isosurface(
     cap: bool,
     elements: bool,
     at_nodes: bool,
+    finest_cuts: bool,
     projection: Projection,
     threads: int,
 ) -> Surface: ...

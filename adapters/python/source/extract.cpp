@@ -77,7 +77,8 @@ std::function<bool(const TraversalCounts&)> progress_of(const Call& call) {
 }
 
 IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
-    return {.normals = request.normals,
+    return {.cuts = request.finest_cuts ? Cuts::finest : Cuts::linear,
+            .normals = request.normals,
             .cap = request.cap,
             .elements = request.elements,
             .at_nodes = request.at_nodes,

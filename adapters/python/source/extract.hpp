@@ -56,6 +56,7 @@ struct SurfaceRequest {
     bool cap = false;
     bool elements = false;
     bool at_nodes = false;
+    bool finest_cuts = false;
 };
 
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1

@@ -126,7 +126,9 @@ void write_isosurfaces(const std::string& name, const Grid& grid, const Field& f
     draw("_coarse", Threshold(&offsets, 12), 12, options);
     draw("_cap", Threshold(&offsets, 12), 12, {.normals = false, .cap = true, .at_nodes = true});
     const double found = find_threshold(grid, field, 40, offsets, 1500, options).threshold;
-    draw("_budget", Threshold(&offsets, found), found, options);
+    const IsosurfaceOptions finest{.cuts = Cuts::finest, .normals = true};
+    draw("_budget", Threshold(&offsets, found), found, finest);
+    draw("_finest", Threshold(&offsets, 12), 12, finest);
     const HierarchicalIndicator spread(grid, field, Spread{.factor = 2});
     write_surface(name + "_blend",
                   isosurface(grid, field, 40, Blended(&spread, 9, 2), spread, options), 9);

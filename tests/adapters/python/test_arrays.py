@@ -36,6 +36,7 @@ ISOSURFACES = {
     "coarse": {"threshold": 12},
     "cap": {"threshold": 12, "cap": True, "at_nodes": True, "normals": False},
     "budget": {"max_triangles": 1500},
+    "finest": {"threshold": 12, "cuts": "finest"},
     "blend": {"threshold": 9, "blend": 2},
     "visual": {"threshold": 0.4, "indicator": "visual"},
     "numerical": {"threshold": 30, "indicator": "numerical"},
