@@ -4,9 +4,9 @@
 // The deviations of elements: how far the data at all nodes that are made in an element, at any
 // depth, are from the interpolant of the values at its corners.
 //
-// One walk finds all of them: on the way down, each node has a row of numbers, the values there of
-// the interpolants of the elements around it, one for each level. A new node takes the means of the
-// rows of its parents, and each element the greatest difference to the value of the node.
+// One walk finds all of them: on the way down, each node has a row (path_rows.hpp) of the values
+// there of the interpolants of the elements around it, one for each level, and each element takes
+// the greatest difference to the value of the node.
 // Time: O(depth) a node. Memory: O(depth^2).
 #pragma once
 
@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include <walk/walk.hpp>
+#include <indicators/path_rows.hpp>
 
 namespace nestgrid::engine {
 
@@ -40,61 +40,49 @@ public:
     ///        it: the greatest numbers of all calls count
     template <class Left>
     void enter(const View& view, const Split& split, const Real* value, const Left& left) {
-        const View* const above = split_above(view);
-        while (depth_ > 0 && (above == nullptr || !levels_[depth_ - 1].is(*above))) leave(left);
-        if (above != nullptr && depth_ == 0) push_all(*above);
+        const View* const above = PathRows<Real>::split_above(view);
+        while (rows_.depth() > 0 && (above == nullptr || !rows_.last().is(*above))) leave(left);
+        if (above != nullptr && rows_.depth() == 0) push_all(*above);
         push(view, split, value);
     }
     /// Leaves all elements.
     template <class Left>
     void finish(const Left& left) {
-        while (depth_ > 0) leave(left);
+        while (rows_.depth() > 0) leave(left);
     }
     /// Forgets all elements.
-    void clear() { depth_ = 0; }
+    void clear() { rows_.clear(); }
 
 private:
-    /// An element above the walk, whose split makes nodes.
-    struct Level {
-        std::size_t coarse = 0;
-        int level = 0;
-        NodeKey path = 0;
-        const Rule* rule = nullptr;
-        std::size_t corners = 0;
-        std::size_t stride = 0;      // of rows
-        std::vector<double> rows;    // by node: its values of the interpolants, coarsest first
-        std::vector<NodeKey> made;   // keys of the new nodes
-        std::vector<double> offset;  // by new node: |U - P_S U| where it is dropped, at most
-        double corner_offset = 0;    // the greatest one at the corners, of the father's new nodes
-        double below = 0;            // greatest deviation of a child, with its corner_offset
-
-        bool is(const View& view) const {
-            return coarse == view.coarse && level == view.level && path == view.path;
-        }
+    /// What is known of an element that the walk is in, beside its rows.
+    struct Offsets {
+        std::vector<double> of_new;  // by new node: |U - P_S U| where it is dropped, at most
+        double of_corners = 0;       // the greatest one at the corners, of the father's new nodes
+        double below = 0;            // greatest deviation of a child, with its of_corners
     };
 
-    /// The next element above whose split makes nodes; null where there is none.
-    static const View* split_above(const View& view);
     void push_all(const View& view);
     void push(const View& view, const Split& split, const Real* value);
-    void take_corners(const View& view, const Real* value, Level& at);
-    void take_new_nodes(const Real* value, Level& at);
+    void compare_new_nodes(const Rule& rule, const Real* value);
+    double corner_offset();
 
     template <class Left>
     void leave(const Left& left) {
-        const Level& at = levels_[--depth_];
-        const double deviation = deviation_[depth_];
-        left(Deviation{at.made, deviation, stop_of(at, deviation)});
-        if (depth_ == 0) return;
-        double& below = levels_[depth_ - 1].below;
-        below = std::max(below, deviation + at.corner_offset);
+        const std::size_t at = rows_.depth() - 1;
+        const double deviation = deviation_[at];
+        left(Deviation{rows_.last().made, deviation, stop_of_last()});
+        if (at > 0) {
+            double& below = offsets_[at - 1].below;
+            below = std::max(below, deviation + offsets_[at].of_corners);
+        }
+        rows_.leave();
     }
-    static double stop_of(const Level& at, double deviation);
+    double stop_of_last();
 
     const Walk<Real>* walk_;
-    std::size_t depth_ = 0;
-    std::vector<Level> levels_;      // the first depth_ ones
-    std::vector<double> deviation_;  // of these
+    PathRows<Real> rows_;            // column a: the interpolant of element a
+    std::vector<Offsets> offsets_;   // by element
+    std::vector<double> deviation_;  // by element, padded like the rows
 };
 
 }  // namespace nestgrid::engine
