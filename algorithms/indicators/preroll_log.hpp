@@ -9,8 +9,8 @@
 
 namespace nestgrid::engine {
 
-/// Logs the splits, leaves and deviations that a part of a preroll meets, and tells Sweeps of them
-/// in this order.
+/// Logs the splits, leaves and deviations that a part of a preroll meets, and tells a receiver of
+/// them in this order.
 class PrerollLog {
 public:
     template <class Offset>
@@ -31,7 +31,9 @@ public:
         numbers_.push_back(float_above(d.stop));
     }
 
-    void repeat(Sweeps& sweeps) const {
+    /// \param sweeps has the three functions above
+    template <class Receiver>
+    void repeat(Receiver& sweeps) const {
         std::span<const NodeKey> keys(keys_);
         std::span<const float> numbers(numbers_);
         for (const Item& i : items_) {

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/cut_indicator.hpp>
+
+#include <bit>
+#include <cmath>
+
+#include <indicators/eta_source.hpp>
+#include <indicators/path_cuts.hpp>
+#include <indicators/spread.hpp>
+#include <indicators/star_sweep.hpp>
+#include <indicators/walk_in_logs.hpp>
+
+namespace nestgrid {
+
+namespace engine {
+
+namespace {
+
+/// What the walk over all splits is to do.
+struct CutWalk {
+    CutRequest request;
+    bool logs_splits;  ///< the sweep needs all splits
+    bool measures;     ///< the sweep needs distances between nodes
+};
+
+/// The numbers of all nodes, and the splits where the sweep needs them.
+class CutEtas {
+public:
+    explicit CutEtas(std::size_t dense) : etas_{dense} {}
+
+    template <class Offset>
+    void split(const MetSplit& s, Offset&&) {
+        const auto of = numbers(s.keys);
+        const auto corners = static_cast<std::size_t>(s.rule->corner_count());
+        for (NodeMask left = s.outside & s.rule->all(); left != 0; left &= left - 1) {
+            const auto n = static_cast<std::size_t>(std::countr_zero(left));
+            etas_.maxima()[of[corners + n]] = bfloat16_infinity;
+        }
+        etas_.maxima().add_split(s.level, *s.rule, of, s.reach);
+    }
+    void leaf(std::span<const NodeKey>, float) {}
+    void deviation(const Deviation& d) {
+        for (const std::size_t node : numbers(d.made)) etas_.raise(node, d.stop);
+    }
+    NodeEtas& etas() { return etas_; }
+
+private:
+    std::span<const std::size_t> numbers(std::span<const NodeKey> keys) {
+        etas_.maxima().find(keys, numbers_);
+        return std::span(numbers_).first(keys.size());
+    }
+
+    NodeEtas etas_;
+    std::array<std::size_t, max_corners + max_new_nodes> numbers_{};
+};
+
+/// Tells a receiver of the numbers of the elements that a walk meets, and of splits.
+/// \tparam Receiver CutEtas or PrerollLog
+template <class Real, class Receiver>
+class CutVisitor final : public TaskVisitor<Real> {
+public:
+    using View = ElementView<Real>;
+
+    CutVisitor(const Walk<Real>& walk, const CutWalk& what, Receiver& receiver)
+        : walk_{&walk},
+          what_{&what},
+          receiver_{&receiver},
+          cuts_{walk, what.request, [this](std::span<const NodeKey> made, double eta) {
+                    receiver_->deviation({made, eta, eta});
+                }} {}
+
+    bool sees_hidden() const override { return true; }
+    Leaves leaves(const Rule& rule, const Real*, NodeMask which, bool) override {
+        // entered() is not called for copies.
+        return {0, in_sight_ || rule.new_nodes.empty() ? which : NodeMask{0}};
+    }
+    Decision inspect(const View& view, const Split& split) override {
+        const bool seen = cuts_.enter(view, split);
+        return {seen || what_->logs_splits ? Visit::descend : Visit::skip, 0};
+    }
+    void entered(const View& view, const Split& split, const Real* value) override {
+        if (what_->logs_splits) tell_of(view, split);
+        in_sight_ = cuts_.is_in(view);
+        if (in_sight_) cuts_.split(split, value);
+    }
+    void extract(const View&) override {}
+    void finish() { cuts_.finish(); }
+
+    Decision look(const View&, const Split&) override { return {}; }
+    void undo() override {}
+    void restart() override {
+        cuts_.clear();
+        if constexpr (std::is_same_v<Receiver, PrerollLog>) receiver_->clear();
+    }
+
+private:
+    void tell_of(const View& view, const Split& split) {
+        SplitKeys keys;
+        SplitPositions x;
+        const float reach =
+            what_->measures ? reach_of(*split.rule, walk_->split_positions(view, split, x)) : 0;
+        receiver_->split(
+            {split.rule, view.level, split.outside, reach, walk_->split_keys(view, split, keys)},
+            [](std::size_t) { return 0.0F; });
+    }
+
+    const Walk<Real>* walk_;
+    const CutWalk* what_;
+    Receiver* receiver_;
+    PathCuts<Real> cuts_;
+    bool in_sight_ = false;  // PathCuts wants to see the leaves of the split that was entered last
+};
+
+template <class Real>
+void walk_cuts(const Walk<Real>& walk, const CutWalk& what, CutEtas& etas,
+               const Executor& executor) {
+    if (executor.concurrency() > 1) {
+        using Visitor = CutVisitor<Real, PrerollLog>;
+        walk_in_logs(
+            walk, executor,
+            [&](PrerollLog& log) { return std::make_unique<Visitor>(walk, what, log); },
+            [&](const Visitor&, const PrerollLog& log) { log.repeat(etas); });
+        return;
+    }
+    CutVisitor<Real, CutEtas> visitor(walk, what, etas);
+    walk.run(visitor);
+    visitor.finish();
+}
+
+bool are_simplices(const HierarchyFacts& facts) {
+    return facts.only_shape == Shape::tetrahedron || facts.only_shape == Shape::triangle;
+}
+
+template <class Real>
+SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& request,
+                            const Spread& spread, const Executor& executor) {
+    require_spread(spread);
+    for (const double isovalue : request.isovalues) {
+        if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
+    }
+    const HierarchyFacts& facts = hierarchy.facts();
+    if (request.bounds->epoch() != hierarchy.epoch()) {
+        throw GridError("the grid has changed since its bounds were computed");
+    }
+    const bool in_rows = facts.knows_star_positions;
+    const bool measures = spread.slope > 0 && !in_rows;
+    const Walk<Real> walk(hierarchy,
+                          {.values = true,
+                           .keys = true,
+                           .positions = measures || request.distances || !are_simplices(facts)},
+                          request.bounds->hanging());
+    CutEtas etas(facts.node_count);
+    walk_cuts(walk, CutWalk{request, !in_rows, measures}, etas, executor);
+    if (!in_rows) return {etas.etas().saturate(spread), spread};
+    auto table = etas.etas().take();
+    sweep_rows(hierarchy, spread, table.dense);
+    return {std::move(table), spread};
+}
+
+}  // namespace
+
+}  // namespace engine
+
+SweptIndicator cut_deviations(const Hierarchy<float>& hierarchy, std::span<const double> isovalues,
+                              const Bounds& bounds, const Spread& spread,
+                              const Executor& executor) {
+    return engine::measure_cuts(hierarchy, {isovalues, &bounds, false}, spread, executor);
+}
+
+SweptIndicator cut_deviations(const Hierarchy<double>& hierarchy, std::span<const double> isovalues,
+                              const Bounds& bounds, const Spread& spread,
+                              const Executor& executor) {
+    return engine::measure_cuts(hierarchy, {isovalues, &bounds, false}, spread, executor);
+}
+
+SweptIndicator slope_deviations(const Hierarchy<float>& hierarchy,
+                                std::span<const double> isovalues, const Bounds& bounds,
+                                const Spread& spread, const Executor& executor) {
+    return engine::measure_cuts(hierarchy, {isovalues, &bounds, true}, spread, executor);
+}
+
+SweptIndicator slope_deviations(const Hierarchy<double>& hierarchy,
+                                std::span<const double> isovalues, const Bounds& bounds,
+                                const Spread& spread, const Executor& executor) {
+    return engine::measure_cuts(hierarchy, {isovalues, &bounds, true}, spread, executor);
+}
+
+}  // namespace nestgrid
