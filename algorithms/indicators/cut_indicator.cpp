@@ -152,10 +152,11 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
                           request.bounds->hanging());
     CutEtas etas(facts.node_count);
     walk_cuts(walk, CutWalk{request, !in_rows, measures}, etas, executor);
-    if (!in_rows) return {etas.etas().saturate(spread), spread};
+    const auto promised = request.distances ? std::span<const double>{} : request.isovalues;
+    if (!in_rows) return {etas.etas().saturate(spread), spread, promised};
     auto table = etas.etas().take();
     sweep_rows(hierarchy, spread, table.dense);
-    return {std::move(table), spread};
+    return {std::move(table), spread, promised};
 }
 
 }  // namespace

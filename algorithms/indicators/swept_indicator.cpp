@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
+#include <algorithm>
+#include <limits>
+
 #include <indicators/diameter.hpp>
 #include <indicators/eta_source.hpp>
 #include <nestgrid/detail/interpolate.hpp>
@@ -25,6 +28,19 @@ NodeMask SweptIndicator::stops_at_most(const Rule&, std::span<const NodeKey> nod
         mask |= NodeMask{stops_.at(nodes[i]) <= most} << i;
     }
     return mask;
+}
+
+double SweptIndicator::surface_error(std::span<const double> isovalues, double epsilon) const {
+    const bool known = std::ranges::all_of(isovalues, [&](double isovalue) {
+        return std::ranges::find(isovalues_, isovalue) != isovalues_.end();
+    });
+    if (!known || !(epsilon >= 0)) return std::numeric_limits<double>::infinity();
+    const std::uint16_t most = bfloat16_below(epsilon);
+    std::uint16_t greatest = 0;
+    stops_.for_each([&](std::uint16_t stop) {
+        if (stop <= most) greatest = std::max(greatest, stop);
+    });
+    return bfloat16_value(greatest);
 }
 
 namespace {

@@ -4,6 +4,7 @@
 // Which elements a walk enters to find level sets, and at which it stops.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include <contours/level.hpp>
@@ -40,6 +41,11 @@ public:
     /// Whether a level is that of a function of position.
     bool is_slice(const Level<Real>& level) const { return level.component < functions_; }
     const Bounds& bounds() const { return *bounds_; }
+    /// What the criterion promises of a level (Criterion::surface_error); nothing of a slice.
+    double surface_error(const Level<Real>& level) const {
+        constexpr double nothing = std::numeric_limits<double>::infinity();
+        return is_slice(level) ? nothing : criterion_->surface_error({&level.value, 1});
+    }
     /// Whether elements may stop without conforming to their neighbours.
     bool may_stop_apart() const {
         return engine::may_stop_apart(walk_->hierarchy(), *criterion_, *bounds_);

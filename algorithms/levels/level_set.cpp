@@ -167,6 +167,10 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
     result.range_bound = range_bound(search_->levels()[i], *search_);
     const double error_bound = surfaces_[i].error_bound() + surfaces_[i].off_level();
     result.error_bound = std::min(error_bound, result.range_bound);
+    result.surface_error =
+        std::max(surfaces_[i].leaf_error(), search_->surface_error(search_->levels()[i]));
+    result.error_bound =
+        std::min({surfaces_[i].error_bound(), result.range_bound, result.surface_error});
     result.position_bound = surfaces_[i].position_bound();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
     result.table_bytes = normals_.memory_bytes() + walks_.memory_bytes();
@@ -373,6 +377,10 @@ void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);
     surface.raise_error_bound(error_bound(at_hand_.cuts, *search_, at_hand_.bound));
     surface.raise_off_level(at_hand_.cuts.off_level());
+    const double bound = error_bound(at_hand_.cuts, *search_, at_hand_.bound);
+    const View& view = at_hand_.cuts.view();
+    surface.raise_error_bound(bound);
+    if (view.is_leaf() && view.interpolated == 0) surface.raise_leaf_error(bound);
     if (options_->position_bounds != nullptr) {
         surface.raise_position_bound(
             position_bound(at_hand_.cuts, *options_->position_bounds, at_hand_.position_bound));

@@ -73,6 +73,7 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
         surface.add_extracted(drawn.surfaces_[i].extracted());
         surface.raise_error_bound(drawn.surfaces_[i].error_bound());
         surface.raise_off_level(drawn.surfaces_[i].off_level());
+        surface.raise_leaf_error(drawn.surfaces_[i].leaf_error());
         surface.raise_position_bound(drawn.surfaces_[i].position_bound());
         if (leader.walks_.is_recording()) {
             leader.transitions_[i].record.append(drawn.transitions_[i].record);

@@ -28,6 +28,7 @@ void LevelSurface<dimension>::begin(Builder builder, const VertexNormals& normal
     extracted_ = 0;
     error_bound_ = 0;
     off_level_ = 0;
+    leaf_error_ = 0;
     position_bound_ = 0;
 }
 

@@ -126,6 +126,9 @@ public:
     /// Notes that a vertex on an edge lies where P_S U differs from the level by this.
     void raise_off_level(double off) { off_level_ = std::max(off_level_, std::abs(off)); }
     double off_level() const { return off_level_; }
+    /// The same of the parts in leaves, which are as flat as without a criterion.
+    void raise_leaf_error(double bound) { leaf_error_ = std::max(leaf_error_, bound); }
+    double leaf_error() const { return leaf_error_; }
     void raise_position_bound(double bound) { position_bound_ = std::max(position_bound_, bound); }
     double position_bound() const { return position_bound_; }
 
@@ -166,6 +169,7 @@ private:
     std::uint64_t extracted_ = 0;
     double error_bound_ = 0;
     double off_level_ = 0;
+    double leaf_error_ = 0;
     double position_bound_ = 0;
     bool keeps_simplices_ = false;
     bool verifies_ = false;

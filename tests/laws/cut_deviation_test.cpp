@@ -362,6 +362,50 @@ TYPED_TEST(CutDeviation, ThatStopsIsTheErrorOfTheSurfaceThereAndBack) {
     });
 }
 
+TYPED_TEST(CutDeviation, KeepsTheErrorOfClosedSurfaces) {
+    constexpr int dimension = TypeParam::Grid::dimension;
+    for_each_cut_field<TypeParam>(3, 6, [&](const auto& h) {
+        const HierarchicalIndicator bounds(h);
+        const std::array<double, 1> isovalue{0};
+        const SweptIndicator indicator = cut_deviations(h, isovalue, bounds);
+        const double flat = isosurface<dimension>(h, 0.0, Exact(), bounds).surface_error;
+        EXPECT_TRUE(flat == 0 || !has_simplices_only(h));
+        for (const double threshold : all_thresholds) {
+            SCOPED_TRACE(threshold);
+            const Threshold s(&indicator, threshold);
+            const auto result = isosurface<dimension>(h, 0.0, s, bounds);
+            expect_closed(result.surface);
+            EXPECT_LE(result.surface_error, std::max(threshold, flat));
+            EXPECT_LE(result.error_bound, result.surface_error);
+            EXPECT_LE(greatest_on_surface(h, result.surface, 0),
+                      result.surface_error + cut_distance * (1 + result.range_bound));
+        }
+        const auto other = isosurface<dimension>(h, 0.1, Threshold(&indicator, 0.3), bounds);
+        EXPECT_EQ(other.surface_error, std::numeric_limits<double>::infinity());
+    });
+}
+
+TYPED_TEST(CutDeviation, GoesWithOtherCriteria) {
+    const std::array<double, 1> isovalue{0};
+    for_each_cut_field<TypeParam>(2, 8, [&](const auto& h) {
+        const HierarchicalIndicator bounds(h);
+        const SweptIndicator indicator = cut_deviations(h, isovalue, bounds, {.factor = 1.5});
+        expect_saturated(h, indicator);
+        const Projected exact(h, Exact(), 0.0);
+        for (const double threshold : {0.1, 0.5}) {
+            SCOPED_TRACE(threshold);
+            const Blended blended(&indicator, threshold, 1.5);
+            const double most = blended.surface_error(isovalue);
+            EXPECT_LE(most, 1.5 * threshold);
+            EXPECT_LE(errors_of(h, exact, blended, 0).greatest(), most + rounding);
+            const auto both = Threshold(&indicator, threshold) && Threshold(&bounds, 0.4);
+            EXPECT_LE(errors_of(h, exact, both, 0).greatest(),
+                      both.surface_error(isovalue) + rounding);
+            EXPECT_LE(both.surface_error(isovalue), threshold);
+        }
+    });
+}
+
 TYPED_TEST(CutDeviation, DependsNeitherOnThreadsNorOnTheOrder) {
     for_each_cut_field<TypeParam>(2, 7, [](const auto& h) {
         const std::array<double, 2> isovalues{0, 0.4};
@@ -382,6 +426,59 @@ TYPED_TEST(CutDeviation, DependsNeitherOnThreadsNorOnTheOrder) {
             }
         }
     });
+}
+
+/// On a lattice, where the walk leaves out what the isovalue does not pass and rows of nodes
+/// saturate the numbers.
+template <class Grid>
+void expect_error_on_lattice(const Grid& grid, std::size_t count) {
+    constexpr int dimension = Grid::dimension;
+    std::mt19937 random(11);
+    for (const bool noise : {true, false}) {
+        std::vector<double> values(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            values[i] = noise ? uniform(random) : std::sin(0.01 * static_cast<double>(i));
+        }
+        const LatticeField field(grid, std::span<const double>(values));
+        const auto h = erase(grid, field);
+        ASSERT_TRUE(h.facts().knows_star_positions);
+        const std::array<double, 1> isovalue{0.5};
+        const HierarchicalIndicator bounds(h);
+        const SweptIndicator indicator = cut_deviations(h, isovalue, bounds);
+        expect_saturated(h, indicator);
+        expect_saturated(h, slope_deviations(h, isovalue, bounds, {.slope = 0.1}));
+        const SweptIndicator many = cut_deviations(h, isovalue, bounds, {}, ThreadExecutor(3));
+        for (NodeKey node = 0; node < h.facts().node_count; ++node) {
+            EXPECT_EQ(many.stop(node), indicator.stop(node));
+        }
+        const Projected exact(h, Exact(), 0.5);
+        for (const double threshold : {0.0, 0.02, 0.2, 0.4}) {
+            const Threshold s(&indicator, threshold);
+            EXPECT_LE(errors_of(h, exact, s, 0.5).greatest(), threshold + rounding);
+            const auto result = isosurface<dimension>(h, 0.5, s, bounds);
+            expect_closed(result.surface);
+            EXPECT_LE(greatest_on_surface(h, result.surface, 0.5),
+                      result.surface_error + cut_distance);
+        }
+    }
+}
+
+TEST(CutDeviation, IsTheErrorOnLattices) {
+    expect_error_on_lattice(LatticeBisection<3>({.samples = {9, 17, 9}}), 9 * 17 * 9);
+    expect_error_on_lattice(LatticeBisection<3>({.samples = {11, 9, 14}}), 11 * 9 * 14);
+    expect_error_on_lattice(LatticeBisection<2>({.samples = {33, 17}}), 33 * 17);
+    expect_error_on_lattice(LatticeOctree<3>({.samples = {9, 9, 17}}), 9 * 9 * 17);
+    expect_error_on_lattice(LatticeOctree<2>({.samples = {20, 13}}), 20 * 13);
+}
+
+TEST(CutDeviation, RefusesWhatIsNoIsovalue) {
+    const LatticeBisection<2> grid({.samples = {5, 5}});
+    const std::vector<double> values(25, 1);
+    const LatticeField field(grid, std::span<const double>(values));
+    const HierarchicalIndicator bounds(grid, field);
+    const std::array<double, 1> nan{std::numeric_limits<double>::quiet_NaN()};
+    EXPECT_THROW(cut_deviations(grid, field, nan, bounds), InvalidInput);
+    EXPECT_THROW(slope_deviations(grid, field, nan, bounds), InvalidInput);
 }
 
 }  // namespace

@@ -38,6 +38,9 @@ public:
     bool blends() const override { return factor_ > 1; }
     void weights(const NewNodes& nodes, std::span<float> s) const override;
     bool saturated() const override;
+    double surface_error(std::span<const double> isovalues) const override {
+        return indicator_->surface_error(isovalues, factor_ * epsilon_);
+    }
 
 private:
     const Indicator* indicator_;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -51,6 +52,11 @@ public:
     /// Whether the criterion is to be used although it is not saturated. Then the surface may have
     /// open edges and lack parts, and no bound is given.
     virtual bool insists() const { return false; }
+    /// What Isosurface::surface_error is at most, for each of these isovalues, but for the flatness
+    /// of triangles in leaves; infinity where the criterion promises nothing.
+    virtual double surface_error(std::span<const double> /*isovalues*/) const {
+        return std::numeric_limits<double>::infinity();
+    }
 
 protected:
     Criterion() = default;
@@ -88,6 +94,10 @@ public:
         }
         return mask;
     }
+    /// The same promise as Criterion::surface_error, of elements that stop where eta <= epsilon.
+    virtual double surface_error(std::span<const double> /*isovalues*/, double /*epsilon*/) const {
+        return std::numeric_limits<double>::infinity();
+    }
 
 protected:
     Indicator() = default;
@@ -120,6 +130,9 @@ public:
         return indicator_->stops_at_most(nodes.rule, nodes.keys, epsilon_) & ~nodes.outside;
     }
     bool saturated() const override { return indicator_->saturated(); }
+    double surface_error(std::span<const double> isovalues) const override {
+        return indicator_->surface_error(isovalues, epsilon_);
+    }
 
 private:
     const Indicator* indicator_;
@@ -148,6 +161,7 @@ class Exact final : public Criterion {
 public:
     NodeMask holds(const NewNodes&) const override { return 0; }
     bool saturated() const override { return true; }
+    double surface_error(std::span<const double>) const override { return 0; }
 };
 
 namespace detail {
@@ -193,6 +207,9 @@ public:
     }
     void weights(const NewNodes& nodes, std::span<float> s) const override {
         this->combine(nodes, s, [](float a, float b) { return std::min(a, b); });
+    }
+    double surface_error(std::span<const double> isovalues) const override {
+        return std::min(this->a_.surface_error(isovalues), this->b_.surface_error(isovalues));
     }
 };
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 
 #include <nestgrid/algorithms/surface.hpp>
 
@@ -100,6 +101,12 @@ struct Isosurface : ErrorBounds {
     /// a grid with true positions (curved elements). 0 where options.position_bounds is null;
     /// infinity under a criterion that is not saturated.
     double position_bound = 0;
+    /// The error there and back that cut_deviations() promise (cut_indicator.hpp), where a
+    /// threshold on them was the criterion: |U - C| on the triangles, |P_S U - C| on the whole
+    /// surface U = C, and |U - C| wherever inside and outside are not those of U; all at most this.
+    /// It is no less than what the flatness of triangles in leaves makes it, in shapes other than
+    /// simplices. Infinity under other criteria, but for none (Exact).
+    double surface_error = std::numeric_limits<double>::infinity();
     bool cancelled = false;       ///< by options.progress; the surface is then a part
     std::size_t table_bytes = 0;  ///< hash tables used while extracting
     std::size_t stack_bytes = 0;  ///< depth of the traversal times the size of one state

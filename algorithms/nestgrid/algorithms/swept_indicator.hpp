@@ -50,18 +50,26 @@ using Measure = std::function<void(const MeasuredSplit& split, std::span<double>
 /// An indicator that keeps eta for every node. Movable; functions that measure return it.
 class SweptIndicator final : public Indicator {
 public:
-    SweptIndicator(detail::NodeTable<std::uint16_t> stops, const Spread& spread)
-        : stops_{std::move(stops)}, spread_{spread} {}
+    /// \param isovalues of which the numbers promise a surface_error(); none by default
+    SweptIndicator(detail::NodeTable<std::uint16_t> stops, const Spread& spread,
+                   std::span<const double> isovalues = {})
+        : stops_{std::move(stops)},
+          spread_{spread},
+          isovalues_(isovalues.begin(), isovalues.end()) {}
 
     double stop(NodeKey node) const override { return bfloat16_value(stops_.at(node)); }
     NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> nodes,
                            double epsilon) const override;
     Spread spread() const override { return spread_; }
+    /// The greatest number that is at most epsilon: all others are those of elements that are
+    /// entered. Looks at all nodes.
+    double surface_error(std::span<const double> isovalues, double epsilon) const override;
     std::size_t memory_bytes() const { return stops_.memory_bytes(); }
 
 private:
     detail::NodeTable<std::uint16_t> stops_;  // bfloat16
     Spread spread_;
+    std::vector<double> isovalues_;
 };
 
 /// The indicator of a measure of all components of a field.

@@ -20,6 +20,12 @@ struct NodeTable {
         const Number* number = sparse.find(node);
         return number == nullptr ? Number{0} : *number;
     }
+    /// Calls function(number) for all nodes.
+    template <class Function>
+    void for_each(Function&& function) const {
+        for (const Number number : dense) function(number);
+        sparse.for_each([&](NodeKey, Number number) { function(number); });
+    }
     std::size_t memory_bytes() const {
         return dense.size() * sizeof(Number) + sparse.memory_bytes();
     }
