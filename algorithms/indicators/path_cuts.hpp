@@ -26,7 +26,7 @@
 #include <span>
 #include <vector>
 
-#include <indicators/affine_slopes.hpp>
+#include <indicators/cut_measure.hpp>
 #include <indicators/path_rows.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 
@@ -51,7 +51,10 @@ public:
     /// \param walk must carry values and keys, and project nothing away; and positions where
     ///        elements are no simplices, and for distances
     PathCuts(const Walk<Real>& walk, const CutRequest& request, Report report)
-        : walk_{&walk}, request_{request}, report_{std::move(report)} {}
+        : walk_{&walk},
+          request_{request},
+          report_{std::move(report)},
+          measure_{request.isovalues, request.distances} {}
 
     /// Called for each element: leaves those that are not above it, and measures a leaf.
     /// \return whether elements below it are to be shown
@@ -77,8 +80,7 @@ private:
         std::size_t own = 0;        // its own columns begin here, behind those for its father
         std::size_t for_above = 0;  // and these
         double below = 0;           // greatest number in the columns that its children begin for it
-        std::array<double, max_corners> value{};  // at its corners
-        std::vector<Real> least;                  // by node, while other nodes are dropped
+        std::vector<Real> least;    // by node, while other nodes are dropped
         std::vector<Real> greatest;
     };
     struct Place {
@@ -92,30 +94,18 @@ private:
     bool enter_one(const View& view, const Split& split);
     void begin_for_above(const View& view);
     void begin_columns(const View& view, std::size_t own);
-    bool is_to_be_seen(const View& view, double bound);
-    bool is_to_be_seen(const View& view, double isovalue, double bound);
-    bool raise_one_sided(const View& view, std::size_t column, double error, double bound);
-    void measure_leaf(const View& view);
-    void measure_pair(std::size_t j, std::size_t k, double isovalue);
-    void measure_corner(std::size_t k, double isovalue);
-    AffineSlopes slopes(const View& view) const;
-    double data_per_slope(const AffineSlopes& slopes) const;
-    void find_slopes(const View& view);
+    void set_corners(const View& view);
     void leave();
     void leave_unsplit();
-    double greatest_of(std::size_t first, std::size_t last) const;
-    double residual(const View& view, std::span<const double> u) const;
 
     const Walk<Real>* walk_;
     CutRequest request_;
     Report report_;
     PathRows<Real> rows_;
-    std::vector<Cuts> cuts_;                        // by element
-    std::vector<double> greatest_;                  // by column: the greatest error so far
-    std::vector<double> most_;                      // by column: distances are no greater
-    std::vector<double> column_low_, column_high_;  // of the element at hand, at its corners
-    std::vector<double> per_slope_;                 // by column: 1 / slope in the element at hand
-    double data_per_slope_ = 1;
+    std::vector<Cuts> cuts_;  // by element
+    CutMeasure measure_;
+    CutCorners corners_{};  // of the last element
+    std::array<Point, max_corners> position_{};
     Place skipped_;  // the element that was left out last
 };
 

@@ -18,11 +18,18 @@ void take_mean(const Stencil& stencil, const double* rows, std::size_t stride, d
         for (std::size_t i = 0; i < stride; ++i) row[i] = 0.5 * (a[i] + b[i]);
         return;
     }
-    std::fill_n(row, stride, 0.0);
-    for (std::size_t p = 0; p < stencil.count; ++p) {
-        const double weight = stencil.weight[p];
-        const double* const of = rows + stencil.parent[p] * stride;
-        for (std::size_t i = 0; i < stride; ++i) row[i] += weight * of[i];
+    const double* const first = rows + stencil.parent[0] * stride;
+    for (std::size_t i = 0; i < stride; ++i) {
+        double sum = stencil.weight[0] * first[i];
+        double low = first[i];
+        double high = first[i];
+        for (std::size_t p = 1; p < stencil.count; ++p) {
+            const double of = rows[stencil.parent[p] * stride + i];
+            sum += stencil.weight[p] * of;
+            low = std::min(low, of);
+            high = std::max(high, of);
+        }
+        row[i] = std::clamp(sum, low, high);  // rounding leads no mean out of the range
     }
 }
 
