@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include <indicators/eta_source.hpp>
-#include <indicators/path_cuts.hpp>
+#include <indicators/lattice_cuts.hpp>
+#include <indicators/lattice_deviations.hpp>
 #include <indicators/spread.hpp>
 #include <indicators/star_sweep.hpp>
 #include <indicators/walk_in_logs.hpp>
@@ -143,19 +144,23 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
     if (request.bounds->epoch() != hierarchy.epoch()) {
         throw GridError("the grid has changed since its bounds were computed");
     }
-    const bool in_rows = facts.knows_star_positions;
-    const bool measures = spread.slope > 0 && !in_rows;
-    const Walk<Real> walk(hierarchy,
-                          {.values = true,
-                           .keys = true,
-                           .positions = measures || request.distances || !are_simplices(facts)},
-                          request.bounds->hanging());
-    CutEtas etas(facts.node_count);
-    walk_cuts(walk, CutWalk{request, !in_rows, measures}, etas, executor);
+    // Distances keep no promise.
     const auto promised = request.distances ? std::span<const double>{} : request.isovalues;
-    if (!in_rows) return {etas.etas().saturate(spread), spread, promised};
-    auto table = etas.etas().take();
-    sweep_rows(hierarchy, spread, table.dense);
+    const bool in_rows = facts.knows_star_positions;
+    detail::NodeTable<std::uint16_t> table;
+    if (bisects_by_keys(hierarchy)) {
+        table.dense = lattice_cuts(hierarchy, request, executor);
+    } else {
+        const bool measures = spread.slope > 0 && !in_rows;
+        const Needs needs{.values = true,
+                          .keys = true,
+                          .positions = measures || request.distances || !are_simplices(facts)};
+        CutEtas etas(facts.node_count);
+        walk_cuts(Walk<Real>(hierarchy, needs, request.bounds->hanging()),
+                  CutWalk{request, !in_rows, measures}, etas, executor);
+        table = in_rows ? etas.etas().take() : etas.etas().saturate(spread);
+    }
+    if (in_rows) sweep_rows(hierarchy, spread, table.dense);
     return {std::move(table), spread, promised};
 }
 

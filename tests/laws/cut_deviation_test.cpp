@@ -364,13 +364,13 @@ TYPED_TEST(CutDeviation, ThatStopsIsTheErrorOfTheSurfaceThereAndBack) {
 
 TYPED_TEST(CutDeviation, KeepsTheErrorOfClosedSurfaces) {
     constexpr int dimension = TypeParam::Grid::dimension;
-    for_each_cut_field<TypeParam>(3, 6, [&](const auto& h) {
+    for_each_cut_field<TypeParam>(2, 6, [&](const auto& h) {
         const HierarchicalIndicator bounds(h);
         const std::array<double, 1> isovalue{0};
         const SweptIndicator indicator = cut_deviations(h, isovalue, bounds);
         const double flat = isosurface<dimension>(h, 0.0, Exact(), bounds).surface_error;
         EXPECT_TRUE(flat == 0 || !has_simplices_only(h));
-        for (const double threshold : all_thresholds) {
+        for (const double threshold : {0.0, 0.1, 0.3, 1.0}) {
             SCOPED_TRACE(threshold);
             const Threshold s(&indicator, threshold);
             const auto result = isosurface<dimension>(h, 0.0, s, bounds);
