@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include <levels/error_bound.hpp>
 
@@ -165,12 +166,12 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
     result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
     result.counts.extracted = surfaces_[i].extracted();
     result.range_bound = range_bound(search_->levels()[i], *search_);
-    const double error_bound = surfaces_[i].error_bound() + surfaces_[i].off_level();
-    result.error_bound = std::min(error_bound, result.range_bound);
-    result.surface_error =
-        std::max(surfaces_[i].leaf_error(), search_->surface_error(search_->levels()[i]));
-    result.error_bound =
-        std::min({surfaces_[i].error_bound(), result.range_bound, result.surface_error});
+    const double off_level = surfaces_[i].off_level();
+    result.surface_error = off_level > 0 ? std::numeric_limits<double>::infinity()
+                                         : std::max(surfaces_[i].leaf_error(),
+                                                    search_->surface_error(search_->levels()[i]));
+    result.error_bound = std::min(
+        {surfaces_[i].error_bound() + off_level, result.range_bound, result.surface_error});
     result.position_bound = surfaces_[i].position_bound();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
     result.table_bytes = normals_.memory_bytes() + walks_.memory_bytes();
@@ -375,7 +376,6 @@ void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigne
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);
-    surface.raise_error_bound(error_bound(at_hand_.cuts, *search_, at_hand_.bound));
     surface.raise_off_level(at_hand_.cuts.off_level());
     const double bound = error_bound(at_hand_.cuts, *search_, at_hand_.bound);
     const View& view = at_hand_.cuts.view();
