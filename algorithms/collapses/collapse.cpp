@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/collapse.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include <nestgrid/algorithms/normals.hpp>
+#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/error.hpp>
+
+#include <collapses/collapse_rounds.hpp>
+#include <surfaces/require_simplices.hpp>
+
+namespace nestgrid {
+
+namespace {
+
+void require(const CollapseOptions& options, double isovalue) {
+    if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
+    if (!(options.error > 0) || !std::isfinite(options.error)) {
+        throw InvalidInput("the error of a collapse is not a positive number");
+    }
+    if (!(options.turn > 0 && options.turn < 90)) {
+        throw InvalidInput("the greatest turn of a triangle is not between 0 and 90 degrees");
+    }
+    if (!(options.shape >= 0 && options.shape < 1)) {
+        throw InvalidInput("the least quality of a triangle is not between 0 and 1");
+    }
+}
+
+/// The triangles of a surface in order, each judged by the field.
+/// \param take take(triangle, whether it keeps the error) is called in order
+/// \return the greatest |U - C| of those that do
+template <class Take>
+double judge(const Surface<3>& surface, const engine::FieldCheck& field, const Executor& executor,
+             const Take& take) {
+    constexpr std::size_t chunk = 4096;
+    const std::size_t count = surface.simplices.size();
+    const std::size_t tasks = (count + chunk - 1) / chunk;
+    std::vector<std::uint8_t> keeps(count);
+    std::vector<double> greatest(tasks, 0);
+    executor.run(
+        tasks,
+        [&](std::size_t i) {
+            for (std::size_t t = i * chunk; t < std::min(count, (i + 1) * chunk); ++t) {
+                const auto& [a, b, c] = surface.simplices[t];
+                const engine::FlatTriangle triangle(
+                    {surface.vertices[a], surface.vertices[b], surface.vertices[c]});
+                keeps[t] = field.keeps(triangle, greatest[i]) ? 1 : 0;
+            }
+        },
+        [](std::size_t) {});
+    for (std::size_t t = 0; t < count; ++t) take(t, keeps[t] != 0);
+    double most = 0;
+    for (const double part : greatest) most = std::max(most, part);
+    return most;
+}
+
+/// Gives a surface that has changed what it had by vertex.
+template <class Real>
+void renew(Surface<3>& surface, const Hierarchy<Real>& hierarchy, std::size_t attributes,
+           bool normals) {
+    surface.attributes.clear();
+    surface.normals.clear();
+    if (attributes > 0) {
+        const ProbeResult probed = probe<Real>(hierarchy, surface.vertices);
+        const std::size_t first = probed.components - attributes;
+        for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+            const auto of =
+                probed.values.begin() + static_cast<std::ptrdiff_t>(v * probed.components);
+            surface.attributes.insert(surface.attributes.end(),
+                                      of + static_cast<std::ptrdiff_t>(first),
+                                      of + static_cast<std::ptrdiff_t>(probed.components));
+        }
+    }
+    if (normals) settle_normals(surface);
+    surface.element_of.clear();
+    surface.reference.clear();
+    surface.elements = {};
+    surface.shape_of.clear();
+    surface.level_of.clear();
+}
+
+}  // namespace
+
+template <class Real>
+Collapsed collapse(Surface<3>& surface, const Hierarchy<Real>& hierarchy, double isovalue,
+                   const Bounds& bounds, const CollapseOptions& options, const Executor& executor) {
+    require(options, isovalue);
+    engine::require_simplices(surface);
+    const auto leaves = engine::NearLeaves::find(hierarchy, isovalue, options.error, bounds);
+    if (surface.simplices.empty()) return {};
+    const engine::FieldCheck field(leaves);
+    const engine::StrongNodes strong(leaves);
+    const auto box = engine::Box::around(surface.vertices);
+    const engine::CollapseRules rules{
+        .field = &field,
+        .strong = &strong,
+        .middle = 0.5 * (box.low + box.high),
+        .least_cosine = std::cos(options.turn * std::numbers::pi / 180),
+        .least_shape = options.shape};
+    const std::size_t attributes = surface.attributes.size() / surface.vertices.size();
+    const bool normals = !surface.normals.empty();
+    engine::CollapseRounds rounds(surface, leaves, rules, executor);
+    judge(surface, field, executor, [&](std::size_t t, bool keeps) {
+        if (!keeps) rounds.fasten(t);
+    });
+    Collapsed result = rounds.run();
+    rounds.finish();
+    result.error = judge(surface, field, executor,
+                         [&](std::size_t, bool keeps) { result.exceeding += keeps ? 0U : 1U; });
+    renew(surface, hierarchy, attributes, normals);
+    return result;
+}
+
+template Collapsed collapse(Surface<3>&, const Hierarchy<float>&, double, const Bounds&,
+                            const CollapseOptions&, const Executor&);
+template Collapsed collapse(Surface<3>&, const Hierarchy<double>&, double, const Bounds&,
+                            const CollapseOptions&, const Executor&);
+
+}  // namespace nestgrid

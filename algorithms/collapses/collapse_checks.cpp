@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <collapses/collapse_checks.hpp>
+
+#include <collapses/separated.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+/// 1 for an equilateral triangle, 0 for one without area.
+double shape_of(const Triangle& x) {
+    constexpr double of_equilateral = 3.4641016151377544;  // makes it 1
+    const Point a = x[1] - x[0];
+    const Point b = x[2] - x[0];
+    const Point c = x[2] - x[1];
+    return of_equilateral * norm(cross(a, b)) / (dot(a, a) + dot(b, b) + dot(c, c));
+}
+
+Box box_of_all(const BlockMesh& mesh) {
+    Box box;
+    for (const CollapsingVertex& vertex : mesh.vertices) box.add(vertex.x);
+    return box;
+}
+
+}  // namespace
+
+CollapseChecks::CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region)
+    : mesh_{&mesh},
+      rules_{&rules},
+      region_{region},
+      cells_(box_of_all(mesh), mesh.triangles.size()),
+      in_star_(mesh.triangles.size(), 0) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        cells_.add(t, Box::around(mesh.corners(t)));
+    }
+}
+
+void CollapseChecks::note_changed(std::uint32_t vertex) {
+    for (const std::uint32_t t : mesh_->around(vertex)) {
+        cells_.add(t, Box::around(mesh_->corners(t)));
+    }
+}
+
+Refusal CollapseChecks::refuse(const BlockMesh::Star& star, const Point& w) {
+    if (!region_.contains(w) || !keeps_shape(star, w)) return &Collapsed::refused_by_shape;
+    if (!keeps_field(star, w)) return &Collapsed::refused_by_field;
+    if (!keeps_sides(star, w)) return &Collapsed::refused_by_sides;
+    if (!crosses_nothing(star, w)) return &Collapsed::refused_by_crossing;
+    return nullptr;
+}
+
+bool CollapseChecks::keeps_shape(const BlockMesh::Star& star, const Point& w) const {
+    double before = 1;
+    double after = 1;
+    for (const StarTriangle& t : star) {
+        before = std::min(before, shape_of(mesh_->corners(t.triangle)));
+        if (t.goes) continue;
+        const Triangle x{w, mesh_->x(t.a), mesh_->x(t.b)};
+        const Point was = mesh_->normal(t.triangle);
+        const Point is = cross(x[1] - w, x[2] - w);
+        const double product = dot(was, is);
+        if (!(product > 0) || product < rules_->least_cosine * norm(was) * norm(is)) return false;
+        after = std::min(after, shape_of(x));
+    }
+    return after >= rules_->least_shape || after >= before;
+}
+
+bool CollapseChecks::keeps_field(const BlockMesh::Star& star, const Point& w) const {
+    double greatest = 0;
+    for (const StarTriangle& t : star) {
+        if (t.goes) continue;
+        const Triangle x{w, mesh_->x(t.a), mesh_->x(t.b)};
+        if (!rules_->field->keeps(FlatTriangle(rules_->in_space(x)), greatest)) return false;
+    }
+    return true;
+}
+
+bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) const {
+    for (const StarTriangle& t : star) {
+        const Triangle x = rules_->in_space(mesh_->corners(t.triangle));
+        if (rules_->strong->any_in({w + rules_->middle, x[0], x[1], x[2]})) return false;
+    }
+    return true;
+}
+
+bool CollapseChecks::crosses_nothing(const BlockMesh::Star& star, const Point& w) {
+    Box box{w, w};
+    boost::container::small_vector<Tetrahedron, 24> swept;
+    boost::container::small_vector<Box, 24> box_of;
+    for (const StarTriangle& t : star) {
+        const auto [a, b, c] = mesh_->corners(t.triangle);
+        swept.push_back({w, a, b, c});
+        box_of.push_back(Box::around(swept.back()));
+        box.add(box_of.back());
+        in_star_[t.triangle] = 1;
+    }
+    bool apart = true;
+    cells_.for_each_near(box, [&](std::uint32_t other) {
+        if (!apart || in_star_[other] != 0) return;
+        if (mesh_->triangles[other][0] == BlockMesh::gone) return;
+        const Triangle x = mesh_->corners(other);
+        const Box around = Box::around(x);
+        for (std::size_t i = 0; i < swept.size() && apart; ++i) {
+            apart = !around.meets(box_of[i]) || separated(swept[i], x);
+        }
+    });
+    for (const StarTriangle& t : star) in_star_[t.triangle] = 0;
+    return apart && new_star_is_embedded(star, w);
+}
+
+/// Whether the new triangles do not cross each other.
+bool CollapseChecks::new_star_is_embedded(const BlockMesh::Star& star, const Point& w) const {
+    boost::container::small_vector<Triangle, 24> fresh;
+    for (const StarTriangle& t : star) {
+        if (!t.goes) fresh.push_back({w, mesh_->x(t.a), mesh_->x(t.b)});
+    }
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        for (std::size_t j = i + 1; j < fresh.size(); ++j) {
+            if (!separated(fresh[i], fresh[j])) return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a collapse must keep, besides that the surface is a manifold.
+#pragma once
+
+#include <nestgrid/algorithms/collapse.hpp>
+
+#include <collapses/block_mesh.hpp>
+#include <collapses/field_check.hpp>
+#include <collapses/strong_nodes.hpp>
+#include <collapses/triangle_cells.hpp>
+
+namespace nestgrid::engine {
+
+/// What every block is judged by. Borrows the checks.
+struct CollapseRules {
+    const FieldCheck* field;
+    const StrongNodes* strong;
+    Point middle;  ///< of the surface, from which positions in blocks are taken
+    double least_cosine;
+    double least_shape;
+
+    Triangle in_space(const Triangle& x) const {
+        return {x[0] + middle, x[1] + middle, x[2] + middle};
+    }
+};
+
+/// Why a collapse was refused; null where it was not.
+using Refusal = std::size_t Collapsed::*;
+
+class CollapseChecks {
+public:
+    /// \param region convex, where the block alone may change anything
+    CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region);
+
+    /// Judges the collapse of an edge into w.
+    Refusal refuse(const BlockMesh::Star& star, const Point& w);
+    /// Tells that the triangles around a vertex have changed.
+    void note_changed(std::uint32_t vertex);
+
+private:
+    bool keeps_shape(const BlockMesh::Star& star, const Point& w) const;
+    bool keeps_field(const BlockMesh::Star& star, const Point& w) const;
+    bool keeps_sides(const BlockMesh::Star& star, const Point& w) const;
+    bool crosses_nothing(const BlockMesh::Star& star, const Point& w);
+    bool new_star_is_embedded(const BlockMesh::Star& star, const Point& w) const;
+
+    const BlockMesh* mesh_;
+    const CollapseRules* rules_;
+    Box region_;
+    TriangleCells cells_;
+    std::vector<std::uint8_t> in_star_;  // by triangle
+};
+
+}  // namespace nestgrid::engine

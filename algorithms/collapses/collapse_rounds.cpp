@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <collapses/collapse_rounds.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <collapses/block_collapse.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+constexpr std::size_t most_vertices = std::size_t{1} << 14U;  // of a block
+constexpr int most_rounds = 12;
+constexpr double worth_a_round = 0.01;                  // part of the triangles that goes in one
+constexpr std::array<double, 3> cuts{0.5, 0.37, 0.63};  // of blocks, by round
+
+/// A directed edge of a triangle.
+struct Side {
+    std::uint32_t low;
+    std::uint32_t high;
+    std::uint32_t triangle;
+
+    auto operator<=>(const Side&) const = default;
+};
+
+/// The edges that belong to one triangle only.
+std::vector<Side> open_sides(std::span<const BlockMesh::Corners> triangles) {
+    std::vector<Side> sides;
+    sides.reserve(3 * triangles.size());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        const auto& c = triangles[t];
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto [low, high] = std::minmax(c[i], c[(i + 1) % 3]);
+            sides.push_back({low, high, t});
+        }
+    }
+    std::sort(sides.begin(), sides.end());
+    std::vector<Side> open;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const auto same = [&](std::size_t j) {
+            return sides[i].low == sides[j].low && sides[i].high == sides[j].high;
+        };
+        const bool twin = (i > 0 && same(i - 1)) || (i + 1 < sides.size() && same(i + 1));
+        if (!twin) open.push_back(sides[i]);
+    }
+    return open;
+}
+
+/// One block while it is worked on, with the numbers that its parts have in the whole surface.
+class BlockTask {
+public:
+    BlockTask(std::span<const CollapsingVertex> vertices,
+              std::span<const BlockMesh::Corners> triangles, std::span<const std::uint32_t> own,
+              std::span<const std::uint32_t> obstacles, const std::vector<std::uint8_t>& stays)
+        : triangle_(own.begin(), own.end()) {
+        for (const auto& list : {own, obstacles}) {
+            for (const std::uint32_t t : list) {
+                for (const std::uint32_t v : triangles[t]) vertex_.push_back(v);
+            }
+        }
+        std::sort(vertex_.begin(), vertex_.end());
+        vertex_.erase(std::unique(vertex_.begin(), vertex_.end()), vertex_.end());
+        for (const std::uint32_t v : vertex_) {
+            mesh_.vertices.push_back(vertices[v]);
+            mesh_.vertices.back().moves &= stays[v] == 0;
+        }
+        for (const auto& list : {own, obstacles}) {
+            for (const std::uint32_t t : list) {
+                BlockMesh::Corners local = triangles[t];
+                for (std::uint32_t& v : local) v = local_number(v);
+                mesh_.triangles.push_back(local);
+            }
+        }
+        mesh_.own = own.size();
+        mesh_.connect();
+    }
+
+    void run(const CollapseRules& rules, const Box& region) {
+        BlockCollapse work(mesh_, rules, region);
+        work.run();
+        counts_ = work.counts();
+    }
+    /// Writes what has changed, which no other block reads.
+    void put_back(std::span<CollapsingVertex> vertices,
+                  std::span<BlockMesh::Corners> triangles) const {
+        for (std::size_t v = 0; v < vertex_.size(); ++v) {
+            if (mesh_.vertices[v].moves) vertices[vertex_[v]] = mesh_.vertices[v];
+        }
+        for (std::size_t t = 0; t < triangle_.size(); ++t) {
+            BlockMesh::Corners corners = mesh_.triangles[t];
+            if (corners[0] != BlockMesh::gone) {
+                for (std::uint32_t& v : corners) v = vertex_[v];
+            }
+            triangles[triangle_[t]] = corners;
+        }
+    }
+    const Collapsed& counts() const { return counts_; }
+
+private:
+    std::uint32_t local_number(std::uint32_t v) const {
+        return static_cast<std::uint32_t>(std::lower_bound(vertex_.begin(), vertex_.end(), v) -
+                                          vertex_.begin());
+    }
+
+    std::vector<std::uint32_t> vertex_;    // in the whole surface, ascending
+    std::vector<std::uint32_t> triangle_;  // of the block's own ones
+    BlockMesh mesh_;
+    Collapsed counts_;
+};
+
+void add_counts(Collapsed& sum, const Collapsed& part) {
+    for (const auto count : {&Collapsed::collapses, &Collapsed::refused_by_manifold,
+                             &Collapsed::refused_by_shape, &Collapsed::refused_by_field,
+                             &Collapsed::refused_by_sides, &Collapsed::refused_by_crossing}) {
+        sum.*count += part.*count;
+    }
+}
+
+}  // namespace
+
+CollapseRounds::CollapseRounds(Surface<3>& surface, const NearLeaves& leaves,
+                               const CollapseRules& rules, const Executor& executor)
+    : surface_{&surface},
+      rules_{&rules},
+      executor_{&executor},
+      vertices_(surface.vertices.size()),
+      triangles_(surface.simplices) {
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        vertices_[v].x = surface.vertices[v] - rules.middle;
+    }
+    find_borders(leaves);
+    add_quadrics();
+}
+
+/// Finds where vertices on the border may move.
+void CollapseRounds::find_borders(const NearLeaves& leaves) {
+    for (const Side& side : open_sides(triangles_)) {
+        for (const std::uint32_t v : {side.low, side.high}) {
+            if (vertices_[v].on_border()) continue;
+            vertices_[v].freedom = border_freedom(leaves, surface_->vertices[v]);
+        }
+    }
+}
+
+/// The quadric of a vertex is that of the planes of its triangles, by area, and of planes at right
+/// angles to these through edges of the border.
+void CollapseRounds::add_quadrics() {
+    const auto& x = vertices_;
+    for (const Corners& c : triangles_) {
+        const Point direction = cross(x[c[1]].x - x[c[0]].x, x[c[2]].x - x[c[0]].x);
+        const double area = norm(direction);
+        if (!(area > 0)) continue;
+        const Point normal = (1 / area) * direction;
+        Quadric quadric;
+        quadric.add_plane(normal, dot(normal, x[c[0]].x), 0.5 * area);
+        for (const std::uint32_t v : c) vertices_[v].quadric.add(quadric);
+    }
+    for (const Side& side : open_sides(triangles_)) {
+        const Corners& c = triangles_[side.triangle];
+        const Point along = x[side.high].x - x[side.low].x;
+        const Point direction = cross(along, cross(x[c[1]].x - x[c[0]].x, x[c[2]].x - x[c[0]].x));
+        const double length = norm(direction);
+        if (!(length > 0)) continue;
+        const Point normal = (1 / length) * direction;
+        Quadric quadric;
+        quadric.add_plane(normal, dot(normal, x[side.low].x), dot(along, along));
+        for (const std::uint32_t v : c) vertices_[v].quadric.add(quadric);
+    }
+}
+
+std::vector<Point> CollapseRounds::positions() const {
+    std::vector<Point> x;
+    x.reserve(vertices_.size());
+    for (const CollapsingVertex& vertex : vertices_) x.push_back(vertex.x);
+    return x;
+}
+
+Collapsed CollapseRounds::run() {
+    Collapsed counts;
+    int idle = 0;
+    for (std::size_t round = 0; round < most_rounds && idle < 1; ++round) {
+        const std::size_t before = triangles_.size();
+        const Blocks blocks(positions(), most_vertices, cuts[round % cuts.size()]);
+        run_round(blocks, counts);
+        erase_gone();
+        const double part = static_cast<double>(before - triangles_.size());
+        idle = part > worth_a_round * static_cast<double>(before) ? 0 : idle + 1;
+    }
+    return counts;
+}
+
+void CollapseRounds::run_round(const Blocks& blocks, Collapsed& counts) {
+    std::vector<std::vector<std::uint32_t>> own(blocks.count());
+    std::vector<std::vector<std::uint32_t>> obstacles(blocks.count());
+    std::vector<std::uint8_t> stays(vertices_.size(), 0);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        const auto& [a, b, c] = triangles_[t];
+        const std::uint32_t block = blocks.block_of(a);
+        if (blocks.block_of(b) == block && blocks.block_of(c) == block) {
+            own[block].push_back(t);
+            continue;
+        }
+        for (const std::uint32_t v : {a, b, c}) stays[v] = 1;
+        const Triangle x{vertices_[a].x, vertices_[b].x, vertices_[c].x};
+        blocks.for_each_meeting(Box::around(x),
+                                [&](std::uint32_t met) { obstacles[met].push_back(t); });
+    }
+    std::vector<std::unique_ptr<BlockTask>> tasks(blocks.count());
+    executor_->run(
+        blocks.count(),
+        [&](std::size_t i) {
+            tasks[i] =
+                std::make_unique<BlockTask>(vertices_, triangles_, own[i], obstacles[i], stays);
+            tasks[i]->run(*rules_, blocks.region(i));
+        },
+        [&](std::size_t i) {
+            tasks[i]->put_back(vertices_, triangles_);
+            add_counts(counts, tasks[i]->counts());
+            tasks[i].reset();
+        });
+}
+
+/// Leaves out triangles and vertices that are gone, and keeps the order of the others.
+void CollapseRounds::erase_gone() {
+    std::erase_if(triangles_, [](const Corners& c) { return c[0] == BlockMesh::gone; });
+    std::vector<std::uint32_t> number(vertices_.size(), 0);
+    for (const Corners& c : triangles_) {
+        for (const std::uint32_t v : c) number[v] = 1;
+    }
+    std::uint32_t count = 0;
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        if (number[v] == 0) continue;
+        number[v] = count;
+        vertices_[count++] = vertices_[v];
+    }
+    vertices_.resize(count);
+    for (Corners& c : triangles_) {
+        for (std::uint32_t& v : c) v = number[v];
+    }
+}
+
+void CollapseRounds::finish() {
+    erase_gone();
+    Surface<3>& s = *surface_;
+    s.vertices = positions();
+    for (Point& x : s.vertices) x = x + rules_->middle;
+    s.simplices = triangles_;
+    s.boundary.clear();
+    for (const Side& side : open_sides(triangles_)) s.boundary.push_back({side.low, side.high});
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Collapses edges of a whole surface, block by block, and again with other blocks.
+//
+// In a round, triangles with corners in two blocks stay, and their vertices too. Everything else
+// that a block changes lies in its region, so that blocks can be worked on at the same time, and
+// the result does not depend on how many are. As triangles become fewer, there are fewer blocks,
+// and in the last rounds a single one.
+#pragma once
+
+#include <nestgrid/algorithms/executor.hpp>
+
+#include <collapses/block_mesh.hpp>
+#include <collapses/blocks.hpp>
+#include <collapses/collapse_checks.hpp>
+
+namespace nestgrid::engine {
+
+class CollapseRounds {
+public:
+    /// Borrows the rules and the surface, of which it changes vertices and triangles.
+    CollapseRounds(Surface<3>& surface, const NearLeaves& leaves, const CollapseRules& rules,
+                   const Executor& executor);
+
+    /// Fastens the vertices of a triangle for good.
+    void fasten(std::size_t triangle) {
+        for (const std::uint32_t v : triangles_[triangle]) vertices_[v].moves = false;
+    }
+    Collapsed run();
+    /// Puts what is left into the surface: vertices, triangles and boundary edges.
+    void finish();
+
+private:
+    using Corners = BlockMesh::Corners;
+
+    void find_borders(const NearLeaves& leaves);
+    void add_quadrics();
+    std::vector<Point> positions() const;
+    void run_round(const Blocks& blocks, Collapsed& counts);
+    void erase_gone();
+
+    Surface<3>* surface_;
+    const CollapseRules* rules_;
+    const Executor* executor_;
+    std::vector<CollapsingVertex> vertices_;
+    std::vector<Corners> triangles_;
+};
+
+}  // namespace nestgrid::engine

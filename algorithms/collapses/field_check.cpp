@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <collapses/field_check.hpp>
+
+#include <collapses/deformed_leaf.hpp>
+#include <nestgrid/detail/shape_functions.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+constexpr int most_halvings = 5;            // of a polygon's triangles
+constexpr double least_covered = 1 - 1e-6;  // of a triangle's area by leaves
+
+/// U - C on an affine leaf.
+struct LeafFunction {
+    Shape shape;
+    std::array<double, max_corners> value;
+
+    double operator()(const Point& s) const {
+        const auto weight = shape_functions(shape, s);
+        double sum = 0;
+        for (std::size_t k = 0; k < topology(shape).corners; ++k) sum += weight[k] * value[k];
+        return sum;
+    }
+};
+
+/// The greatest of the Bernstein coefficients of a cubic polynomial on a triangle, from its values
+/// at ten points, and of its values there.
+struct CubicRange {
+    double coefficient = 0;
+    double met = 0;
+
+    CubicRange(const LeafFunction& f, const Triangle& s) {
+        double sum_of_corners = 0;
+        double sum_of_edges = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Point& a = s[i];
+            const Point& b = s[(i + 1) % 3];
+            const double f0 = f(a);
+            const double f1 = f((2.0 / 3) * a + (1.0 / 3) * b);
+            const double f2 = f((1.0 / 3) * a + (2.0 / 3) * b);
+            const double f3 = f(b);
+            met = std::max({met, std::abs(f0), std::abs(f1), std::abs(f2)});
+            const double near = (-5 * f0 + 18 * f1 - 9 * f2 + 2 * f3) / 6;
+            const double far = (2 * f0 - 9 * f1 + 18 * f2 - 5 * f3) / 6;
+            coefficient = std::max({coefficient, std::abs(f0), std::abs(near), std::abs(far)});
+            sum_of_corners += f0;
+            sum_of_edges += near + far;
+        }
+        const double middle = f((1.0 / 3) * (s[0] + s[1] + s[2]));
+        met = std::max(met, std::abs(middle));
+        const double inner = (27 * middle - sum_of_corners - 3 * sum_of_edges) / 6;
+        coefficient = std::max(coefficient, std::abs(inner));
+    }
+};
+
+bool cubic_keeps(const LeafFunction& f, const Triangle& s, double error, int halvings,
+                 double& greatest) {
+    const CubicRange range(f, s);
+    if (range.met > error) return false;
+    if (range.coefficient <= error) {
+        greatest = std::max(greatest, range.coefficient);
+        return true;
+    }
+    if (halvings == 0) return false;
+    const Triangle m{0.5 * (s[0] + s[1]), 0.5 * (s[1] + s[2]), 0.5 * (s[2] + s[0])};
+    for (const Triangle& part :
+         {Triangle{s[0], m[0], m[2]}, Triangle{m[0], s[1], m[1]}, Triangle{m[2], m[1], s[2]}, m}) {
+        if (!cubic_keeps(f, part, error, halvings - 1, greatest)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+/// Looks at the leaves that one triangle meets.
+class FieldCheck::Judge {
+public:
+    Judge(const NearLeaves& leaves, const FlatTriangle& triangle)
+        : leaves_{leaves}, triangle_{triangle}, limit_{leaves.error()} {}
+
+    bool keeps(double& greatest) {
+        const bool kept = leaves_.for_each([&](const Box& box) { return triangle_.may_meet(box); },
+                                           [&](const NearLeaf& leaf) { return keeps_in(leaf); });
+        if (!kept || (!deformed_ && covered_ < least_covered)) return false;
+        greatest = std::max(greatest, greatest_);
+        return true;
+    }
+
+private:
+    bool keeps_in(const NearLeaf& leaf) {
+        std::array<Point, max_corners> room;
+        const auto x = leaves_.corners(leaf, room);
+        if (!meets_plane(x)) return true;
+        LeafFunction f{leaf.shape, {}};
+        const auto nodes = leaves_.nodes(leaf);
+        for (std::size_t k = 0; k < nodes.size(); ++k) f.value[k] = leaves_.value(nodes[k]);
+        if (!leaf.affine) {
+            const DeformedLeaf deformed(leaf, x, f.value);
+            deformed_ = true;
+            return deformed.keeps(triangle_, limit_, greatest_);
+        }
+        const AffineLeaf map(leaf.shape, x);
+        const LeafSection section = cut_out(map, leaf.shape, leaf.boundary, triangle_.corner);
+        if (section.leaves_domain) return false;
+        if (section.count == 0) return true;
+        covered_ += section.area;
+        return leaf.shape == Shape::tetrahedron ? affine_keeps(f, section)
+                                                : polynomial_keeps(f, section);
+    }
+    bool meets_plane(std::span<const Point> x) const {
+        bool above = false;
+        bool below = false;
+        for (const Point& corner : x) {
+            const double at = dot(triangle_.normal, corner - triangle_.corner[0]);
+            above = above || at >= -triangle_.slack;
+            below = below || at <= triangle_.slack;
+        }
+        return above && below;
+    }
+    bool affine_keeps(const LeafFunction& f, const LeafSection& section) {
+        std::array<double, 3> at{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto& [x, y, z] = section.reference[i];
+            at[i] = f.value[0] + x * (f.value[1] - f.value[0]) + y * (f.value[2] - f.value[0]) +
+                    z * (f.value[3] - f.value[0]);
+        }
+        for (std::size_t i = 0; i < section.count; ++i) {
+            const auto& c = section.corner[i];
+            const double off = std::abs(c[0] * at[0] + c[1] * at[1] + c[2] * at[2]);
+            if (off > limit_) return false;
+            greatest_ = std::max(greatest_, off);
+        }
+        return true;
+    }
+    bool polynomial_keeps(const LeafFunction& f, const LeafSection& section) {
+        for (std::size_t i = 2; i < section.count; ++i) {
+            const Triangle s{section.at(0), section.at(i - 1), section.at(i)};
+            if (!cubic_keeps(f, s, limit_, most_halvings, greatest_)) return false;
+        }
+        return true;
+    }
+
+    const NearLeaves& leaves_;
+    const FlatTriangle& triangle_;
+    double limit_;
+    double covered_ = 0;
+    double greatest_ = 0;
+    bool deformed_ = false;
+};
+
+bool FieldCheck::keeps(const FlatTriangle& triangle, double& greatest) const {
+    return Judge(*leaves_, triangle).keeps(greatest);
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Whether |U - C| <= e on triangles, exactly: not at some of their points.
+#pragma once
+
+#include <collapses/leaf_section.hpp>
+
+namespace nestgrid::engine {
+
+/// Checks triangles against the leaves near an isovalue, which it borrows.
+///
+/// In a simplex U is affine on a triangle, so |U - C| is greatest at a corner of the polygon that
+/// the triangle has in common with the simplex. In an affine prism or hexahedron U is a cubic
+/// polynomial on that polygon, and within its Bernstein coefficients on parts of it. In other
+/// leaves U is within its corner values on parts of the leaf. Where parts are too small to go on,
+/// the triangle is refused.
+class FieldCheck {
+public:
+    explicit FieldCheck(const NearLeaves& leaves) : leaves_{&leaves} {}
+
+    /// Whether a triangle keeps |U - C| <= e and lies in the domain.
+    /// \param greatest raised to an upper bound of |U - C| on the triangle, if it does
+    bool keeps(const FlatTriangle& triangle, double& greatest) const;
+
+private:
+    class Judge;
+    const NearLeaves* leaves_;
+};
+
+}  // namespace nestgrid::engine
