@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <collapses/border_planes.hpp>
 
-#include <collapses/leaf_section.hpp>
-
 namespace nestgrid::engine {
 
 namespace {
@@ -89,15 +87,15 @@ Freedom border_freedom(const NearLeaves& leaves, const Point& x) {
                 freedom.fasten();
                 return false;
             }
-            const AffineLeaf map(leaf.shape, corners);
-            const Point s = map.reference(x);
+            const AffineLeaf& map = leaves.map(leaf);
+            const auto distance = face_distances(leaf.shape, map.reference(x));
             const std::size_t faces = topology(leaf.shape).faces;
             for (std::size_t f = 0; f < faces; ++f) {
-                if (map.from_face(f, s) < -rounding) return true;
+                if (distance[f] < -rounding) return true;
             }
             for (std::size_t f = 0; f < faces; ++f) {
-                if ((leaf.boundary >> f & 1U) == 0 || map.from_face(f, s) > rounding) continue;
-                const Point direction = map.face_direction(f);
+                if ((leaf.boundary >> f & 1U) == 0 || distance[f] > rounding) continue;
+                const Point direction = map.face_direction(leaf.shape, f);
                 const Point normal = (1 / norm(direction)) * direction;
                 freedom.add({normal, dot(normal, x), rounding * (box.diameter() + 1e-6 * norm(x))});
             }

@@ -17,29 +17,32 @@ double shape_of(const Triangle& x) {
     return of_equilateral * norm(cross(a, b)) / (dot(a, a) + dot(b, b) + dot(c, c));
 }
 
-Box box_of_all(const BlockMesh& mesh) {
-    Box box;
-    for (const CollapsingVertex& vertex : mesh.vertices) box.add(vertex.x);
-    return box;
-}
-
 }  // namespace
 
 CollapseChecks::CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region)
-    : mesh_{&mesh},
-      rules_{&rules},
-      region_{region},
-      cells_(box_of_all(mesh), mesh.triangles.size()),
-      in_star_(mesh.triangles.size(), 0) {
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        cells_.add(t, Box::around(mesh.corners(t)));
+    : mesh_{&mesh}, rules_{&rules}, region_{region}, in_star_(mesh.triangles.size(), 0) {
+    sort_into_cells();
+}
+
+/// Makes cells as large as the triangles are now, and forgets where they were.
+void CollapseChecks::sort_into_cells() {
+    std::vector<std::uint32_t> present;
+    Box box;
+    for (std::uint32_t t = 0; t < mesh_->triangles.size(); ++t) {
+        if (mesh_->triangles[t][0] == BlockMesh::gone) continue;
+        present.push_back(t);
+        box.add(Box::around(mesh_->corners(t)));
     }
+    cells_ = TriangleCells(box, present.size());
+    for (const std::uint32_t t : present) cells_.add(t, Box::around(mesh_->corners(t)));
+    most_entries_ = 2 * cells_.entry_count() + 1000;
 }
 
 void CollapseChecks::note_changed(std::uint32_t vertex) {
     for (const std::uint32_t t : mesh_->around(vertex)) {
         cells_.add(t, Box::around(mesh_->corners(t)));
     }
+    if (cells_.entry_count() > most_entries_) sort_into_cells();
 }
 
 Refusal CollapseChecks::refuse(const BlockMesh::Star& star, const Point& w) {

@@ -44,12 +44,14 @@ private:
     bool keeps_field(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_sides(const BlockMesh::Star& star, const Point& w) const;
     bool crosses_nothing(const BlockMesh::Star& star, const Point& w);
+    void sort_into_cells();
     bool new_star_is_embedded(const BlockMesh::Star& star, const Point& w) const;
 
     const BlockMesh* mesh_;
     const CollapseRules* rules_;
     Box region_;
     TriangleCells cells_;
+    std::size_t most_entries_ = 0;       // of the cells, before they are made anew
     std::vector<std::uint8_t> in_star_;  // by triangle
 };
 

@@ -90,53 +90,42 @@ public:
 
 private:
     bool keeps_in(const NearLeaf& leaf) {
-        std::array<Point, max_corners> room;
-        const auto x = leaves_.corners(leaf, room);
-        if (!meets_plane(x)) return true;
+        if (!leaf.affine) return deformed_keeps(leaf);
+        if (!section_.cut(leaf, leaves_.map(leaf), triangle_.corner)) return true;
+        if (section_.leaves_domain()) return false;
+        covered_ += section_.area();
+        const LeafFunction f = function_on(leaf);
+        return leaf.shape == Shape::tetrahedron ? affine_keeps(f) : polynomial_keeps(f);
+    }
+    LeafFunction function_on(const NearLeaf& leaf) const {
         LeafFunction f{leaf.shape, {}};
         const auto nodes = leaves_.nodes(leaf);
         for (std::size_t k = 0; k < nodes.size(); ++k) f.value[k] = leaves_.value(nodes[k]);
-        if (!leaf.affine) {
-            const DeformedLeaf deformed(leaf, x, f.value);
-            deformed_ = true;
-            return deformed.keeps(triangle_, limit_, greatest_);
-        }
-        const AffineLeaf map(leaf.shape, x);
-        const LeafSection section = cut_out(map, leaf.shape, leaf.boundary, triangle_.corner);
-        if (section.leaves_domain) return false;
-        if (section.count == 0) return true;
-        covered_ += section.area;
-        return leaf.shape == Shape::tetrahedron ? affine_keeps(f, section)
-                                                : polynomial_keeps(f, section);
+        return f;
     }
-    bool meets_plane(std::span<const Point> x) const {
-        bool above = false;
-        bool below = false;
-        for (const Point& corner : x) {
-            const double at = dot(triangle_.normal, corner - triangle_.corner[0]);
-            above = above || at >= -triangle_.slack;
-            below = below || at <= triangle_.slack;
-        }
-        return above && below;
+    bool deformed_keeps(const NearLeaf& leaf) {
+        deformed_ = true;
+        std::array<Point, max_corners> room;
+        const auto x = leaves_.corners(leaf, room);
+        return DeformedLeaf(leaf, x, function_on(leaf).value).keeps(triangle_, limit_, greatest_);
     }
-    bool affine_keeps(const LeafFunction& f, const LeafSection& section) {
+    bool affine_keeps(const LeafFunction& f) {
         std::array<double, 3> at{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const auto& [x, y, z] = section.reference[i];
+            const auto& [x, y, z] = section_.reference()[i];
             at[i] = f.value[0] + x * (f.value[1] - f.value[0]) + y * (f.value[2] - f.value[0]) +
                     z * (f.value[3] - f.value[0]);
         }
-        for (std::size_t i = 0; i < section.count; ++i) {
-            const auto& c = section.corner[i];
+        for (const auto& c : section_.corners()) {
             const double off = std::abs(c[0] * at[0] + c[1] * at[1] + c[2] * at[2]);
             if (off > limit_) return false;
             greatest_ = std::max(greatest_, off);
         }
         return true;
     }
-    bool polynomial_keeps(const LeafFunction& f, const LeafSection& section) {
-        for (std::size_t i = 2; i < section.count; ++i) {
-            const Triangle s{section.at(0), section.at(i - 1), section.at(i)};
+    bool polynomial_keeps(const LeafFunction& f) {
+        for (std::size_t i = 2; i < section_.corners().size(); ++i) {
+            const Triangle s{section_.at(0), section_.at(i - 1), section_.at(i)};
             if (!cubic_keeps(f, s, limit_, most_halvings, greatest_)) return false;
         }
         return true;
@@ -145,6 +134,7 @@ private:
     const NearLeaves& leaves_;
     const FlatTriangle& triangle_;
     double limit_;
+    LeafSection section_;
     double covered_ = 0;
     double greatest_ = 0;
     bool deformed_ = false;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a triangle meets of one leaf whose map is affine: a polygon, found in the reference
+// What a triangle has in common with a leaf whose map is affine: a polygon, found in the reference
 // coordinates of the leaf.
 #pragma once
 
@@ -9,45 +9,40 @@
 
 namespace nestgrid::engine {
 
-/// The map of a leaf from positions to reference coordinates, and its faces.
-class AffineLeaf {
+class LeafSection {
 public:
-    /// \param corners of a tetrahedron, or of a prism or hexahedron whose map is affine
-    AffineLeaf(Shape shape, std::span<const Point> corners);
+    /// A point of the triangle, in parts of its corners, which add up to 1.
+    using Corner = std::array<double, 3>;
 
-    Point reference(const Point& x) const {
-        const Point d = x - origin_;
-        return {dot(row_[0], d), dot(row_[1], d), dot(row_[2], d)};
+    /// Cuts a triangle. The same object may be used again and again.
+    /// \return whether triangle and leaf have an area in common, or a line or a point
+    bool cut(const NearLeaf& leaf, const AffineLeaf& map, const Triangle& x);
+
+    std::span<const Corner> corners() const { return {corner_->data(), count_}; }
+    /// The part of the triangle's area; half of it where it lies in a face between two leaves.
+    double area() const;
+    /// Whether the triangle passes through a face on the boundary of the domain.
+    bool leaves_domain() const { return leaves_domain_; }
+    /// The triangle's corners in reference coordinates.
+    const std::array<Point, 3>& reference() const { return reference_; }
+    /// A corner of the polygon in reference coordinates.
+    Point at(std::size_t i) const {
+        const auto& [a, b, c] = (*corner_)[i];
+        return a * reference_[0] + b * reference_[1] + c * reference_[2];
     }
-    /// The distance from a face in reference coordinates; not negative inside the leaf.
-    double from_face(std::size_t face, const Point& s) const;
-    /// The direction of a face, not of unit length.
-    Point face_direction(std::size_t face) const;
 
 private:
-    Shape shape_;
-    Point origin_;
-    std::array<Point, 3> row_;
+    using Polygon = std::array<Corner, 3 + max_faces>;
+    using Distances = std::array<double, 3>;  // of the triangle's corners from a face
+
+    bool clip(const Distances& g);
+
+    std::array<Polygon, 2> room_;
+    Polygon* corner_ = room_.data();
+    std::size_t count_ = 0;
+    double part_ = 1;  // of the area that counts
+    bool leaves_domain_ = false;
+    std::array<Point, 3> reference_;
 };
-
-/// The part of a triangle that lies in a leaf, in parts of the triangle's corners.
-struct LeafSection {
-    using Corner = std::array<double, 3>;  // adds up to 1
-
-    std::array<Corner, 12> corner;
-    std::size_t count = 0;
-    /// The part of the triangle's area; half of it where it lies in a face between two leaves.
-    double area = 0;
-    bool leaves_domain = false;      ///< the triangle passes through a face on the boundary
-    std::array<Point, 3> reference;  ///< of the triangle's corners
-
-    Point at(std::size_t i) const {
-        const auto& [a, b, c] = corner[i];
-        return a * reference[0] + b * reference[1] + c * reference[2];
-    }
-};
-
-/// \param boundary faces of the leaf on the boundary of the domain, one bit each
-LeafSection cut_out(const AffineLeaf& leaf, Shape shape, unsigned boundary, const Triangle& x);
 
 }  // namespace nestgrid::engine

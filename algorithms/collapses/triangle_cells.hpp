@@ -10,8 +10,12 @@ namespace nestgrid::engine {
 
 class TriangleCells {
 public:
+    TriangleCells() = default;
     /// \param box of all triangles, \param count about how many there are
     TriangleCells(const Box& box, std::size_t count);
+
+    /// How many times triangles were put into cells.
+    std::size_t entry_count() const { return entries_.size(); }
 
     /// Adds a triangle, or tells where one lies that has changed.
     void add(std::uint32_t triangle, const Box& box);
@@ -51,8 +55,8 @@ private:
         }
     }
 
-    Point low_;
-    double edge_;
+    Point low_{};
+    double edge_ = 1;
     std::array<std::size_t, 3> cells_{};
     std::vector<std::uint32_t> first_;  // by cell: its first entry
     std::vector<Entry> entries_;
