@@ -70,7 +70,7 @@ void BlockCollapse::attempt(std::uint32_t u, std::uint32_t v) {
     quadric.add(mesh_->vertices[v].quadric);
     Refusal refused = nullptr;
     for (const Point& w : places(u, v, quadric)) {
-        refused = checks_.refuse(star_, w);
+        refused = checks_.refuse(u, v, star_, w);
         if (refused != nullptr) continue;
         mesh_->collapse(u, v, w);
         ++counts_.collapses;

@@ -10,16 +10,28 @@ constexpr double rounding = 1e-9;  // of directions of planes, and of distances 
 
 }  // namespace
 
-bool Freedom::has(const BorderPlane& plane) const {
+/// Whether a plane through the vertex is one of its planes.
+bool Freedom::has_direction(const BorderPlane& plane) const {
     for (std::size_t i = 0; i < std::min<std::size_t>(count_, 3); ++i) {
-        // Planes through one point are equal where their directions are.
         if (norm(cross(plane_[i].normal, plane.normal)) < rounding) return true;
     }
     return false;
 }
 
+bool Freedom::has(const BorderPlane& plane) const {
+    for (std::size_t i = 0; i < std::min<std::size_t>(count_, 3); ++i) {
+        const BorderPlane& own = plane_[i];
+        const double level = dot(own.normal, plane.normal) > 0 ? own.level : -own.level;
+        if (norm(cross(own.normal, plane.normal)) < rounding &&
+            std::abs(level - plane.level) <= own.slack + plane.slack) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void Freedom::add(const BorderPlane& plane) {
-    if (count_ == fast_ || has(plane)) return;
+    if (count_ == fast_ || has_direction(plane)) return;
     if (count_ == 3)
         count_ = fast_;
     else
@@ -29,18 +41,15 @@ void Freedom::add(const BorderPlane& plane) {
 bool Freedom::keeps(const Freedom& other) const {
     if (other.count_ == 0) return true;
     if (other.count_ == fast_ || count_ == fast_) return false;
-    for (std::size_t i = 0; i < other.count_; ++i) {
-        const BorderPlane& plane = other.plane_[i];
-        bool found = false;
-        for (std::size_t j = 0; j < count_; ++j) {
-            const BorderPlane& own = plane_[j];
-            const double level = dot(own.normal, plane.normal) > 0 ? own.level : -own.level;
-            found = found || (norm(cross(own.normal, plane.normal)) < rounding &&
-                              std::abs(level - plane.level) <= own.slack + plane.slack);
-        }
-        if (!found) return false;
-    }
-    return true;
+    return std::all_of(other.plane_.begin(), other.plane_.begin() + other.count_,
+                       [this](const BorderPlane& plane) { return has(plane); });
+}
+
+bool Freedom::may_share_plane(const Freedom& a, const Freedom& b, const Freedom& c) {
+    if (a.count_ == 0 || b.count_ == 0 || c.count_ == 0) return false;
+    if (a.count_ == fast_ || b.count_ == fast_ || c.count_ == fast_) return true;
+    return std::any_of(a.plane_.begin(), a.plane_.begin() + a.count_,
+                       [&](const BorderPlane& plane) { return b.has(plane) && c.has(plane); });
 }
 
 std::size_t Freedom::directions(std::array<Point, 3>& out) const {

@@ -22,6 +22,8 @@ public:
     /// Whether the vertex lies on every plane of another one that may move.
     bool keeps(const Freedom& other) const;
     std::size_t count() const { return count_; }
+    /// Whether a plane of the boundary may be common to three vertices.
+    static bool may_share_plane(const Freedom& a, const Freedom& b, const Freedom& c);
     /// Directions along all planes, of unit length and at right angles.
     /// \return how many
     std::size_t directions(std::array<Point, 3>& out) const;
@@ -32,6 +34,7 @@ public:
 
 private:
     static constexpr std::size_t fast_ = 4;  // no way to move
+    bool has_direction(const BorderPlane& plane) const;
     bool has(const BorderPlane& plane) const;
 
     std::size_t count_ = 0;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <collapses/collapse_checks.hpp>
 
+#include <algorithm>
+
 #include <collapses/separated.hpp>
 
 namespace nestgrid::engine {
@@ -45,12 +47,27 @@ void CollapseChecks::note_changed(std::uint32_t vertex) {
     if (cells_.entry_count() > most_entries_) sort_into_cells();
 }
 
-Refusal CollapseChecks::refuse(const BlockMesh::Star& star, const Point& w) {
-    if (!region_.contains(w) || !keeps_shape(star, w)) return &Collapsed::refused_by_shape;
+Refusal CollapseChecks::refuse(std::uint32_t u, std::uint32_t v, const BlockMesh::Star& star,
+                               const Point& w) {
+    const Freedom& of_u = mesh_->vertices[u].freedom;
+    const Freedom& of_v = mesh_->vertices[v].freedom;
+    const bool off_boundary = keeps_off_boundary(of_u.count() < of_v.count() ? of_v : of_u, star);
+    if (!off_boundary || !region_.contains(w) || !keeps_shape(star, w)) {
+        return &Collapsed::refused_by_shape;
+    }
     if (!keeps_field(star, w)) return &Collapsed::refused_by_field;
     if (!keeps_sides(star, w)) return &Collapsed::refused_by_sides;
     if (!crosses_nothing(star, w)) return &Collapsed::refused_by_crossing;
     return nullptr;
+}
+
+/// Whether no new triangle lies in the boundary of the domain, where it might touch others.
+/// \param freedom of the point that the edge becomes
+bool CollapseChecks::keeps_off_boundary(const Freedom& freedom, const BlockMesh::Star& star) const {
+    return freedom.free() || std::none_of(star.begin(), star.end(), [&](const StarTriangle& t) {
+               return !t.goes && Freedom::may_share_plane(freedom, mesh_->vertices[t.a].freedom,
+                                                          mesh_->vertices[t.b].freedom);
+           });
 }
 
 bool CollapseChecks::keeps_shape(const BlockMesh::Star& star, const Point& w) const {

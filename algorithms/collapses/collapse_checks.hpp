@@ -35,11 +35,13 @@ public:
     CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region);
 
     /// Judges the collapse of an edge into w.
-    Refusal refuse(const BlockMesh::Star& star, const Point& w);
+    /// \param star of the edge
+    Refusal refuse(std::uint32_t u, std::uint32_t v, const BlockMesh::Star& star, const Point& w);
     /// Tells that the triangles around a vertex have changed.
     void note_changed(std::uint32_t vertex);
 
 private:
+    bool keeps_off_boundary(const Freedom& freedom, const BlockMesh::Star& star) const;
     bool keeps_shape(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_field(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_sides(const BlockMesh::Star& star, const Point& w) const;
