@@ -97,11 +97,16 @@ bool CollapseChecks::keeps_field(const BlockMesh::Star& star, const Point& w) co
 }
 
 bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) const {
+    boost::container::small_vector<Tetrahedron, 24> swept;
+    Box box;
     for (const StarTriangle& t : star) {
-        const Triangle x = rules_->in_space(mesh_->corners(t.triangle));
-        if (rules_->strong->any_in({w + rules_->middle, x[0], x[1], x[2]})) return false;
+        const auto [a, b, c] = rules_->in_space(mesh_->corners(t.triangle));
+        swept.push_back({w + rules_->middle, a, b, c});
+        box.add(Box::around(swept.back()));
     }
-    return true;
+    if (!rules_->strong->any_in(box)) return true;
+    return std::none_of(swept.begin(), swept.end(),
+                        [&](const Tetrahedron& x) { return rules_->strong->any_in(x); });
 }
 
 bool CollapseChecks::crosses_nothing(const BlockMesh::Star& star, const Point& w) {

@@ -140,8 +140,13 @@ private:
     bool deformed_ = false;
 };
 
-bool FieldCheck::keeps(const FlatTriangle& triangle, double& greatest) const {
+bool FieldCheck::keeps_in_leaves(const FlatTriangle& triangle, double& greatest) const {
     return Judge(*leaves_, triangle).keeps(greatest);
+}
+
+bool FieldCheck::keeps(const FlatTriangle& triangle, double& greatest) const {
+    return lattice_ ? lattice_->keeps(triangle.corner, greatest)
+                    : keeps_in_leaves(triangle, greatest);
 }
 
 }  // namespace nestgrid::engine

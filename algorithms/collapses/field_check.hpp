@@ -4,6 +4,7 @@
 // Whether |U - C| <= e on triangles, exactly: not at some of their points.
 #pragma once
 
+#include <collapses/kuhn_lattice.hpp>
 #include <collapses/leaf_section.hpp>
 
 namespace nestgrid::engine {
@@ -17,8 +18,11 @@ namespace nestgrid::engine {
 /// the triangle is refused.
 class FieldCheck {
 public:
-    explicit FieldCheck(const NearLeaves& leaves) : leaves_{&leaves} {}
+    explicit FieldCheck(const NearLeaves& leaves)
+        : leaves_{&leaves}, lattice_{KuhnLattice::find(leaves)} {}
 
+    /// Looks at the leaves one by one in any case.
+    bool keeps_in_leaves(const FlatTriangle& triangle, double& greatest) const;
     /// Whether a triangle keeps |U - C| <= e and lies in the domain.
     /// \param greatest raised to an upper bound of |U - C| on the triangle, if it does
     bool keeps(const FlatTriangle& triangle, double& greatest) const;
@@ -26,6 +30,7 @@ public:
 private:
     class Judge;
     const NearLeaves* leaves_;
+    std::optional<KuhnLattice> lattice_;  // where the leaves are of that kind: faster
 };
 
 }  // namespace nestgrid::engine

@@ -73,6 +73,7 @@ NearLeaves NearLeaves::find(const Hierarchy<Real>& hierarchy, double isovalue, d
     require_same_epoch(hierarchy, bounds);
     NearLeaves found;
     found.error_ = error;
+    found.may_hide_ = hierarchy.offers(Feature::hidden);
     const Walk<Real> walk(hierarchy, {.positions = true}, bounds.hanging());
     Search<Real> search(walk, isovalue, bounds, found);
     walk.run(search);

@@ -34,6 +34,8 @@ public:
                            const Bounds& bounds);
 
     double error() const { return error_; }
+    /// Whether leaves may be missing because they are hidden.
+    bool may_hide() const { return may_hide_; }
     std::size_t node_count() const { return position_.size(); }
     const Point& position(std::uint32_t node) const { return position_[node]; }
     /// U - C
@@ -62,6 +64,7 @@ private:
     class Search;
 
     double error_ = 0;
+    bool may_hide_ = false;
     std::vector<Point> position_;
     std::vector<double> value_;
     std::vector<std::uint32_t> nodes_;

@@ -50,6 +50,11 @@ StrongNodes::StrongNodes(const NearLeaves& leaves) {
     tree_.finish();
 }
 
+bool StrongNodes::any_in(const Box& box) const {
+    return !tree_.for_each([&](const Box& b) { return box.meets(b); },
+                           [&](std::size_t i) { return !box.contains(position_[i]); });
+}
+
 bool StrongNodes::any_in(const Tetrahedron& x) const {
     const Box box = Box::around(x);
     return !tree_.for_each(

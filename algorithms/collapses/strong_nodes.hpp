@@ -21,6 +21,8 @@ public:
     explicit StrongNodes(const NearLeaves& leaves);
 
     std::size_t size() const { return position_.size(); }
+    /// Whether any of the nodes lies in a box.
+    bool any_in(const Box& box) const;
     /// Whether any of the nodes lies in a tetrahedron.
     bool any_in(const Tetrahedron& x) const;
 
