@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <collapses/border_planes.hpp>
 
+#include <algorithm>
+
+#include <collapses/affine_leaf.hpp>
+
 namespace nestgrid::engine {
 
 namespace {
@@ -96,7 +100,7 @@ Freedom border_freedom(const NearLeaves& leaves, const Point& x) {
                 freedom.fasten();
                 return false;
             }
-            const AffineLeaf& map = leaves.map(leaf);
+            const AffineLeaf map(leaf.shape, corners);
             const auto distance = face_distances(leaf.shape, map.reference(x));
             const std::size_t faces = topology(leaf.shape).faces;
             for (std::size_t f = 0; f < faces; ++f) {

@@ -87,13 +87,23 @@ bool CollapseChecks::keeps_shape(const BlockMesh::Star& star, const Point& w) co
 }
 
 bool CollapseChecks::keeps_field(const BlockMesh::Star& star, const Point& w) const {
-    double greatest = 0;
+    boost::container::small_vector<std::uint32_t, 24> number;
+    boost::container::small_vector<Point, 24> ring;
+    boost::container::small_vector<std::array<std::uint32_t, 2>, 24> sides;
+    const auto number_of = [&](std::uint32_t vertex) {
+        const auto at = std::find(number.begin(), number.end(), vertex) - number.begin();
+        if (static_cast<std::size_t>(at) == number.size()) {
+            number.push_back(vertex);
+            ring.push_back(mesh_->x(vertex) + rules_->middle);
+        }
+        return static_cast<std::uint32_t>(at);
+    };
     for (const StarTriangle& t : star) {
-        if (t.goes) continue;
-        const Triangle x{w, mesh_->x(t.a), mesh_->x(t.b)};
-        if (!rules_->field->keeps(FlatTriangle(rules_->in_space(x)), greatest)) return false;
+        if (!t.goes) sides.push_back({number_of(t.a), number_of(t.b)});
     }
-    return true;
+    return rules_->field->keeps_fan({.w = w + rules_->middle,
+                                     .ring = {ring.data(), ring.size()},
+                                     .side = {sides.data(), sides.size()}});
 }
 
 bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) const {
@@ -126,6 +136,7 @@ bool CollapseChecks::crosses_nothing(const BlockMesh::Star& star, const Point& w
         if (mesh_->triangles[other][0] == BlockMesh::gone) return;
         const Triangle x = mesh_->corners(other);
         const Box around = Box::around(x);
+        if (!around.meets(box)) return;
         for (std::size_t i = 0; i < swept.size() && apart; ++i) {
             apart = !around.meets(box_of[i]) || separated(swept[i], x);
         }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <collapses/field_check.hpp>
 
+#include <algorithm>
+
 #include <collapses/deformed_leaf.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
 
@@ -77,8 +79,8 @@ bool cubic_keeps(const LeafFunction& f, const Triangle& s, double error, int hal
 /// Looks at the leaves that one triangle meets.
 class FieldCheck::Judge {
 public:
-    Judge(const NearLeaves& leaves, const FlatTriangle& triangle)
-        : leaves_{leaves}, triangle_{triangle}, limit_{leaves.error()} {}
+    Judge(const FieldCheck& check, const FlatTriangle& triangle)
+        : check_{check}, leaves_{*check.leaves_}, triangle_{triangle}, limit_{leaves_.error()} {}
 
     bool keeps(double& greatest) {
         const bool kept = leaves_.for_each([&](const Box& box) { return triangle_.may_meet(box); },
@@ -91,7 +93,7 @@ public:
 private:
     bool keeps_in(const NearLeaf& leaf) {
         if (!leaf.affine) return deformed_keeps(leaf);
-        if (!section_.cut(leaf, leaves_.map(leaf), triangle_.corner)) return true;
+        if (!section_.cut(leaf, check_.map(leaf), triangle_.corner)) return true;
         if (section_.leaves_domain()) return false;
         covered_ += section_.area();
         const LeafFunction f = function_on(leaf);
@@ -131,6 +133,7 @@ private:
         return true;
     }
 
+    const FieldCheck& check_;
     const NearLeaves& leaves_;
     const FlatTriangle& triangle_;
     double limit_;
@@ -140,13 +143,38 @@ private:
     bool deformed_ = false;
 };
 
+FieldCheck::FieldCheck(const NearLeaves& leaves)
+    : leaves_{&leaves}, lattice_{KuhnLattice::find(leaves)} {
+    if (lattice_) return;
+    maps_.reserve(leaves.leaves().size());
+    std::array<Point, max_corners> room;
+    for (const NearLeaf& leaf : leaves.leaves()) {
+        maps_.emplace_back(leaf.shape, leaves.corners(leaf, room));
+    }
+}
+
+AffineLeaf FieldCheck::map(const NearLeaf& leaf) const {
+    if (!maps_.empty()) return maps_[static_cast<std::size_t>(&leaf - leaves_->leaves().data())];
+    std::array<Point, max_corners> room;
+    return {leaf.shape, leaves_->corners(leaf, room)};
+}
+
 bool FieldCheck::keeps_in_leaves(const FlatTriangle& triangle, double& greatest) const {
-    return Judge(*leaves_, triangle).keeps(greatest);
+    return Judge(*this, triangle).keeps(greatest);
 }
 
 bool FieldCheck::keeps(const FlatTriangle& triangle, double& greatest) const {
     return lattice_ ? lattice_->keeps(triangle.corner, greatest)
                     : keeps_in_leaves(triangle, greatest);
+}
+
+bool FieldCheck::keeps_fan(const Fan& fan) const {
+    if (lattice_) return lattice_->keeps_fan(fan);
+    double greatest = 0;
+    return std::all_of(fan.side.begin(), fan.side.end(), [&](const auto& side) {
+        const FlatTriangle triangle({fan.w, fan.ring[side[0]], fan.ring[side[1]]});
+        return keeps_in_leaves(triangle, greatest);
+    });
 }
 
 }  // namespace nestgrid::engine

@@ -18,18 +18,22 @@ namespace nestgrid::engine {
 /// the triangle is refused.
 class FieldCheck {
 public:
-    explicit FieldCheck(const NearLeaves& leaves)
-        : leaves_{&leaves}, lattice_{KuhnLattice::find(leaves)} {}
+    explicit FieldCheck(const NearLeaves& leaves);
 
-    /// Looks at the leaves one by one in any case.
-    bool keeps_in_leaves(const FlatTriangle& triangle, double& greatest) const;
     /// Whether a triangle keeps |U - C| <= e and lies in the domain.
     /// \param greatest raised to an upper bound of |U - C| on the triangle, if it does
     bool keeps(const FlatTriangle& triangle, double& greatest) const;
+    /// Whether all triangles of a fan do so, if their sides opposite the common corner do.
+    bool keeps_fan(const Fan& fan) const;
+    /// Looks at the leaves one by one in any case.
+    bool keeps_in_leaves(const FlatTriangle& triangle, double& greatest) const;
 
 private:
     class Judge;
+    AffineLeaf map(const NearLeaf& leaf) const;
+
     const NearLeaves* leaves_;
+    std::vector<AffineLeaf> maps_;        // by leaf, without a lattice; of bent ones meaningless
     std::optional<KuhnLattice> lattice_;  // where the leaves are of that kind: faster
 };
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <collapses/kuhn_lattice.hpp>
 
+#include <algorithm>
 #include <cmath>
+
+#include <boost/container/small_vector.hpp>
 
 namespace nestgrid::engine {
 
@@ -239,27 +242,50 @@ bool KuhnLattice::keeps_inside(const Triangle& x, double& greatest) const {
     return true;
 }
 
+/// Whether lattice coordinates lie in the box around all leaves.
+bool KuhnLattice::contains(const Point& at) const {
+    for (std::size_t d = 0; d < 3; ++d) {
+        const double from = at[d] - shift_[d];
+        if (!(from >= -rounding && from <= last_[d] + rounding)) return false;
+    }
+    return true;
+}
+
+/// Whether |U - C| <= e where a segment meets any planes.
+bool KuhnLattice::keeps_side(const Point& a, const Point& b, double& greatest) const {
+    for (int family = 0; family < families; ++family) {
+        if (!keeps_along(family, a, b, greatest)) return false;
+    }
+    return true;
+}
+
 bool KuhnLattice::keeps(const Triangle& x, double& greatest) const {
     Triangle at;
+    double most = greatest;
     for (std::size_t i = 0; i < 3; ++i) {
         at[i] = coordinates(x[i]);
-        for (std::size_t d = 0; d < 3; ++d) {
-            const double from = at[i][d] - shift_[d];
-            if (!(from >= -rounding && from <= last_[d] + rounding)) return false;
-        }
-    }
-    double most = greatest;
-    for (const Point& corner : at) {
-        if (!keeps_at(corner, most)) return false;
+        if (!contains(at[i]) || !keeps_at(at[i], most)) return false;
     }
     for (std::size_t i = 0; i < 3; ++i) {
-        for (int family = 0; family < families; ++family) {
-            if (!keeps_along(family, at[i], at[(i + 1) % 3], most)) return false;
-        }
+        if (!keeps_side(at[i], at[(i + 1) % 3], most)) return false;
     }
     if (!keeps_inside(at, most)) return false;
     greatest = most;
     return true;
+}
+
+bool KuhnLattice::keeps_fan(const Fan& fan) const {
+    double most = 0;
+    const Point w = coordinates(fan.w);
+    if (!contains(w) || !keeps_at(w, most)) return false;
+    boost::container::small_vector<Point, 24> ring;
+    for (const Point& x : fan.ring) {
+        ring.push_back(coordinates(x));
+        if (!keeps_side(w, ring.back(), most)) return false;
+    }
+    return std::all_of(fan.side.begin(), fan.side.end(), [&](const auto& side) {
+        return keeps_inside({w, ring[side[0]], ring[side[1]]}, most);
+    });
 }
 
 }  // namespace nestgrid::engine

@@ -16,6 +16,13 @@
 
 namespace nestgrid::engine {
 
+/// Triangles with a common corner.
+struct Fan {
+    Point w;
+    std::span<const Point> ring;                         ///< the other corners, each once
+    std::span<const std::array<std::uint32_t, 2>> side;  ///< of each triangle, opposite w
+};
+
 class KuhnLattice {
 public:
     /// Looks at every leaf. \return nothing where one is no such tetrahedron, where a face on the
@@ -26,6 +33,8 @@ public:
     /// Whether a triangle keeps |U - C| <= e, and lies in the domain.
     /// \param greatest raised to the greatest |U - C| on it, if it does
     bool keeps(const Triangle& x, double& greatest) const;
+    /// Whether the triangles from w to sides keep it, which are known to keep it themselves.
+    bool keeps_fan(const Fan& fan) const;
 
 private:
     using Index = std::array<int, 3>;
@@ -38,6 +47,8 @@ private:
     Point coordinates(const Point& x) const;
     double value(const Index& at) const;
     bool keeps_at(const Point& x, double& greatest) const;
+    bool contains(const Point& at) const;
+    bool keeps_side(const Point& a, const Point& b, double& greatest) const;
     bool keeps_along(int family, const Point& a, const Point& b, double& greatest) const;
     bool keeps_inside(const Triangle& x, double& greatest) const;
 

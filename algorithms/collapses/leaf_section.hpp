@@ -5,6 +5,7 @@
 // coordinates of the leaf.
 #pragma once
 
+#include <collapses/affine_leaf.hpp>
 #include <collapses/near_leaves.hpp>
 
 namespace nestgrid::engine {

@@ -44,7 +44,6 @@ public:
         const bool affine = view.shape != Shape::pyramid && is_affine(view.shape, corners);
         const auto boundary = static_cast<std::uint8_t>(walk_.boundary(view));
         found_.leaves_.push_back({first, view.shape, affine, boundary});
-        found_.maps_.emplace_back(view.shape, corners);
         found_.tree_.add(Box::around(corners));
     }
 
@@ -91,7 +90,7 @@ std::span<const Point> NearLeaves::corners(const NearLeaf& leaf,
 std::size_t NearLeaves::memory_bytes() const {
     return position_.capacity() * sizeof(Point) + value_.capacity() * sizeof(double) +
            nodes_.capacity() * sizeof(std::uint32_t) + leaves_.capacity() * sizeof(NearLeaf) +
-           maps_.capacity() * sizeof(AffineLeaf) + tree_.memory_bytes();
+           tree_.memory_bytes();
 }
 
 template NearLeaves NearLeaves::find(const Hierarchy<float>&, double, double, const Bounds&);

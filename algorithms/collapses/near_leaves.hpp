@@ -12,7 +12,6 @@
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/hierarchy.hpp>
 
-#include <collapses/affine_leaf.hpp>
 #include <collapses/box_tree.hpp>
 
 namespace nestgrid::engine {
@@ -44,10 +43,6 @@ public:
     std::span<const std::uint32_t> nodes(const NearLeaf& leaf) const {
         return std::span(nodes_).subspan(leaf.first, topology(leaf.shape).corners);
     }
-    /// The map of a leaf where it is affine.
-    const AffineLeaf& map(const NearLeaf& leaf) const {
-        return maps_[static_cast<std::size_t>(&leaf - leaves_.data())];
-    }
     /// Positions of the corners. \param out takes them
     std::span<const Point> corners(const NearLeaf& leaf, std::array<Point, max_corners>& out) const;
 
@@ -69,7 +64,6 @@ private:
     std::vector<double> value_;
     std::vector<std::uint32_t> nodes_;
     std::vector<NearLeaf> leaves_;
-    std::vector<AffineLeaf> maps_;  // by leaf; of others than affine ones meaningless
     BoxTree tree_;
 };
 
