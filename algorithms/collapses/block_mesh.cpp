@@ -17,6 +17,8 @@ bool has(const BlockMesh::Corners& corners, std::uint32_t vertex) {
 void BlockMesh::connect() {
     around_.assign(vertices.size(), {});
     mark_.assign(vertices.size(), 0);
+    position_.clear();
+    for (const CollapsingVertex& vertex : vertices) position_.push_back(vertex.x);
     for (std::uint32_t t = 0; t < own; ++t) {
         for (const std::uint32_t v : triangles[t]) around_[v].push_back(t);
     }
@@ -98,7 +100,7 @@ void BlockMesh::collapse(std::uint32_t u, std::uint32_t v, const Point& x) {
     around_[u] = std::move(kept);
     CollapsingVertex& to = vertices[u];
     const CollapsingVertex& from = vertices[v];
-    to.x = x;
+    to.x = position_[u] = x;
     to.quadric.add(from.quadric);
     if (from.freedom.count() > to.freedom.count()) to.freedom = from.freedom;
 }

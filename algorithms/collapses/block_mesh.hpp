@@ -48,10 +48,10 @@ public:
     std::vector<Corners> triangles;
     std::size_t own = 0;  ///< the first triangles, which are no obstacles
 
-    /// Lists the triangles around each vertex.
+    /// Lists positions, and the triangles around each vertex.
     void connect();
 
-    const Point& x(std::uint32_t vertex) const { return vertices[vertex].x; }
+    const Point& x(std::uint32_t vertex) const { return position_[vertex]; }
     bool exists(std::uint32_t vertex) const { return !around_[vertex].empty(); }
     Triangle corners(std::uint32_t triangle) const {
         const auto& [a, b, c] = triangles[triangle];
@@ -77,6 +77,7 @@ public:
 private:
     using Around = boost::container::small_vector<std::uint32_t, 8>;
 
+    std::vector<Point> position_;  // side by side, as they are read most
     std::vector<Around> around_;
     std::vector<std::uint8_t> mark_;
     std::vector<std::uint32_t> neighbours_;
