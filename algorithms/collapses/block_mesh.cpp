@@ -103,6 +103,7 @@ void BlockMesh::collapse(std::uint32_t u, std::uint32_t v, const Point& x) {
     to.x = position_[u] = x;
     to.quadric.add(from.quadric);
     if (from.freedom.count() > to.freedom.count()) to.freedom = from.freedom;
+    to.at_boundary = to.at_boundary || from.at_boundary;
 }
 
 std::span<const std::uint32_t> BlockMesh::neighbours(std::uint32_t vertex) {

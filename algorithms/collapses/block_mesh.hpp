@@ -24,6 +24,7 @@ struct CollapsingVertex {
     Quadric quadric;
     Freedom freedom;
     bool moves = true;
+    bool at_boundary = false;  ///< of the domain: not at a crack
 
     /// Whether it is on an edge of one triangle only.
     bool on_border() const { return !freedom.free(); }

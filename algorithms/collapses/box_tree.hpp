@@ -89,7 +89,8 @@ public:
     }
     /// Makes the tree; no item is added any more.
     void finish() {
-        levels_.assign(1, std::move(groups_));
+        levels_.clear();
+        levels_.push_back(std::move(groups_));
         while (levels_.back().size() > fan) {
             const std::vector<Box>& below = levels_.back();
             std::vector<Box> above((below.size() + fan - 1) / fan);

@@ -28,21 +28,18 @@ CollapseChecks::CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules
 
 /// Makes cells as large as the triangles are now, and forgets where they were.
 void CollapseChecks::sort_into_cells() {
-    std::vector<std::uint32_t> present;
-    Box box;
+    std::vector<BoxedTriangle> present;
     for (std::uint32_t t = 0; t < mesh_->triangles.size(); ++t) {
         if (mesh_->triangles[t][0] == BlockMesh::gone) continue;
-        present.push_back(t);
-        box.add(Box::around(mesh_->corners(t)));
+        present.emplace_back(t, Box::around(mesh_->corners(t)));
     }
-    cells_ = TriangleCells(box, present.size());
-    for (const std::uint32_t t : present) cells_.add(t, Box::around(mesh_->corners(t)));
+    cells_ = TriangleCells(present);
     most_entries_ = 2 * cells_.entry_count() + 1000;
 }
 
 void CollapseChecks::note_changed(std::uint32_t vertex) {
     for (const std::uint32_t t : mesh_->around(vertex)) {
-        cells_.add(t, Box::around(mesh_->corners(t)));
+        cells_.add({t, Box::around(mesh_->corners(t))});
     }
     if (cells_.entry_count() > most_entries_) sort_into_cells();
 }

@@ -3,6 +3,7 @@
 #include <collapses/collapse_rounds.hpp>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include <collapses/block_collapse.hpp>
@@ -22,7 +23,9 @@ struct Side {
     std::uint32_t high;
     std::uint32_t triangle;
 
-    auto operator<=>(const Side&) const = default;
+    bool operator<(const Side& other) const {
+        return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
+    }
 };
 
 /// The edges that belong to one triangle only.
@@ -134,12 +137,19 @@ CollapseRounds::CollapseRounds(Surface<3>& surface, const NearLeaves& leaves,
     add_quadrics();
 }
 
-/// Finds where vertices on the border may move.
+/// Finds where vertices on the border may move: not at all at cracks inside the domain.
 void CollapseRounds::find_borders(const NearLeaves& leaves) {
+    for (const auto& edge : surface_->boundary) {
+        for (const std::uint32_t v : edge) vertices_[v].at_boundary = true;
+    }
     for (const Side& side : open_sides(triangles_)) {
         for (const std::uint32_t v : {side.low, side.high}) {
-            if (vertices_[v].on_border()) continue;
-            vertices_[v].freedom = border_freedom(leaves, surface_->vertices[v]);
+            CollapsingVertex& vertex = vertices_[v];
+            if (vertex.on_border()) continue;
+            if (vertex.at_boundary)
+                vertex.freedom = border_freedom(leaves, surface_->vertices[v]);
+            else
+                vertex.freedom.fasten();
         }
     }
 }
@@ -185,7 +195,7 @@ Collapsed CollapseRounds::run() {
         const Blocks blocks(positions(), most_vertices, cuts[round % cuts.size()]);
         run_round(blocks, counts);
         erase_gone();
-        const double part = static_cast<double>(before - triangles_.size());
+        const auto part = static_cast<double>(before - triangles_.size());
         idle = part > worth_a_round * static_cast<double>(before) ? 0 : idle + 1;
     }
     return counts;
@@ -248,7 +258,11 @@ void CollapseRounds::finish() {
     for (Point& x : s.vertices) x = x + rules_->middle;
     s.simplices = triangles_;
     s.boundary.clear();
-    for (const Side& side : open_sides(triangles_)) s.boundary.push_back({side.low, side.high});
+    for (const Side& side : open_sides(triangles_)) {
+        const bool at_boundary =
+            vertices_[side.low].at_boundary && vertices_[side.high].at_boundary;
+        if (at_boundary) s.boundary.push_back({side.low, side.high});
+    }
 }
 
 }  // namespace nestgrid::engine
