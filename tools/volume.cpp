@@ -156,6 +156,10 @@ VtkVolume read_nifti(const Reading& reading) {
     }
     reader->SetFileName(reading.path.c_str());
     const std::uintmax_t samples = reading.read_header(reader);
+    if (reader->GetTimeDimension() > 1) {
+        throw IoError(reading.path.string() + " has " + std::to_string(reader->GetTimeDimension()) +
+                      " volumes, one after the other: give each in a file of its own");
+    }
     const int bytes = vtkDataArray::GetDataTypeSize(reader->GetDataScalarType());
     check_nifti_size(reading.path, samples * static_cast<std::uintmax_t>(bytes));
     VtkVolume volume;

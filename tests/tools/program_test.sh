@@ -149,6 +149,15 @@ echo x >what.abc
 refused 1 'known format' isosurface what.abc --value 1
 : >empty.nii && refused 1 'is empty' isosurface empty.nii --value 1
 refused 1 'cannot be written' isosurface v.vti --value 130 -o missing/x.vtp
+{
+    head -c 40 v.nii
+    printf '\4\0'
+    tail -c +43 v.nii | head -c 6
+    printf '\2\0'
+    tail -c +51 v.nii
+    tail -c +353 v.nii
+} >series.nii
+refused 1 'series.nii has 2 volumes, one after the other' isosurface series.nii --value 1
 refused 1 'names no known format' isosurface v.vti --value 130 -o x.doc
 refused 1 "threshold 'much'" isosurface v.vti --value 130 --threshold much
 refused 1 "threshold '-3'" isosurface v.vti --value 130 --threshold=-3

@@ -143,6 +143,10 @@ def read_nifti(path: str) -> tuple[Any, dict[str, Any]]:
     reader.SetFileName(path)
     samples = check_size(path, reader)
     errors.check()
+    if (volumes := reader.GetTimeDimension()) > 1:
+        raise Refused(
+            f"{path} has {volumes} volumes, one after the other: give each in a file of its own"
+        )
     check_nifti_size(path, reader, samples)
     reader.Update()
     errors.check()

@@ -103,6 +103,17 @@ def test_nifti(samples, tmp_path, suffix):
     assert (volume.name, volume.unit) == ("heat", "mm")
 
 
+def test_nifti_of_several_volumes_is_refused(samples, tmp_path):
+    one = write(vtkNIFTIImageWriter(), image_of(samples), tmp_path / "one.nii")
+    data = bytearray(one.read_bytes())
+    data[40:42] = (4).to_bytes(2, "little")
+    data[48:50] = (2).to_bytes(2, "little")
+    series = tmp_path / "series.nii"
+    series.write_bytes(data + data[352:])
+    with pytest.raises(nestgrid.IoError, match="series.nii has 2 volumes, one after the other"):
+        nestgrid.load(series)
+
+
 def nrrd(samples, encoding):
     data = samples.ravel(order="F").tobytes()
     kind = {"uint8": "uchar", "int16": "short", "float32": "float", "float64": "double"}

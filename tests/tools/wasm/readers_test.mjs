@@ -154,6 +154,15 @@ for (const file of bigEndian) {
   const samples = await samplesOf(volume);
   for (let i = 0; i < 27; ++i) assert.equal(samples.readInt16LE(2 * i), i - 13, file.name);
 }
+for (const [place, message] of [
+  [4, /series.nii has 2 volumes, one after the other/],
+  [5, /series.nii has 2 numbers per sample/],
+]) {
+  const series = Buffer.from(nifti);
+  series.writeInt16BE(place, 40);
+  for (let d = 4; d <= 7; ++d) series.writeInt16BE(d === place ? 2 : 1, 40 + 2 * d);
+  await refused(new File([series, swapped, swapped], 'series.nii'), message);
+}
 assertNear(placeOf(await openVolume(bigEndian[0]), [1, 1, 1]), [7 - 3, 2, 4], 'quaternion');
 
 // What a name tells.

@@ -98,7 +98,15 @@ const lengthUnits = { 1: 'm', 2: 'mm', 3: 'µm' };
 function samplesOf(name, header) {
   const dimensions = header.getInt16(40);
   if (dimensions < 1 || dimensions > 7) throw new FileError(`${name} has ${dimensions} dimensions`);
-  return [1, 2, 3].map((d) => (d <= dimensions ? header.getInt16(40 + 2 * d) : 1));
+  const along = (d) => (d <= dimensions ? header.getInt16(40 + 2 * d) : 1);
+  if (along(4) > 1) {
+    throw new FileError(
+      `${name} has ${along(4)} volumes, one after the other: give each in a file of its own`,
+    );
+  }
+  const numbers = along(5) * along(6) * along(7);
+  if (numbers > 1) throw new FileError(`${name} has ${numbers} numbers per sample, not one`);
+  return [1, 2, 3].map(along);
 }
 
 export async function openNifti(file) {
