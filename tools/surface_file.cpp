@@ -39,34 +39,40 @@ vtkSmartPointer<vtkMultiBlockDataSet> as_blocks(vtkPolyData* surface) {
     return scene;
 }
 
-void check_written(vtkAlgorithm* writer) {
-    if (writer->GetErrorCode() != 0) {
-        throw IoError(std::string("writing failed: ") +
-                      vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
-    }
+/// Runs a writer.
+/// \return why it failed, or nothing
+template <class Writer>
+std::string written_by(Writer* writer, const fs::path& path) {
+    writer->SetFileName(path.c_str());
+    writer->Write();
+    const auto code = writer->GetErrorCode();
+    return code == 0 ? "" : vtkErrorCode::GetStringFromErrorCode(code);
 }
 
 template <class Writer>
-void write_with(vtkPolyData* surface, const fs::path& path) {
+std::string write_with(vtkPolyData* surface, const fs::path& path) {
     const vtkNew<Writer> writer;
-    writer->SetFileName(path.c_str());
     writer->SetInputData(surface);
     if constexpr (requires { writer->SetFileTypeToBinary(); }) writer->SetFileTypeToBinary();
-    writer->Write();
-    check_written(writer);
+    return written_by(writer.Get(), path);
 }
 
-void write_as(const std::string& format, vtkPolyData* surface, const fs::path& path) {
+std::string write_as(const std::string& format, vtkPolyData* surface, const fs::path& path) {
     if (format == ".vtp") return write_with<vtkXMLPolyDataWriter>(surface, path);
     if (format == ".ply") return write_with<vtkPLYWriter>(surface, path);
     if (format == ".stl") return write_with<vtkSTLWriter>(surface, path);
     if (format == ".obj") return write_with<vtkOBJWriter>(surface, path);
     const vtkNew<vtkGLTFWriter> writer;
-    writer->SetFileName(path.c_str());
     writer->InlineDataOn();
     writer->SetInputData(as_blocks(surface));
-    writer->Write();
-    check_written(writer);
+    return written_by(writer.Get(), path);
+}
+
+/// A name in the same folder and of the same format that nobody uses.
+fs::path temporary_beside(const fs::path& path) {
+    // VTK's writers append an ending in capital letters once more.
+    return path.parent_path() /
+           ("." + path.stem().string() + "." + std::to_string(getpid()) + ending_of(path));
 }
 
 }  // namespace
@@ -95,12 +101,6 @@ std::vector<std::pair<std::string, std::uint64_t>> contents_of(vtkPolyData* surf
     return contents;
 }
 
-fs::path temporary_beside(const fs::path& path) {
-    // VTK's writers append an ending in capital letters once more.
-    return path.parent_path() /
-           ("." + path.stem().string() + "." + std::to_string(getpid()) + ending_of(path));
-}
-
 void check_output(const fs::path& path, const std::vector<std::string>& formats) {
     const std::string format = ending_of(path);
     if (std::ranges::find(formats, format) == formats.end()) {
@@ -122,21 +122,27 @@ void check_writable(const fs::path& path) {
     if (!writable) throw IoError(path.string() + " cannot be written: " + std::strerror(reason));
 }
 
-void write_surface(vtkPolyData* surface, const fs::path& path) {
+void write_by_rename(const fs::path& path,
+                     const std::function<std::string(const fs::path&)>& write) {
     const fs::path temporary = temporary_beside(path);
     std::error_code error;
+    std::string reason;
     try {
-        write_as(ending_of(path), surface, temporary);
-    } catch (const IoError& failure) {
+        reason = write(temporary);
+    } catch (...) {
         fs::remove(temporary, error);
-        throw IoError(path.string() + " could not be written: " + failure.what());
+        throw;
     }
-    const bool complete = fs::exists(temporary, error) && fs::file_size(temporary, error) > 0;
-    if (complete) fs::rename(temporary, path, error);
-    if (!complete || error) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw IoError(path.string() + " could not be written" +
-                      (error ? ": " + error.message() : std::string()));
-    }
+    if (reason.empty() && fs::file_size(temporary, error) == 0) reason = "nothing was written";
+    if (reason.empty() && !error) fs::rename(temporary, path, error);
+    if (reason.empty() && !error) return;
+    if (reason.empty()) reason = error.message();
+    fs::remove(temporary, error);
+    throw IoError(path.string() + " could not be written: " + reason);
+}
+
+void write_surface(vtkPolyData* surface, const fs::path& path) {
+    write_by_rename(path, [&](const fs::path& temporary) {
+        return write_as(ending_of(path), surface, temporary);
+    });
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -35,5 +36,9 @@ void describe(vtkPolyData* surface, const std::string& unit,
 /// What a surface has: "triangles", "lines", and how many.
 std::vector<std::pair<std::string, std::uint64_t>> contents_of(vtkPolyData* surface);
 
-/// A name in the same folder and of the same format that nobody uses.
-std::filesystem::path temporary_beside(const std::filesystem::path& path);
+/// Has a file written under another name beside it, and then renames it: it appears complete or not
+/// at all.
+/// \param write writes the file of the name that it is given; returns why it could not, or nothing
+/// \throw nestgrid::IoError; whatever write() throws
+void write_by_rename(const std::filesystem::path& path,
+                     const std::function<std::string(const std::filesystem::path&)>& write);

@@ -10,8 +10,6 @@
 #include <vtkRenderer.h>
 #include <vtkWindowToImageFilter.h>
 
-#include <nestgrid/error.hpp>
-
 #include "canvas.hpp"
 #include "layout.hpp"
 #include "scene.hpp"
@@ -73,22 +71,13 @@ void write_picture(const std::vector<Panel>& panels, const PictureStyle& style,
                    const fs::path& path) {
     // Refuses what does not fit, here and not in the other process.
     const Layout layout = make_layout(panels, style);
-    const fs::path temporary = temporary_beside(path);
-    std::error_code error;
-    try {
+    write_by_rename(path, [&](const fs::path& temporary) -> std::string {
         run_with_display([&] {
             draw(panels, style, layout, temporary);
             return fs::exists(temporary) && fs::file_size(temporary) > 0;
         });
-    } catch (const nestgrid::IoError&) {
-        fs::remove(temporary, error);
-        throw;
-    }
-    fs::rename(temporary, path, error);
-    if (!error) return;
-    const std::string reason = error.message();
-    fs::remove(temporary, error);
-    throw nestgrid::IoError(path.string() + " could not be written: " + reason);
+        return "";
+    });
 }
 
 std::string short_name(const std::string& name) {
