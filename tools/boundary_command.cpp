@@ -22,6 +22,8 @@ Command add_boundary(CLI::App& program) {
     CLI::App* boundary =
         program.add_subcommand("boundary", "draw the boundary of a grid in space, coloured");
     boundary->footer(
+        "Prints:\n"
+        "  error_bound: no colour on the boundary differs from the data by more.\n"
         "Examples:\n"
         "  nestgrid boundary part.nestgrid --outlines --image part.png\n");
     add_input(*boundary, o->input);

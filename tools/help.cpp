@@ -118,6 +118,11 @@ public:
         lines.emplace_back();
         append(lines, wrapped("", sentence(app->get_description()), 0, width));
         for (const FooterPart& part : footer_parts(*app)) {
+            if (part.title == "Prints") {
+                for (const std::string& line : part.lines)
+                    append(lines, wrapped("", line, 0, width));
+                continue;
+            }
             if (!all && part.title != "Examples") continue;
             lines.emplace_back();
             lines.push_back(part.title + ":");

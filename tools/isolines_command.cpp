@@ -60,6 +60,8 @@ Command add_isolines(CLI::App& program) {
     CLI::App* isolines = program.add_subcommand(
         "isolines", "draw isolines on a slice, on an isosurface, or in the plane");
     isolines->footer(
+        "Prints:\n"
+        "  error_bound: on no line do the data and its value differ by more.\n"
         "Examples:\n"
         "  nestgrid isolines head.nii.gz --axis z --at 30 --count 8 -o lines.vtp\n"
         "  nestgrid isolines hills.png --values 60,90,120 --image lines.png\n");

@@ -24,7 +24,12 @@ Command add(CLI::App& program, const char* name, const char* what, const char* e
             bool lifted) {
     auto o = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand(name, what);
-    command->footer(std::string("Examples:\n  ") + example);
+    command->footer(
+        std::string("Prints:\n"
+                    "  error_bound: nowhere does what is drawn of the data differ from them by "
+                    "more.\n"
+                    "Examples:\n  ") +
+        example);
     add_input(*command, o->input);
     if (lifted) {
         command->add_option("--scale", o->scale, "heights in multiples of the field")

@@ -47,6 +47,8 @@ Command add_slice(CLI::App& program) {
     CLI::App* slice =
         program.add_subcommand("slice", "draw a plane, sphere, cylinder or other slice, coloured");
     slice->footer(
+        "Prints:\n"
+        "  error_bound: no colour on the slice differs from the data by more.\n"
         "Examples:\n"
         "  nestgrid slice head.nii.gz --axis z --at 30 --threshold 2% --image slice.png\n"
         "  nestgrid slice head.nii.gz --sphere 5,12,17,4 --max-triangles 2000 -o ball.vtp\n");

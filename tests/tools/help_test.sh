@@ -23,6 +23,11 @@ for command in "" $commands; do
     done
     [ "$(names short)" = "$(names all)" ] || fail "$command --help does not name all options"
     grep -qx 'Examples:' short && grep -q "^  nestgrid $command" short || fail "$command has no example"
+    case $command in
+    isosurface | slice | isolines | height | surface | boundary)
+        [ "$(grep -c 'error_bound' short)" = 1 ] || fail "$command --help does not explain error_bound"
+        ;;
+    esac
     script -qc "stty cols 60; '$program' $command --help" terminal >typescript
     tr -d '\r' <typescript | grep -v '^  nestgrid\|^           ' >narrow
     [ "$(longest narrow)" -le 60 ] || fail "$command --help in 60 columns: $(longest narrow)"
