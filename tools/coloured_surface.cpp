@@ -37,6 +37,11 @@ void check(const ColouredSurface& what, const SurfaceOptions& options,
     }
 }
 
+/// Whether surfaces are drawn as finely as the grid is.
+bool is_drawn_exactly(const ColouredSurface& what, const SurfaceOptions& options) {
+    return options.thresholds.empty() && options.budgets.empty() && !what.lens && !what.isovalue;
+}
+
 /// Counts triangles, and keeps none.
 class TriangleCounter final : public nestgrid::SimplexSink<3> {
 public:
@@ -70,10 +75,11 @@ public:
     }
 
     /// \param take take(drawn) takes each surface
+    /// \param tell told whether a threshold is searched for; if not, a surface is drawn
     template <class Take>
-    void draw_all(const Take& take) {
-        const bool unlimited = options_.thresholds.empty() && options_.budgets.empty();
-        if (unlimited && !what_.lens && !what_.isovalue) {
+    void draw_all(const Take& take, const std::function<void(bool searching)>& tell) {
+        tell(false);
+        if (is_drawn_exactly(what_, options_)) {
             take(draw({}, 0, [&](Drawn& d) { d.slice = draw_exactly(); }));
             return;
         }
@@ -82,13 +88,17 @@ public:
         for (const std::string& text : options_.thresholds) {
             thresholds.push_back(parse_threshold(text));
         }
-        if (unlimited) set_default_threshold(thresholds, what_.lens.has_value());
+        if (thresholds.empty() && options_.budgets.empty()) {
+            set_default_threshold(thresholds, what_.lens.has_value());
+        }
         indicators.with_criteria([&](const auto& criterion_at) {
             const auto take_at = [&](double threshold, const nestgrid::TriangleBudget& search) {
+                tell(false);
                 take(draw(search, threshold,
                           [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
             };
             for (const std::int64_t budget : options_.budgets) {
+                tell(true);
                 const nestgrid::TriangleBudget search =
                     find_for(static_cast<std::uint64_t>(budget), criterion_at);
                 take_at(search.threshold, search);
@@ -313,10 +323,10 @@ void require_triangles(const Drawn& d, const ColouredSurface& what) {
 
 /// Draws the surfaces at all moments.
 /// \param film takes the surfaces, which are then dropped; or null
-/// \param tell told how many surfaces are drawn
+/// \param tell told how many surfaces are drawn, and whether a threshold is searched for
 void draw_moments(const Moments& moments, const SurfaceOptions& options,
                   const ColouredSurface& what, const std::string& by, Film* film, DrawnField& field,
-                  const std::function<void(std::size_t)>& tell) {
+                  const std::function<void(std::size_t, bool searching)>& tell) {
     std::optional<Expression> expression;
     const bool by_another = what.isovalue && what.function == nullptr;
     field.values = what.values;
@@ -326,11 +336,10 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
         const FramePrerolls& all = moments.prerolls();
         field.values = values_between(all.least(), all.greatest(), what.value_count);
     }
-    tell(0);
     moments.for_each([&](const Moment& moment) {
         moment.visit([&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy) {
             Drawing<Real> drawing(hierarchy, moment, options, what, moments.executor());
-            drawing.draw_all([&](Drawn&& d) {
+            const auto take = [&](Drawn&& d) {
                 const nestgrid::Surface<3>& surface = d.slice.surface;
                 if (by_another && surface.attributes.empty() && !surface.vertices.empty()) {
                     if (!expression) expression.emplace(by);
@@ -348,8 +357,8 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
                     d.isosurface = {};
                 }
                 field.surfaces.push_back(std::move(d));
-                tell(field.surfaces.size());
-            });
+            };
+            drawing.draw_all(take, [&](bool searching) { tell(field.surfaces.size(), searching); });
         });
     });
     if (film != nullptr) return;
@@ -385,7 +394,8 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
     if (time.frames) film.emplace(options.output);
     const std::filesystem::path path = input.path;
     const InputField read = read_field(input, time.more, time.times);
-    const Moments moments(read, time, path, options.projection, what.lens, options.threads);
+    const Moments moments(read, time, path, options.projection, what.lens, options.threads,
+                          [&](double share) { progress.part(share); });
     field.input_name = read.name;
     field.length_unit = read.length_unit;
     const bool by_another = what.isovalue && what.function == nullptr;
@@ -394,13 +404,20 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
         time.frames ? static_cast<std::size_t>(*time.frames)
                     : std::max<std::size_t>(1, options.thresholds.size() + options.budgets.size());
     draw_moments(moments, options, what, input.by, film ? &*film : nullptr, field,
-                 [&](std::size_t done) { progress.show("drawing", done, expected); });
+                 [&](std::size_t done, bool searching) {
+                     if (searching) return progress.show("searching the threshold");
+                     progress.show("drawing", done, expected);
+                 });
     field.preroll_seconds = moments.preroll_seconds();
     progress.show("writing");
     if (film) {
         film->finish(report);
     } else {
         write(options, field, what, report);
+    if (!is_drawn_exactly(what, options)) {
+        progress.show("preroll", 0, 1);
+        moments.prerolls();
+    }
     }
     report_drawn(field, what, report);
     say_what_was_kept(options, report);

@@ -196,32 +196,47 @@ void say_what_was_kept(const SurfaceOptions& options, Report& report) {
     report.say("nothing was kept: give -o FILE or --image FILE");
 }
 
-ProgressLine::ProgressLine()
-    : terminal_{isatty(STDERR_FILENO) == 1}, start_{std::chrono::steady_clock::now()} {}
+ProgressLine::ProgressLine() : terminal_{isatty(STDERR_FILENO) == 1} {}
 ProgressLine::~ProgressLine() {
     if (terminal_) std::fprintf(stderr, "\r\033[K");
 }
-void ProgressLine::show(const std::string& text) {
+
+void ProgressLine::print(const std::string& text) {
     if (!terminal_) return;
-    std::fprintf(stderr, "\r\033[K%s%s", share_.c_str(), text.c_str());
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
     std::fflush(stderr);
+    printed_ = Clock::now();
+}
+
+void ProgressLine::show(const std::string& text) {
+    total_ = 0;
+    print(text);
 }
 
 void ProgressLine::show(const std::string& text, std::size_t done, std::size_t total) {
-    const auto now = std::chrono::steady_clock::now();
-    if (done == 0) start_ = now;
-    std::array<char, 80> share{};
-    const double part = static_cast<double>(done) / static_cast<double>(total);
-    const double left =
-        std::chrono::duration<double>(now - start_).count() * (1 - part) / (done == 0 ? 1 : part);
-    if (done == 0) {
-        std::snprintf(share.data(), share.size(), "0 of %zu: ", total);
-    } else {
-        std::snprintf(share.data(), share.size(), "%zu of %zu, %.0f %%, %.0f s left: ", done, total,
-                      100 * part, std::ceil(left));
+    if (done == 0) start_ = Clock::now();
+    text_ = text;
+    done_ = done;
+    total_ = total;
+    printed_ = {};
+    part(0);
+}
+
+void ProgressLine::part(double share) {
+    constexpr std::chrono::milliseconds often{100};
+    const auto now = Clock::now();
+    if (total_ == 0 || now - printed_ < often) return;
+    std::string text = text_;
+    if (total_ > 1) text += " " + std::to_string(done_ + 1) + " of " + std::to_string(total_);
+    const double part = (static_cast<double>(done_) + share) / static_cast<double>(total_);
+    if (part > 0) {
+        const double left = std::chrono::duration<double>(now - start_).count() * (1 - part) / part;
+        std::array<char, 40> known{};
+        std::snprintf(known.data(), known.size(), ": %.0f %%, %.0f s left", 100 * part,
+                      std::ceil(left));
+        text += known.data();
     }
-    share_ = total > 1 ? share.data() : "";
-    show(text);
+    print(text);
 }
 
 fs::path numbered(const fs::path& path, std::size_t number, std::size_t count) {

@@ -88,7 +88,8 @@ void check(const SurfaceOptions& options);
 /// Says that nothing was kept where there is neither an output nor a picture.
 void say_what_was_kept(const SurfaceOptions& options, Report& report);
 
-/// Overwrites one line on a terminal; does nothing elsewhere.
+/// Overwrites one line on a terminal; does nothing elsewhere. Where the work is known, the line has
+/// the share that is done of it and the time that the rest will take.
 class ProgressLine {
 public:
     ProgressLine();
@@ -96,15 +97,25 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
     ~ProgressLine();
     void show(const std::string& text);
-    /// The same, behind the share that is done of several like pieces of work, and the time that
-    /// the others will take.
+    /// One of several like pieces of work.
+    /// Work whose share is not known.
     /// \param done of `total` pieces; the first call has 0
     void show(const std::string& text, std::size_t done, std::size_t total);
 
 private:
     bool terminal_;
-    std::string share_;
-    std::chrono::steady_clock::time_point start_;
+    /// How much of the piece at hand is done, from 0 to 1; nothing is shown where the last show()
+    /// had no pieces.
+    void part(double share);
+    std::string text_;
+    std::size_t done_ = 0;
+    std::size_t total_ = 0;  // 0: not known
+    Clock::time_point start_;
+    Clock::time_point printed_;
+    using Clock = std::chrono::steady_clock;
+
+    void print(const std::string& text);
+
 };
 
 /// out.vtp for one surface; out-1.vtp, out-2.vtp, ... for several.

@@ -25,6 +25,11 @@ nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request) {
         .cap = request.cap,
         .at_nodes = request.at_nodes};
     if (request.progress) {
+/// \param counting whether elements are told, where no share of the work is known
+nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool counting) {
+    nestgrid::IsosurfaceOptions options{
+        .normals = request.normals, .cap = request.cap, .at_nodes = request.at_nodes};
+    if (request.progress && counting) {
         options.progress = [&](const nestgrid::TraversalCounts& counts) {
             request.progress("looked at " + millions(counts.calls) + " elements");
             return true;
@@ -39,11 +44,13 @@ template <int dimension, class Real>
 void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Criterion& criterion,
                  const nestgrid::Bounds& bounds, const nestgrid::Executor& executor,
                  const ExtractionRequest& request, Extraction& e) {
+    const bool has_one_thread = executor.concurrency() == 1;
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
-    const auto result = nestgrid::isosurface<dimension>(hierarchy, request.isovalue, criterion,
-                                                        bounds, options_of(request), executor);
+    const auto result =
+        nestgrid::isosurface<dimension>(hierarchy, request.isovalue, criterion, bounds,
+                                        options_of(request, has_one_thread), executor);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
@@ -104,16 +111,17 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
     };
     with_criteria(indicators, region, request, [&](const auto& criterion_at) {
         for (const std::uint64_t budget : request.budgets) {
-            tell_share(run, request);
+            if (request.progress) request.progress("searching the threshold");
             Extraction e;
             const double start = now();
             e.search = indicators.with_offsets([&](const auto& offsets) {
                 return nestgrid::find_threshold<dimension>(hierarchy, request.isovalue,
                                                            criterion_at, offsets, budget,
-                                                           options_of(request), executor);
+                                                           options_of(request, true), executor);
             });
             e.search_seconds = now() - start;
             e.threshold = e.search.threshold;
+            tell_share(run, request);
             draw(criterion_at, std::move(e));
         }
         for (const ThresholdText& t : request.thresholds) {
@@ -130,7 +138,7 @@ void preroll(const Moments& moments, const ExtractionRequest& request, Extractio
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
-    if (request.progress) request.progress("preroll");
+    if (request.preroll) request.preroll();
     const FramePrerolls& prerolls = moments.prerolls();
     run.preroll_seconds = now() - start;
     run.preroll_peak_bytes = memory::peak() - before;
@@ -149,7 +157,8 @@ double now() {
 ExtractionRun extract(const InputField& field, const TimeOptions& time,
                       const std::filesystem::path& path, const ExtractionRequest& request) {
     ExtractionRun run;
-    const Moments moments(field, time, path, request.projection, request.lens, request.threads);
+    const Moments moments(field, time, path, request.projection, request.lens, request.threads,
+                          request.part);
     run.dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
                                field.frames.front());
     run.nodes = field.nodes;

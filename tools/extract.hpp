@@ -40,8 +40,12 @@ struct ExtractionRequest {
     std::optional<nestgrid::Cuts> cuts{};
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
+    /// Told that a preroll begins; or empty.
+    std::function<void()> preroll{};
     /// Told how many of all surfaces are drawn; or empty.
     std::function<void(std::size_t done, std::size_t total)> share{};
+    /// Told how much of a preroll or of the surface at hand is done, from 0 to 1; or empty.
+    std::function<void(double share)> part{};
     /// Takes each surface as soon as it is drawn, and need not leave it; or empty.
     std::function<void(Extraction&)> drawn{};
 };

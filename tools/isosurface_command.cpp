@@ -122,6 +122,8 @@ void run_isosurface(Options& o, Report& report) {
     std::optional<ProgressLine> progress(std::in_place);
     request.progress = [&](const std::string& text) { progress->show(text); };
     request.share = [&](std::size_t done, std::size_t total) {
+    request.preroll = [&] { progress->show("preroll", 0, 1); };
+    request.part = [&](double share) { progress->part(share); };
         progress->show("drawing", done, total);
     };
     progress->show("reading");

@@ -13,12 +13,14 @@ const ChosenIndicator& Moment::indicators() const {
 
 Moments::Moments(const InputField& field, const TimeOptions& time,
                  const std::filesystem::path& path, ProjectionChoice choice,
-                 std::optional<LensRequest> lens, int threads)
+                 std::optional<LensRequest> lens, int threads,
+                 const std::function<void(double share)>& tell)
     : field_{field},
       time_{time},
       choice_{std::move(choice)},
       lens_{std::move(lens)},
-      executor_(threads) {
+      threads_(threads),
+      executor_(threads_, tell) {
     require_frames(time, field.times, path);
 }
 

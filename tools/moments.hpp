@@ -10,6 +10,7 @@
 #include <nestgrid/adapters/tbb.hpp>
 
 #include "input_field.hpp"
+#include "telling_executor.hpp"
 #include "time_options.hpp"
 
 /// A field at one moment.
@@ -47,9 +48,12 @@ class Moments {
 public:
     /// \param field must outlive the moments
     /// \param path of its file, for sentences
+    /// \param tell told the share that is done of the work at hand, from 0 to 1, where there are
+    ///        several threads; may be empty
     /// \throw nestgrid::InvalidInput as require_frames()
     Moments(const InputField& field, const TimeOptions& time, const std::filesystem::path& path,
-            ProjectionChoice choice, std::optional<LensRequest> lens, int threads);
+            ProjectionChoice choice, std::optional<LensRequest> lens, int threads,
+            const std::function<void(double share)>& tell = {});
 
     const nestgrid::Executor& executor() const { return executor_; }
     /// Calls function(moment) for each, in the order of their times.
@@ -64,7 +68,8 @@ private:
     const TimeOptions& time_;
     ProjectionChoice choice_;
     std::optional<LensRequest> lens_;
-    nestgrid::TbbExecutor executor_;
+    nestgrid::TbbExecutor threads_;
+    TellingExecutor executor_;
     mutable std::optional<FramePrerolls> prerolls_;
     mutable double preroll_seconds_ = 0;
 };

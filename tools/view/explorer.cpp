@@ -16,6 +16,7 @@
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
 
+#include "../telling_executor.hpp"
 #include "frame_reply.hpp"
 #include "surface_arrays.hpp"
 #include "watched_work.hpp"
@@ -110,7 +111,7 @@ public:
         : request_{request},
           moment_{moment},
           indicator_{&indicator},
-          executor_(executor, steps),
+          executor_(executor, [&steps](double share) { steps.check(share); }),
           steps_{steps} {
         if (request.lens) {
             const LensRequest& l = *request.lens;
@@ -203,7 +204,7 @@ private:
     const Indicator* indicator_;
     std::optional<Lens> lens_;
     std::optional<Plane> plane_;
-    WatchedExecutor executor_;
+    TellingExecutor executor_;
     WatchedSteps& steps_;
 };
 

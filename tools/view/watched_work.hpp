@@ -1,38 +1,17 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An executor and a hierarchy that tell how far work is, and end it by FrameAbandoned where nobody
-// waits for it. Results have the bits of the executor and the hierarchy inside.
+// A hierarchy that is asked now and then whether somebody waits for the work, and ends it by
+// FrameAbandoned where nobody does. Results have the bits of the hierarchy inside.
 #pragma once
 
 #include <memory>
 
-#include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/hierarchy.hpp>
 
 #include "frame_watch.hpp"
 
 namespace nestgrid::view {
-
-class WatchedExecutor final : public Executor {
-public:
-    /// Borrows both.
-    WatchedExecutor(const Executor& inner, const WatchedSteps& steps)
-        : inner_{&inner}, steps_{&steps} {}
-
-    std::size_t concurrency() const override { return inner_->concurrency(); }
-    void run(std::size_t count, const std::function<void(std::size_t)>& work,
-             const std::function<void(std::size_t)>& consume) const override {
-        inner_->run(count, work, [&](std::size_t i) {
-            consume(i);
-            steps_->check(static_cast<double>(i + 1) / static_cast<double>(count));
-        });
-    }
-
-private:
-    const Executor* inner_;
-    const WatchedSteps* steps_;
-};
 
 /// For one thread, which enters elements or takes rows of stars.
 template <class Real>
