@@ -317,8 +317,16 @@ void write(const SurfaceOptions& options, const DrawnField& field, const Coloure
     report.wrote(options.picture.image, {{"surfaces", panels.size()}});
 }
 
-void require_triangles(const Drawn& d, const ColouredSurface& what) {
-    if (d.report.triangles == 0) throw nestgrid::InvalidInput(what.empty);
+/// Why there is no isosurface, where that is because of its value; else nothing.
+std::string why_empty(const Moments& moments, const ColouredSurface& what) {
+    if (!what.isovalue) return "";
+    return outside_range(*what.isovalue, moments.prerolls().least(), moments.prerolls().greatest());
+}
+
+void require_triangles(const Drawn& d, const Moments& moments, const ColouredSurface& what) {
+    if (d.report.triangles > 0) return;
+    const std::string reason = what.function == nullptr ? why_empty(moments, what) : "";
+    throw nestgrid::InvalidInput(what.empty + (reason.empty() ? "" : ": " + reason));
 }
 
 /// Draws the surfaces at all moments.
@@ -347,7 +355,7 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
                 }
                 add_range(d, field);
                 const bool may_vanish = by_another && d.time;
-                if (field.surfaces.empty() && !may_vanish) require_triangles(d, what);
+                if (field.surfaces.empty() && !may_vanish) require_triangles(d, moments, what);
                 if (film != nullptr) {
                     draw_isolines(d, field.values);
                     const auto data = data_of(make_panel(d, field, what), !field.values.empty());
@@ -403,6 +411,10 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
     const std::size_t expected =
         time.frames ? static_cast<std::size_t>(*time.frames)
                     : std::max<std::size_t>(1, options.thresholds.size() + options.budgets.size());
+    if (!is_drawn_exactly(what, options)) {
+        progress.show("preroll", 0, 1);
+        moments.prerolls();
+    }
     draw_moments(moments, options, what, input.by, film ? &*film : nullptr, field,
                  [&](std::size_t done, bool searching) {
                      if (searching) return progress.show("searching the threshold");
@@ -414,11 +426,9 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
         film->finish(report);
     } else {
         write(options, field, what, report);
-    if (!is_drawn_exactly(what, options)) {
-        progress.show("preroll", 0, 1);
-        moments.prerolls();
-    }
     }
     report_drawn(field, what, report);
+    const std::string reason = why_empty(moments, what);
+    if (!reason.empty()) report.say("the isosurface is empty: " + reason);
     say_what_was_kept(options, report);
 }

@@ -9,15 +9,6 @@
 
 namespace {
 
-void say_why_empty(const ExtractionRun& run, double isovalue, Report& report) {
-    if (isovalue >= run.least && isovalue <= run.greatest) return;
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "empty: the isovalue %g is outside the range %g to %g of the data", isovalue,
-                  run.least, run.greatest);
-    report.say(text.data());
-}
-
 /// What everybody wants to know of a surface comes first.
 Row row_of(const Extraction& e, bool in_space) {
     const nestgrid::SurfaceReport& r = e.report;
@@ -105,6 +96,14 @@ Cell bound_of(const nestgrid::ErrorBounds& bounds) {
     return bounds.error_bound;
 }
 
+std::string outside_range(double isovalue, double least, double greatest) {
+    const auto texts = distinct_texts({isovalue, least, greatest});
+    if (least == greatest) return "the data have the value " + texts[1] + " everywhere";
+    if (isovalue >= least && isovalue <= greatest) return "";
+    return "the isovalue " + texts[0] + " is outside the range " + texts[1] + " to " + texts[2] +
+           " of the data";
+}
+
 void say_nothing_bounded(Report& report) {
     report.say("the error bound says nothing: it is no less than the range of the data allows");
 }
@@ -170,7 +169,8 @@ void report_surfaces(const ExtractionRun& run, double isovalue, const Seconds& s
                             [](const Extraction& e) { return e.bounds.bound_says_nothing(); })) {
         say_nothing_bounded(report);
     }
-    say_why_empty(run, isovalue, report);
+    const std::string reason = outside_range(isovalue, run.least, run.greatest);
+    if (simplices == 0 && !reason.empty()) report.say("empty: " + reason);
 }
 
 void report_info(const HierarchyInfo& info, Report& report) {

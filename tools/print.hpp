@@ -29,6 +29,8 @@ void report_surfaces(const ExtractionRun& run, double isovalue, const Seconds& s
 Row begin_row(const std::optional<double>& time, std::uint64_t budget, double threshold);
 /// The bound of a result, or nothing where it promises no more than any drawing keeps.
 Cell bound_of(const nestgrid::ErrorBounds& bounds);
+/// Why a value has no isosurface, or nothing where it lies within the range of the data.
+std::string outside_range(double isovalue, double least, double greatest);
 /// The sentence for results whose bound promises nothing.
 void say_nothing_bounded(Report& report);
 /// Why there are fewer triangles than the budgets allow, as a sentence about the first of several.

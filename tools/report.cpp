@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 #include <json/value.h>
 #include <json/writer.h>
@@ -119,6 +120,17 @@ std::string size_text(std::uint64_t bytes) {
 }
 
 }  // namespace
+
+std::vector<std::string> distinct_texts(const std::vector<double>& numbers) {
+    std::vector<std::string> texts;
+    for (const char* format : {"%.6g", "%.9g", "%.17g"}) {
+        texts.clear();
+        for (const double number : numbers) texts.push_back(formatted(format, number));
+        const std::set<double> different(numbers.begin(), numbers.end());
+        if (std::set(texts.begin(), texts.end()).size() == different.size()) break;
+    }
+    return texts;
+}
 
 std::string grouped(std::uint64_t number) {
     std::string text = std::to_string(number);

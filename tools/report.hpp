@@ -75,5 +75,9 @@ private:
     std::vector<File> files_;
 };
 
+/// Numbers with so many digits that different ones have different texts, at least six where they
+/// have as many.
+std::vector<std::string> distinct_texts(const std::vector<double>& numbers);
+
 /// 57120 as "57,120".
 std::string grouped(std::uint64_t number);

@@ -109,6 +109,12 @@ grep -q '^ *vtkFlyingEdges3D ' out || fail "row of VTK"
 "$program" isosurface v.vti --value 900 -o empty.vtp >out 2>err || fail "empty: status"
 grep -q '^empty: the isovalue 900 is outside the range' out || fail "empty: $(cat out)"
 [ -s empty.vtp ] || fail "empty.vtp is missing"
+run isosurface v.vti --value 900 --threshold 0 --threshold 9
+[ "$(grep -c 'isovalue 900 is outside the range [0-9.]* to [0-9.]* of the data' out)" = 1 ] ||
+    fail "two thresholds: $(cat out)"
+run slice v.vti --axis z --at 9 --with-isosurface 900
+grep -q 'the isosurface is empty: the isovalue 900 is outside the range' out || fail "slice: $(cat out)"
+refused 1 'the isosurface is empty: the isovalue 900 is outside' isolines v.vti --on-surface 900 --by x --count 3
 
 if command -v Xvfb >/dev/null; then
     env -u DISPLAY "$program" isosurface v.vti --value 130 --image p.png >out 2>err ||
