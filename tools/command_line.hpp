@@ -22,6 +22,9 @@
 struct Command {
     CLI::App* options;
     std::function<void(Report&)> run;
+    /// What a required option may be, where it was left out and the others are known; empty where
+    /// there is nothing to say.
+    std::function<std::string()> advice{};
 };
 
 /// \throw nestgrid::InvalidInput where one of the options is given: "--name why"
@@ -96,26 +99,26 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
     ~ProgressLine();
+    /// Work whose share is not known.
     void show(const std::string& text);
     /// One of several like pieces of work.
-    /// Work whose share is not known.
     /// \param done of `total` pieces; the first call has 0
     void show(const std::string& text, std::size_t done, std::size_t total);
-
-private:
-    bool terminal_;
     /// How much of the piece at hand is done, from 0 to 1; nothing is shown where the last show()
     /// had no pieces.
     void part(double share);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void print(const std::string& text);
+
+    bool terminal_;
     std::string text_;
     std::size_t done_ = 0;
     std::size_t total_ = 0;  // 0: not known
     Clock::time_point start_;
     Clock::time_point printed_;
-    using Clock = std::chrono::steady_clock;
-
-    void print(const std::string& text);
-
 };
 
 /// out.vtp for one surface; out-1.vtp, out-2.vtp, ... for several.

@@ -8,6 +8,7 @@
 #include "command_line.hpp"
 #include "extract.hpp"
 #include "film.hpp"
+#include "first_isovalue.hpp"
 #include "input_file.hpp"
 #include "picture/picture.hpp"
 #include "print.hpp"
@@ -121,9 +122,9 @@ void run_isosurface(Options& o, Report& report) {
     Seconds seconds;
     std::optional<ProgressLine> progress(std::in_place);
     request.progress = [&](const std::string& text) { progress->show(text); };
-    request.share = [&](std::size_t done, std::size_t total) {
     request.preroll = [&] { progress->show("preroll", 0, 1); };
     request.part = [&](double share) { progress->part(share); };
+    request.share = [&](std::size_t done, std::size_t total) {
         progress->show("drawing", done, total);
     };
     progress->show("reading");
@@ -154,6 +155,19 @@ void run_isosurface(Options& o, Report& report) {
     say_what_was_kept(o.surface, report);
 }
 
+/// The range of the data, and a value that shows the thing in them.
+std::string advice(const Options& o) {
+    if (o.input.path.empty()) return "";
+    Input input = o.input;
+    const InputField field = read_field(input, o.time.more, o.time.times);
+    const ValueSample sample = value_sample_of(field.value_count, field.value);
+    const auto texts = distinct_texts({sample.least, sample.greatest, readable_isovalue(sample)});
+    const std::string name = "'" + o.input.path.string() + "'";
+    if (texts[0] == texts[1]) return ": " + name + " has the value " + texts[0] + " everywhere";
+    return ": the values of " + name + " are from " + texts[0] + " to " + texts[1] +
+           ", try --value " + texts[2];
+}
+
 void add_box_options(CLI::App& command, Options& o) {
     CLI::Option* box =
         command.add_option("--box", o.box, "a box with a threshold of its own, --box-threshold")
@@ -173,6 +187,8 @@ Command add_isosurface(CLI::App& program) {
     auto o = std::make_shared<Options>();
     CLI::App* isosurface = program.add_subcommand("isosurface", "draw where the data have a value");
     isosurface->footer(
+        "Prints:\n"
+        "  error_bound: on no triangle do the data and the value differ by more.\n"
         "Examples:\n"
         "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
         "  nestgrid isosurface head.nii.gz --value 60 --max-triangles 5000 --image h.png\n");
@@ -189,8 +205,6 @@ Command add_isosurface(CLI::App& program) {
     isosurface
         ->add_flag("--at-nodes", o->at_nodes,
                    "put vertices at samples that equal the isovalue, instead of slivers around "
-        "Prints:\n"
-        "  error_bound: on no triangle do the data and the value differ by more.\n"
                    "them")
         ->group("Surface");
     isosurface
@@ -210,5 +224,6 @@ Command add_isosurface(CLI::App& program) {
     add_lens_options(*isosurface, o->lens);
     isosurface->get_option("--lens")->excludes("--box");
     add_read_options(*isosurface, o->input);
-    return {isosurface, [o](Report& report) { run_isosurface(*o, report); }};
+    return {isosurface, [o](Report& report) { run_isosurface(*o, report); },
+            [o] { return advice(*o); }};
 }

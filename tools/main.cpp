@@ -3,3 +3,101 @@
 #include "program.hpp"
 
 int main(int argc, char** argv) { return run_program(argc, argv); }
+#include <vtkObject.h>
+
+#include "command_line.hpp"
+#include "help.hpp"
+#include "report.hpp"
+#include "usage_error.hpp"
+#include "version.hpp"
+
+namespace {
+
+std::vector<Command> add_commands(CLI::App& program, bool& json) {
+    std::vector<Command> commands{
+        add_isosurface(program), add_slice(program),    add_isolines(program), add_height(program),
+        add_surface(program),    add_boundary(program), add_probe(program),    add_info(program),
+        add_mesh(program),       add_pack(program),     add_view(program)};
+    for (const Command& command : commands) {
+        command.options->add_flag("--json", json, "print everything as one JSON document")
+            ->group("Further");
+        for (CLI::Option* option :
+             {command.options->get_option("--help"), command.options->get_option("--help-all")}) {
+            option->group("Further");
+        }
+        // What follows an option and its value is no further value of it, but a file.
+        for (CLI::Option* option : command.options->get_options()) {
+            if (!option->get_positional()) option->allow_extra_args(false);
+        }
+    }
+    return commands;
+}
+
+/// Prints a text that is made of the tree of commands.
+void add_text(CLI::App& program, const std::string& name,
+              const std::function<std::string(const CLI::App&)>& text) {
+    program.add_subcommand(name)->group("")->final_callback(
+        [&program, text] { std::fputs(text(program).c_str(), stdout); });
+}
+
+/// Prints why the arguments cannot be used.
+/// \return the exit status
+int refuse(const CLI::ParseError& error, const CLI::App& program,
+           const std::vector<Command>& commands) {
+    std::string text = usage_error(error, program);
+    const bool is_missing =
+        dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && text == error.what();
+    try {
+        for (const Command& command : commands) {
+            if (is_missing && *command.options && command.advice) text += command.advice();
+        }
+    } catch (const std::exception& unreadable) {
+        std::fprintf(stderr, "nestgrid: %s\n", unreadable.what());
+        return 1;
+    }
+    std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n", text.c_str());
+    return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    vtkObject::GlobalWarningDisplayOff();
+    CLI::App app{"Adaptive, crack-free surfaces from hierarchical grids", "nestgrid"};
+    set_help(app);
+    app.set_version_flag(
+        "--version", [] { return version_text(); }, "print what this is built with");
+    app.require_subcommand(1);
+    app.footer(
+        "Examples:\n"
+        "  nestgrid info head.nii.gz\n"
+        "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
+        "  nestgrid slice head.nii.gz --axis z --at 30 --threshold 2% --image slice.png\n"
+        "  nestgrid view head.nii.gz");
+    bool json = false;
+    const std::vector<Command> commands = add_commands(app, json);
+    Report report(json);
+    add_text(app, "manual",
+             [](const CLI::App& tree) { return manual_page(tree, NESTGRID_VERSION); });
+    add_text(app, "bash-completion", bash_completion);
+    add_text(app, "zsh-completion", zsh_completion);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        return refuse(error, app, commands);
+    }
+    try {
+        for (const Command& command : commands) {
+            if (*command.options) command.run(report);
+        }
+        report.print();
+        return 0;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "nestgrid: not enough memory\n");
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "nestgrid: %s\n", error.what());
+    }
+    return 1;
+}

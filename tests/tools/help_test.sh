@@ -84,6 +84,10 @@ refused 2 "takes NUMBER, not 'abc'" isosurface v.vti --value abc
 refused 2 'takes NUMBER, but nothing follows' isosurface v.vti --value
 refused 2 '--value is given twice' isosurface v.vti --value 1 --value 2
 refused 2 'takes X,Y,Z,NX,NY,NZ' slice v.vti --plane 1,2,3
+refused 2 "value is required: the values of 'v.vti' are from [0-9.]+ to [0-9.]+, try --value [0-9]+ \(" isosurface v.vti
+run isosurface v.vti --value "$("$program" isosurface v.vti 2>&1 | sed 's/.*--value \([0-9.]*\).*/\1/')"
+[ "$(value triangles)" -gt 1000 ] || fail "the value that is advised shows $(value triangles) triangles"
+refused 1 "'none.vti' does not exist" isosurface none.vti
 refused 1 'has no place: give its coordinate, --at' slice v.vti --axis z
 
 # Files that are none.

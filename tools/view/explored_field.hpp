@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "../first_isovalue.hpp"
 #include "../frame_field.hpp"
-#include "first_isovalue.hpp"
 
 namespace nestgrid::view {
 

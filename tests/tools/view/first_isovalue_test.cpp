@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The isovalue that a page begins with parts the thing from its background: in volumes whose thing
-// is known, nearly every sample of the thing is on one side, and nearly every other on the other
-// one.
+// The first isovalue parts the thing from its background: in volumes whose thing is known, nearly
+// every sample of the thing is on one side, and nearly every other on the other one.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -12,8 +11,6 @@
 #include <random>
 
 #include <first_isovalue.hpp>
-
-using namespace nestgrid::view;
 
 namespace {
 
@@ -215,6 +212,18 @@ TEST(FirstIsovalue, LiesWithinTheValues) {
     EXPECT_EQ(isovalue_of(std::vector{3.0, 4.0}), 3.5);
     const auto slope = in_cube([](double x, double, double) { return 5 + x; });
     EXPECT_NEAR(isovalue_of(slope), 5, 0.1);
+}
+
+TEST(FirstIsovalue, IsReadableAndStillBetweenTheValues) {
+    const auto readable = [](const std::vector<double>& values) {
+        return readable_isovalue(
+            value_sample_of(values.size(), [&](std::size_t i) { return values[i]; }));
+    };
+    EXPECT_EQ(readable({0, 100.0 / 3}), 17);
+    EXPECT_EQ(readable({1000.001, 1000.002}), 1000.0015);
+    EXPECT_EQ(readable({1.0 / 3, 1.0 / 3}), 1.0 / 3);
+    const double next = std::nextafter(1.0, 2.0);
+    EXPECT_TRUE(readable({1, next}) == 1 || readable({1, next}) == next);
 }
 
 TEST(FirstIsovalue, OfValuesThatAreNotFiniteIsRefused) {

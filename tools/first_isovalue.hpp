@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The isovalue that a page begins with: the surface of the thing in the data.
+// The isovalue to begin with, where nobody gives one: the surface of the thing in the data.
 //
 // Data mostly have a *background*: a constant, or noise around one value, at one end of their
 // histogram. Then the isovalue lies halfway between the background and the median of the rest, as
@@ -25,8 +25,6 @@
 
 #include <nestgrid/error.hpp>
 
-namespace nestgrid::view {
-
 /// Values spread over the data, and the one that follows each of them in memory.
 struct ValueSample {
     static constexpr std::size_t most = std::size_t{1} << 17;
@@ -38,7 +36,7 @@ struct ValueSample {
 };
 
 /// \param at at(i) is value i
-/// \throw InvalidInput where a value is not finite
+/// \throw nestgrid::InvalidInput where a value is not finite
 template <class At>
 ValueSample value_sample_of(std::size_t count, const At& at) {
     ValueSample sample;
@@ -47,8 +45,8 @@ ValueSample value_sample_of(std::size_t count, const At& at) {
     for (std::size_t i = 0; i < count; ++i) {
         const auto value = static_cast<double>(at(i));
         if (!std::isfinite(value)) {
-            throw InvalidInput("a value of the field is not a usable number: " +
-                               std::to_string(value));
+            throw nestgrid::InvalidInput("a value of the field is not a usable number: " +
+                                         std::to_string(value));
         }
         sample.least = std::min(sample.least, value);
         sample.greatest = std::max(sample.greatest, value);
@@ -74,4 +72,5 @@ std::optional<std::array<double, 2>> usual_range(const ValueSample& sample);
 ///         are constant
 double first_isovalue(const ValueSample& sample);
 
-}  // namespace nestgrid::view
+/// The same with as few digits as serve.
+double readable_isovalue(const ValueSample& sample);

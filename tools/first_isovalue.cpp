@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "first_isovalue.hpp"
 
+#include <cstdio>
+#include <cstdlib>
 #include <numeric>
 #include <span>
-
-namespace nestgrid::view {
 
 namespace {
 
@@ -286,4 +286,15 @@ double first_isovalue(const ValueSample& sample) {
     return sample.least + (sample.greatest - sample.least) / 2;
 }
 
-}  // namespace nestgrid::view
+double readable_isovalue(const ValueSample& sample) {
+    const double isovalue = first_isovalue(sample);
+    for (int digits = 1; digits < 17; ++digits) {
+        std::array<char, 40> text{};
+        std::snprintf(text.data(), text.size(), "%.*g", digits, isovalue);
+        const double shorter = std::strtod(text.data(), nullptr);
+        const bool is_near =
+            std::abs(shorter - isovalue) <= 0.01 * (sample.greatest - sample.least);
+        if (is_near && sample.least < shorter && shorter < sample.greatest) return shorter;
+    }
+    return isovalue;
+}
