@@ -178,6 +178,13 @@ void check(const SurfaceOptions& options) {
         if (budget <= 0) throw nestgrid::InvalidInput("--max-triangles is not positive");
     }
     check(options.projection);
+    for (const char* name : {"--output", "--image"}) {
+        const CLI::Option* option =
+            options.command == nullptr ? nullptr : options.command->get_option_no_throw(name);
+        if (option != nullptr && option->count() > 0 && option->as<std::string>().empty()) {
+            throw nestgrid::InvalidInput(std::string(name) + " has an empty name");
+        }
+    }
     if (options.threads < 0) throw nestgrid::InvalidInput("--threads is negative");
     if (!options.output.empty()) check_output(options.output, surface_formats);
     parse(options.picture);

@@ -37,7 +37,7 @@ std::size_t steps_to(const std::string& word, const std::string& known) {
 
 std::string nearest(const std::string& word, const std::vector<std::string>& known) {
     constexpr std::size_t longest = 100;  // beyond it, nobody has misspelt a word
-    if (word.size() > longest) return "";
+    if (word.empty() || word.size() > longest) return "";
     std::string best;
     std::size_t fewest = std::max<std::size_t>(1, (word.size() + 1) / 3) + 1;
     for (const std::string& each : known) {

@@ -149,12 +149,6 @@ refused 1 'give --dims' isosurface v.raw --value 1
 refused 1 'sample at \(5, 7, 3\) is not a number' isosurface nan.vti --value 130 -o x.vtp
 refused 1 '5 x 5 x 1' isosurface flat.vti --value 1
 refused 1 '3 numbers per sample' isosurface colours.vti --value 1
-refused 1 "no point data array 'rain'" isosurface v.vti --array rain --value 1
-refused 1 'does not exist' isosurface nothing.vti --value 1
-echo x >what.abc
-refused 1 'known format' isosurface what.abc --value 1
-: >empty.nii && refused 1 'is empty' isosurface empty.nii --value 1
-refused 1 'cannot be written' isosurface v.vti --value 130 -o missing/x.vtp
 {
     head -c 40 v.nii
     printf '\4\0'
@@ -164,7 +158,21 @@ refused 1 'cannot be written' isosurface v.vti --value 130 -o missing/x.vtp
     tail -c +353 v.nii
 } >series.nii
 refused 1 'series.nii has 2 volumes, one after the other' isosurface series.nii --value 1
+refused 1 "no point data array 'rain'" isosurface v.vti --array rain --value 1
+refused 1 'does not exist' isosurface nothing.vti --value 1
+echo x >what.abc
+refused 1 'known format' isosurface what.abc --value 1
+: >empty.nii && refused 1 'is empty' isosurface empty.nii --value 1
+refused 1 'cannot be written' isosurface v.vti --value 130 -o missing/x.vtp
 refused 1 'names no known format' isosurface v.vti --value 130 -o x.doc
+refused 1 'output has an empty name' isosurface v.vti --value 130 -o ''
+refused 1 'image has an empty name' isosurface v.vti --value 130 --image ''
+refused 1 "'' does not exist$" info ''
+head -c 1000 /dev/zero >zeros.raw
+run isosurface zeros.raw --dims 10,10,10 --type uint8 --value 0
+grep -q '^empty: the data have the value 0 everywhere' out || fail "constant data: $(cat out)"
+run isosurface v.vti --value -900 --cap
+! grep -q '^empty' out || fail "a capped volume is said to be empty: $(cat out)"
 refused 1 "threshold 'much'" isosurface v.vti --value 130 --threshold much
 refused 1 "threshold '-3'" isosurface v.vti --value 130 --threshold=-3
 refused 2 '--frobnicate' isosurface v.vti --value 130 --frobnicate
