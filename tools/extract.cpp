@@ -17,18 +17,14 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
-nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request) {
+/// \param counting whether elements are told, where no share of the work is known
+nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool counting) {
     const bool finest = !request.budgets.empty() && request.projection.indicator != "deviation";
     nestgrid::IsosurfaceOptions options{
         .cuts = request.cuts.value_or(finest ? nestgrid::Cuts::finest : nestgrid::Cuts::linear),
         .normals = request.normals,
         .cap = request.cap,
         .at_nodes = request.at_nodes};
-    if (request.progress) {
-/// \param counting whether elements are told, where no share of the work is known
-nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool counting) {
-    nestgrid::IsosurfaceOptions options{
-        .normals = request.normals, .cap = request.cap, .at_nodes = request.at_nodes};
     if (request.progress && counting) {
         options.progress = [&](const nestgrid::TraversalCounts& counts) {
             request.progress("looked at " + millions(counts.calls) + " elements");

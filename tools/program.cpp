@@ -43,6 +43,25 @@ void add_text(CLI::App& program, const std::string& name,
         [&program, text] { std::fputs(text(program).c_str(), stdout); });
 }
 
+/// Prints why the arguments cannot be used.
+/// \return the exit status
+int refuse(const CLI::ParseError& error, const CLI::App& program,
+           const std::vector<Command>& commands) {
+    std::string text = usage_error(error, program);
+    const bool is_missing =
+        dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && text == error.what();
+    try {
+        for (const Command& command : commands) {
+            if (is_missing && *command.options && command.advice) text += command.advice();
+        }
+    } catch (const std::exception& unreadable) {
+        std::fprintf(stderr, "nestgrid: %s\n", unreadable.what());
+        return 1;
+    }
+    std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n", text.c_str());
+    return 2;
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
@@ -70,9 +89,7 @@ int run_program(int argc, char** argv) {
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n",
-                     usage_error(error, app).c_str());
-        return 2;
+        return refuse(error, app, commands);
     }
     try {
         for (const Command& command : commands) {
