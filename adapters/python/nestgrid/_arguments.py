@@ -235,6 +235,11 @@ def samples(value: Any) -> np.ndarray:
     """An array that is not copied where it is one."""
     if isinstance(value, (str, bytes, dict, set)) or value is None or callable(value):
         raise not_a("an array of 2 or 3 indices", value)
+    if np.ma.is_masked(value):
+        raise Unfit(
+            "has masked entries, which would be drawn: fill them with numbers (numpy.ma.filled)",
+            InvalidInput,
+        )
     try:
         return np.asanyarray(value)
     except ValueError:
