@@ -155,8 +155,7 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
                 options.projection.indicator = "deviation";
             },
             "or let the data and what is drawn of them differ by at most this, in units of the "
-            "data "
-            "or in percent of their range")
+            "data or in percent of their range")
         ->type_name("NUMBER[%]")
         ->take_all()
         ->excludes("--threshold")
@@ -176,6 +175,12 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
 void check(const SurfaceOptions& options) {
     for (const std::int64_t budget : options.budgets) {
         if (budget <= 0) throw nestgrid::InvalidInput("--max-triangles is not positive");
+    }
+    for (const std::string name : {"error", "distance"}) {
+        if (options.command == nullptr) break;
+        const CLI::Option* const option = options.command->get_option_no_throw("--" + name);
+        if (option == nullptr || option->count() == 0) continue;
+        for (const std::string& error : options.thresholds) require_error(error, name);
     }
     check(options.projection);
     for (const char* name : {"--output", "--image"}) {

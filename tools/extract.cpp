@@ -52,6 +52,7 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Cri
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
     e.counts = result.counts;
     e.bounds = result;
+    e.surface_error = result.surface_error;
     e.stack_bytes = result.stack_bytes;
     if constexpr (dimension == 3) {
         e.report = nestgrid::surface_report(result.surface);
@@ -96,7 +97,9 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
                     const std::optional<nestgrid::Region>& region,
                     const nestgrid::Executor& executor, const ExtractionRequest& request,
                     const InputField& field, ExtractionRun& run) {
+    const double begin = now();
     const ChosenIndicator& indicators = moment.indicators();
+    run.preroll_seconds += now() - begin;
     const auto draw = [&](const auto& criterion_at, Extraction e) {
         e.time = moment.time();
         extract_one<dimension>(hierarchy, criterion_at(e.threshold), indicators.bounds(), executor,

@@ -59,6 +59,7 @@ struct Extraction {
     vtkSmartPointer<vtkPolyData> surface;  ///< where it is kept
     nestgrid::TraversalCounts counts;
     nestgrid::ErrorBounds bounds;
+    double surface_error = 0;  ///< Isosurface::surface_error
     std::size_t stack_bytes = 0;
     nestgrid::SurfaceReport report;  ///< of isolines: vertices, and segments as triangles
     double seconds = 0;

@@ -57,6 +57,7 @@ ExtractionRequest request_of(const Options& o) {
     request.budgets.assign(s.budgets.begin(), s.budgets.end());
     request.threads = s.threads;
     request.projection = s.projection;
+    request.projection.isovalue = o.value;
     if (!o.box.empty() && s.projection.blend != 1) {
         throw nestgrid::InvalidInput("--box has two thresholds: leave out --blend");
     }
@@ -86,6 +87,19 @@ void check_for(const Options& o, const InputField& field) {
     }
 }
 
+/// Whether errors are those of the surface alone. Between frames the deviations of these serve,
+/// without a preroll of each moment; in shapes other than simplices, cut deviations count the
+/// flatness of triangles several times.
+bool suits_cuts(const InputField& field) {
+    if (field.frames.size() > 1) return false;
+    return std::visit(
+        [](const auto& frame) {
+            const nestgrid::Shape shape = frame->facts().only_shape;
+            return shape == nestgrid::Shape::tetrahedron || shape == nestgrid::Shape::triangle;
+        },
+        field.frames.front());
+}
+
 /// Writes and paints the surfaces that were kept.
 void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progress,
           Seconds& seconds, Report& report) {
@@ -111,6 +125,12 @@ void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progr
         seconds.draw = now() - start;
         report.wrote(image, {{"surfaces", panels.size()}});
     }
+}
+
+void say_what_distances_are(const std::string& unit, Report& report) {
+    report.say("distances are in " +
+               (unit.empty() ? "the unit of the grid, which is not known" : unit) +
+               ", and estimates: where the data are flat, the surface may be further off");
 }
 
 void run_isosurface(Options& o, Report& report) {
@@ -140,6 +160,9 @@ void run_isosurface(Options& o, Report& report) {
     const fs::path path = o.input.path;
     const InputField field = read_field(o.input, o.time.more, o.time.times);
     check_for(o, field);
+    if (o.surface.command->count("--error") > 0 && suits_cuts(field)) {
+        request.projection.indicator = "cut";
+    }
     seconds.read = now() - start;
     const ExtractionRun run = extract(field, o.time, path, request);
     if (film) film->finish(report);
@@ -152,6 +175,7 @@ void run_isosurface(Options& o, Report& report) {
     progress.reset();
     report_field(field.name, field.length_unit, report);
     report_surfaces(run, o.value, seconds, contour, report);
+    if (request.projection.indicator == "slope") say_what_distances_are(field.length_unit, report);
     say_what_was_kept(o.surface, report);
 }
 
@@ -197,6 +221,21 @@ Command add_isosurface(CLI::App& program) {
         ->type_name("NUMBER")
         ->required();
     add_surface_options(*isosurface, o->surface);
+    isosurface
+        ->add_option_function<std::vector<std::string>>(
+            "--distance",
+            [o](const std::vector<std::string>& distances) {
+                o->surface.thresholds = distances;
+                o->surface.projection.indicator = "slope";
+            },
+            "or let what is drawn be about this far from the surface of all data at most, in the "
+            "unit of the grid: an estimate")
+        ->type_name("LENGTH")
+        ->take_all()
+        ->excludes("--threshold")
+        ->excludes("--max-triangles")
+        ->excludes("--error")
+        ->excludes("--indicator");
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume")
         ->group("Surface");
     isosurface

@@ -9,12 +9,26 @@
 
 namespace {
 
+/// Whether an error was asked for and is kept.
+bool is_promised(const Extraction& e) { return e.threshold > 0 && std::isfinite(e.surface_error); }
+
+void say_what_is_promised(const ExtractionRun& run, Report& report) {
+    if (run.surfaces.size() != 1 || !is_promised(run.surfaces.front())) return;
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "surface within %.4g of the isovalue, and the whole surface of the data within "
+                  "it of what is drawn",
+                  run.surfaces.front().surface_error);
+    report.say(text.data());
+}
+
 /// What everybody wants to know of a surface comes first.
 Row row_of(const Extraction& e, bool in_space) {
     const nestgrid::SurfaceReport& r = e.report;
     Row row = begin_row(e.time, e.search.max_triangles, e.threshold);
     row.add(in_space ? "triangles" : "segments", r.triangles).add("vertices", r.vertices);
     row.add("error_bound", bound_of(e.bounds));
+    if (is_promised(e)) row.add("surface_error", e.surface_error);
     if (in_space) row.add("open_edges", r.open_edges).add("area", r.area);
     const bool encloses = r.closed() && r.triangles > 0;
     if (in_space) row.add("volume", encloses ? Cell(std::abs(r.volume)) : Cell());
@@ -165,6 +179,7 @@ void report_surfaces(const ExtractionRun& run, double isovalue, const Seconds& s
     report_sum(run.surfaces.size(), simplices, in_space ? "triangles" : "segments", drawing,
                report);
     say_why_not_filled(searches, report);
+    say_what_is_promised(run, report);
     if (std::ranges::any_of(run.surfaces,
                             [](const Extraction& e) { return e.bounds.bound_says_nothing(); })) {
         say_nothing_bounded(report);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
@@ -40,6 +41,22 @@ std::optional<nestgrid::SweptIndicator> swept_indicator(const nestgrid::Hierarch
     return std::nullopt;
 }
 
+/// The chosen indicator of one surface; nothing where another one is chosen.
+template <class Real>
+std::optional<nestgrid::SweptIndicator> surface_indicator(
+    const nestgrid::Hierarchy<Real>& hierarchy, const ProjectionChoice& choice,
+    const nestgrid::Bounds& bounds, const nestgrid::Executor& executor) {
+    const nestgrid::Spread spread{.factor = choice.blend};
+    const std::span<const double> isovalues(&choice.isovalue, 1);
+    if (choice.indicator == "cut") {
+        return cut_deviations(hierarchy, isovalues, bounds, spread, executor);
+    }
+    if (choice.indicator == "slope") {
+        return slope_deviations(hierarchy, isovalues, bounds, spread, executor);
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 ThresholdText parse_threshold(const std::string& text) {
@@ -51,6 +68,17 @@ ThresholdText parse_threshold(const std::string& text) {
         throw InvalidInput("the threshold '" + text + "' is no number >= 0, with or without %");
     }
     return t;
+}
+
+void require_error(const std::string& text, const std::string& option) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (end != text.c_str() && number > 0 && std::isfinite(number)) {
+        parse_threshold(text);
+        return;
+    }
+    throw InvalidInput("the " + option + " '" + text +
+                       "' is no number > 0: leave the option out to draw all detail");
 }
 
 void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_lens) {
@@ -94,6 +122,7 @@ FramePrerolls::FramePrerolls(const std::vector<SharedHierarchy>& frames, Project
                              std::optional<LensRequest> lens, const nestgrid::Executor& executor)
     : choice_{std::move(choice)},
       lens_{std::move(lens)},
+      executor_{&executor},
       least_{std::numeric_limits<double>::infinity()},
       greatest_{-least_} {
     const bool deviations = choice_.indicator == "deviation";
@@ -155,6 +184,8 @@ ChosenIndicator::ChosenIndicator(const FramePrerolls& prerolls, const SharedHier
     std::visit(
         [&](const auto& each) {
             swept_ = swept_indicator(*each, prerolls.choice(), greatest() - least());
+            if (swept_) return;
+            swept_ = surface_indicator(*each, prerolls.choice(), bounds(), prerolls.executor());
         },
         hierarchy);
 }
@@ -173,6 +204,9 @@ const nestgrid::Indicator& ChosenIndicator::chosen() const {
 
 double ChosenIndicator::threshold(const ThresholdText& text) const {
     const std::string& indicator = prerolls_->choice().indicator;
+    if (text.percent && indicator == "slope") {
+        throw InvalidInput("a --distance is a length, not a percentage");
+    }
     if (text.percent && (indicator == "visual" || indicator == "geometry")) {
         throw InvalidInput("thresholds of the " + indicator +
                            " indicator are no percentages: they have no units of the data");

@@ -28,6 +28,9 @@ struct ThresholdText {
 
 /// \throw nestgrid::InvalidInput unless the text is a number >= 0, with or without %
 ThresholdText parse_threshold(const std::string& text);
+/// \param option that asks for the error, for the sentence
+/// \throw nestgrid::InvalidInput unless the text is a number > 0, with or without %
+void require_error(const std::string& text, const std::string& option);
 
 /// Where there is none: with a lens, whatever the data are; else 0.
 void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_lens);
@@ -36,6 +39,7 @@ void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_len
 struct ProjectionChoice {
     std::string indicator = "offset";
     double blend = 1;
+    double isovalue = 0;  ///< of the indicators "cut" and "slope", which are of one surface
 };
 void add_projection_options(CLI::App& command, ProjectionChoice& choice);
 /// \throw nestgrid::InvalidInput where the factor is out of range
@@ -48,10 +52,12 @@ void require_threshold(const CLI::App& command);
 class FramePrerolls {
 public:
     /// Walks all frames.
+    /// \param executor must outlive the prerolls
     FramePrerolls(const std::vector<SharedHierarchy>& frames, ProjectionChoice choice,
                   std::optional<LensRequest> lens, const nestgrid::Executor& executor);
 
     const ProjectionChoice& choice() const { return choice_; }
+    const nestgrid::Executor& executor() const { return *executor_; }
     const std::optional<LensRequest>& lens() const { return lens_; }
     /// Of each frame, or its deviations where these are chosen; spread for blending where the
     /// choice compares thresholds with them.
@@ -71,6 +77,7 @@ private:
     std::vector<nestgrid::HierarchicalIndicator> offsets_;
     std::vector<nestgrid::SweptIndicator> swept_;
     std::optional<nestgrid::SweptIndicator> sizes_;
+    const nestgrid::Executor* executor_;
     double least_;
     double greatest_;
 };

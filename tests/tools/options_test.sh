@@ -143,6 +143,15 @@ for command in isosurface slice isolines boundary; do
     refused 1 'threads is negative' $command $raw ${base[$command]} --threads -1
     echo "$command --threads" >>covered
 done
+effect isosurface "$raw ${base[isosurface]}" --distance 0.5
+for option in '--threshold 1' '--max-triangles 900' '--error 5' '--indicator visual'; do
+    refused 2 'distance excludes|excludes --distance' isosurface $raw --value 130 --distance 1 $option
+done
+for number in 0 -1 nan x; do
+    refused 1 "the distance '$number' is no number > 0" isosurface $raw --value 130 --distance=$number
+    refused 1 "the error '$number' is no number > 0" isosurface $raw --value 130 --error=$number
+done
+refused 1 'is a length, not a percentage' isosurface $raw --value 130 --distance 5%
 effect isosurface "$raw --value 130 --threshold 30" --box 0,20,0,24,0,9
 effect isosurface "$raw --value 130 --threshold 30 --box 0,20,0,24,0,9" --box-threshold 5
 void isosurface 'needs a --threshold' "$raw --value 130" --box 0,9,0,9,0,9

@@ -53,6 +53,8 @@ for error in 5 20 60 10%; do
     awk -v b="$(value error_bound)" -v t="$(value threshold)" 'BEGIN { exit !(0 < b && b <= t) }' ||
         fail "error $error: $(cat out)"
     [ "$(value open_edges)" = 0 ] || fail "error $error: an open surface"
+    awk -v b="$(value surface_error)" -v t="$(value threshold)" 'BEGIN { exit !(0 < b && b <= t) }' &&
+        grep -q '^surface within .* of the isovalue' out || fail "error $error there and back: $(cat out)"
 done
 "$program" isosurface v.vti --value 130 --threshold 50 --box=-100,100,-100,100,-100,100 >out ||
     fail "box"
