@@ -87,7 +87,7 @@ void add_mesh_options(CLI::App& command, MeshRequest& o) {
     add_read_limit(command, o.read_limit);
     command.footer(
         "Examples:\n"
-        "  nestgrid mesh part.poly --family bisection --field front --tolerance 0.01 \\\n"
+        "  nestgrid mesh part.poly --family bisection --field front --tolerance 0.05 \\\n"
         "           -o part.nestgrid\n"
         "\n"
         "Names of fields:\n" +
