@@ -70,11 +70,11 @@ try {
   check(/x .*y .*z .*\n?.* = .* ± /s.test(await text('cursor')), `cursor: ${await text('cursor')}`);
   await picture('view');
 
-  // Every slider over 20 positions: within 5 % of the number of triangles.
+  // Every slider over 60 positions: within 5 % of the number of triangles.
   const rates = async (name, id, from, to, goal) => {
-    const page_ = await drag(id, from, to, 20, false);
+    const page_ = await drag(id, from, to, 60, false);
     await settled();
-    const drawn = await drag(id, from, to, 4, true);
+    const drawn = await drag(id, from, to, 8, true);
     await settled();
     console.log(`${name}: ${page_.rate.toFixed(1)} frames/s without drawing, `
       + `${drawn.rate.toFixed(1)} drawn by the processor, ${(page_.bytes / 1e6).toFixed(2)} MB a frame`);
