@@ -3,51 +3,27 @@
 #include <collapses/collapse_rounds.hpp>
 
 #include <algorithm>
-#include <tuple>
-#include <utility>
 
 #include <collapses/block_collapse.hpp>
+#include <surfaces/triangle_sides.hpp>
 
 namespace nestgrid::engine {
 
 namespace {
 
 constexpr std::size_t most_vertices = std::size_t{1} << 14U;  // of a block
-constexpr int most_rounds = 12;
+constexpr std::size_t most_rounds = 12;
 constexpr double worth_a_round = 0.01;                  // part of the triangles that goes in one
 constexpr std::array<double, 3> cuts{0.5, 0.37, 0.63};  // of blocks, by round
 
-/// A directed edge of a triangle.
-struct Side {
-    std::uint32_t low;
-    std::uint32_t high;
-    std::uint32_t triangle;
-
-    bool operator<(const Side& other) const {
-        return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
-    }
-};
+using Side = TriangleSide;
 
 /// The edges that belong to one triangle only.
 std::vector<Side> open_sides(std::span<const BlockMesh::Corners> triangles) {
-    std::vector<Side> sides;
-    sides.reserve(3 * triangles.size());
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-        const auto& c = triangles[t];
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto [low, high] = std::minmax(c[i], c[(i + 1) % 3]);
-            sides.push_back({low, high, t});
-        }
-    }
-    std::sort(sides.begin(), sides.end());
     std::vector<Side> open;
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-        const auto same = [&](std::size_t j) {
-            return sides[i].low == sides[j].low && sides[i].high == sides[j].high;
-        };
-        const bool twin = (i > 0 && same(i - 1)) || (i + 1 < sides.size() && same(i + 1));
-        if (!twin) open.push_back(sides[i]);
-    }
+    for_each_edge(sorted_sides(triangles), [&](std::span<const Side> edge) {
+        if (edge.size() == 1) open.push_back(edge[0]);
+    });
     return open;
 }
 
@@ -189,14 +165,13 @@ std::vector<Point> CollapseRounds::positions() const {
 
 Collapsed CollapseRounds::run() {
     Collapsed counts;
-    int idle = 0;
-    for (std::size_t round = 0; round < most_rounds && idle < 1; ++round) {
+    for (std::size_t round = 0; round < most_rounds; ++round) {
         const std::size_t before = triangles_.size();
         const Blocks blocks(positions(), most_vertices, cuts[round % cuts.size()]);
         run_round(blocks, counts);
         erase_gone();
         const auto part = static_cast<double>(before - triangles_.size());
-        idle = part > worth_a_round * static_cast<double>(before) ? 0 : idle + 1;
+        if (part <= worth_a_round * static_cast<double>(before)) break;
     }
     return counts;
 }

@@ -7,6 +7,7 @@
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/error.hpp>
 
+#include <surfaces/triangle_sides.hpp>
 #include <surfaces/union_find.hpp>
 
 namespace nestgrid {
@@ -19,21 +20,11 @@ std::size_t attribute_count(const Surface<3>& surface) {
 
 /// Marks the lower end of every edge that belongs to one triangle only.
 std::vector<bool> open_vertices(const Surface<3>& surface) {
-    std::vector<std::array<std::uint32_t, 2>> sides;
-    for (const auto& t : surface.simplices) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
-            sides.push_back({low, high});
-        }
-    }
-    std::sort(sides.begin(), sides.end());
     std::vector<bool> open(surface.vertices.size(), false);
-    for (std::size_t i = 0; i < sides.size();) {
-        std::size_t j = i + 1;
-        while (j < sides.size() && sides[j] == sides[i]) ++j;
-        if (j - i == 1) open[sides[i][0]] = true;
-        i = j;
-    }
+    engine::for_each_edge(engine::sorted_sides(surface.simplices),
+                          [&](std::span<const engine::TriangleSide> edge) {
+                              if (edge.size() == 1) open[edge[0].low] = true;
+                          });
     return open;
 }
 

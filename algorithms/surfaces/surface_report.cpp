@@ -2,64 +2,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/error.hpp>
 
+#include <surfaces/triangle_sides.hpp>
 #include <surfaces/union_find.hpp>
 
 namespace nestgrid {
 
 namespace {
 
-/// One side of a triangle, ends ascending; `forward` where the triangle runs along it upwards.
-struct Side {
-    std::uint32_t low;
-    std::uint32_t high;
-    std::uint32_t triangle;
-    bool forward;
-
-    auto ends() const { return std::pair(low, high); }
-};
-
+using engine::for_each_edge;
+using Side = engine::TriangleSide;
 using Sides = std::vector<Side>;
 
-/// All sides of all triangles. The sides on one edge follow each other.
 /// \throw InvalidInput where a triangle repeats a vertex or names one that does not exist
-Sides sorted_sides(const Surface<3>& surface) {
-    Sides sides;
-    sides.reserve(3 * surface.simplices.size());
-    for (std::uint32_t t = 0; t < surface.simplices.size(); ++t) {
+void require_triangles(const Surface<3>& surface) {
+    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
         const auto& v = surface.simplices[t];
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::uint32_t a = v[i];
-            const std::uint32_t b = v[(i + 1) % 3];
-            if (a >= surface.vertices.size() || a == b) {
+            if (v[i] >= surface.vertices.size() || v[i] == v[(i + 1) % 3]) {
                 throw InvalidInput("triangle " + std::to_string(t) +
                                    " repeats a vertex or names one that does not exist");
             }
-            sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
         }
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-    return sides;
-}
-
-/// Calls function(sides of the edge) for every edge.
-template <class Function>
-void for_each_edge(const Sides& sides, Function&& function) {
-    for (std::span<const Side> rest = sides; !rest.empty();) {
-        const auto other = std::find_if(rest.begin(), rest.end(), [&](const Side& side) {
-            return side.ends() != rest.front().ends();
-        });
-        const auto count = static_cast<std::size_t>(other - rest.begin());
-        function(rest.first(count));
-        rest = rest.subspan(count);
     }
 }
 
@@ -153,7 +122,8 @@ double measure(const Surface<3>& surface, SurfaceReport& report) {
 SurfaceReport surface_report(const Surface<3>& surface) {
     SurfaceReport report;
     report.triangles = surface.simplices.size();
-    const Sides sides = sorted_sides(surface);
+    require_triangles(surface);
+    const Sides sides = engine::sorted_sides(surface.simplices);
     count_edges(sides, surface, report);
     count_vertices(surface, report);
     report.nonmanifold_vertices = count_nonmanifold_vertices(surface, sides);
