@@ -3,6 +3,7 @@
 #include <nestgrid/algorithms/collapse.hpp>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <nestgrid/algorithms/normals.hpp>
@@ -10,6 +11,7 @@
 #include <nestgrid/error.hpp>
 
 #include <collapses/collapse_rounds.hpp>
+#include <surfaces/probed_colours.hpp>
 #include <surfaces/require_simplices.hpp>
 
 namespace nestgrid {
@@ -61,18 +63,14 @@ double judge(const Surface<3>& surface, const engine::FieldCheck& field, const E
 template <class Real>
 void renew(Surface<3>& surface, const Hierarchy<Real>& hierarchy, std::size_t attributes,
            bool normals) {
-    surface.attributes.clear();
+    surface.attributes.assign(attributes * surface.vertices.size(),
+                              std::numeric_limits<double>::quiet_NaN());
     surface.normals.clear();
     if (attributes > 0) {
-        const ProbeResult probed = probe<Real>(hierarchy, surface.vertices);
-        const std::size_t first = probed.components - attributes;
-        for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
-            const auto of =
-                probed.values.begin() + static_cast<std::ptrdiff_t>(v * probed.components);
-            surface.attributes.insert(surface.attributes.end(),
-                                      of + static_cast<std::ptrdiff_t>(first),
-                                      of + static_cast<std::ptrdiff_t>(probed.components));
-        }
+        const detail::ProbePoints data = [&](std::span<const Point> points) {
+            return probe<Real>(hierarchy, points);
+        };
+        engine::ProbedColours(surface, data).colour_from(0);
     }
     if (normals) settle_normals(surface);
     surface.element_of.clear();
