@@ -20,20 +20,8 @@ public:
     }
     /// Whether the bodies lie beside each other along an axis.
     bool apart_along(const Point& axis) const {
-        double a_low = Box::infinity;
-        double a_high = -Box::infinity;
-        for (const Point& x : a_) {
-            const double at = dot(axis, x);
-            a_low = std::min(a_low, at);
-            a_high = std::max(a_high, at);
-        }
-        double b_low = Box::infinity;
-        double b_high = -Box::infinity;
-        for (const Point& x : b_) {
-            const double at = dot(axis, x);
-            b_low = std::min(b_low, at);
-            b_high = std::max(b_high, at);
-        }
+        const auto [a_low, a_high] = extent(a_, axis);
+        const auto [b_low, b_high] = extent(b_, axis);
         const double gap = std::max(a_low - b_high, b_low - a_high);
         if (gap > 0) return true;
         // An axis without a direction, or along which neither body has an extent, tells nothing.
@@ -43,6 +31,16 @@ public:
     }
 
 private:
+    /// The least and the greatest place of some points along an axis.
+    static std::array<double, 2> extent(std::span<const Point> points, const Point& axis) {
+        std::array<double, 2> range{Box::infinity, -Box::infinity};
+        for (const Point& x : points) {
+            const double at = dot(axis, x);
+            range = {std::min(range[0], at), std::max(range[1], at)};
+        }
+        return range;
+    }
+
     std::array<Point, count_a> a_;
     std::array<Point, count_b> b_;
     double size_;

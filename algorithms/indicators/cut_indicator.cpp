@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/cut_indicator.hpp>
 
-#include <bit>
 #include <cmath>
 
 #include <indicators/eta_source.hpp>
@@ -33,11 +32,7 @@ public:
     template <class Offset>
     void split(const MetSplit& s, Offset&&) {
         const auto of = numbers(s.keys);
-        const auto corners = static_cast<std::size_t>(s.rule->corner_count());
-        for (NodeMask left = s.outside & s.rule->all(); left != 0; left &= left - 1) {
-            const auto n = static_cast<std::size_t>(std::countr_zero(left));
-            etas_.maxima()[of[corners + n]] = bfloat16_infinity;
-        }
+        etas_.put_outside(*s.rule, s.outside, of);
         etas_.maxima().add_split(s.level, *s.rule, of, s.reach);
     }
     void leaf(std::span<const NodeKey>, float) {}

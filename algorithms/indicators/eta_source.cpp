@@ -3,7 +3,6 @@
 #include <indicators/eta_source.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -77,10 +76,7 @@ public:
         const auto nodes = nodes_of(rule);
         const MeasuredSplit all = measured(rule);
         source_->split(all, nodes, *etas_);
-        for (NodeMask left = split.outside & rule.all(); left != 0; left &= left - 1) {
-            etas_->maxima()[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
-                bfloat16_infinity;
-        }
+        etas_->put_outside(rule, split.outside, nodes);
         if (kept_ == Kept::nothing) return;
         const float reach = kept_ == Kept::nodes_and_reach ? reach_of(rule, all.positions) : 0;
         etas_->maxima().add_split(view.level, rule, nodes, reach);

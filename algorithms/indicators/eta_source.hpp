@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 
 #include <indicators/fine_to_coarse.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
@@ -24,6 +25,16 @@ public:
         if (!(eta >= 0)) refuse(eta);
         std::uint16_t& at = maxima_[node];
         at = std::max(at, bfloat16_above(float_above(eta)));
+    }
+    /// Sets eta to infinity at the new nodes of a split at which no element may stop.
+    /// \param outside these, one bit each
+    /// \param nodes numbers of the corners and, behind them, of the new nodes
+    void put_outside(const Rule& rule, NodeMask outside, std::span<const std::size_t> nodes) {
+        const auto corners = static_cast<std::size_t>(rule.corner_count());
+        for (NodeMask left = outside & rule.all(); left != 0; left &= left - 1) {
+            maxima_[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
+                bfloat16_infinity;
+        }
     }
     NodeMaxima<std::uint16_t>& maxima() { return maxima_; }
     /// Sweeps over all splits, and moves the numbers out.

@@ -12,12 +12,6 @@
 
 namespace nestgrid::engine {
 
-namespace {
-
-bool is_simplex(const Topology& t) { return t.corners == t.dimension + 1U; }
-
-}  // namespace
-
 template <class Real>
 bool PathCuts<Real>::is_below_skipped(const View& view) {
     if (skipped_.level < 0) return false;
@@ -55,7 +49,7 @@ bool PathCuts<Real>::enter_one(const View& view, const Split& split) {
     const bool leaf = split.rule == nullptr;
     const std::size_t depth = rows_.depth();
     const bool for_above = depth > 0 && rows_.last().rule->new_nodes.size() > 1;
-    const std::size_t own = leaf ? 0 : is_simplex(view.topology()) ? 1 : 2;
+    const std::size_t own = leaf ? 0 : is_simplex(view.shape) ? 1 : 2;
     rows_.enter(view, (for_above ? 2 : 0) + own);
     begin_columns(view, own);
     const double bound =
@@ -101,7 +95,7 @@ void PathCuts<Real>::set_corners(const View& view) {
         corners_.row[k] = at.row(k);
         corners_.value[k] = static_cast<double>(view.value[k * walk_->components()]);
     }
-    const bool measures = request_.distances || !is_simplex(view.topology());
+    const bool measures = request_.distances || !is_simplex(view.shape);
     if (measures) walk_->corners(view, nullptr, position_.data());
     corners_.position = std::span<const Point>(position_).first(measures ? at.corners : 0);
 }
@@ -123,7 +117,7 @@ void PathCuts<Real>::begin_for_above(const View& view) {
         middle[k] = 0.5 * (low + high);
         width = std::max(width, high - low);
     }
-    if (width == 0 || is_simplex(view.topology())) return;
+    if (width == 0 || is_simplex(view.shape)) return;
     const double off =
         2 * (affine_residual(corners_.position, std::span<const double>(middle).first(at.corners)) +
              0.5 * width);
