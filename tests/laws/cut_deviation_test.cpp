@@ -13,11 +13,12 @@
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
 
 #include "families.hpp"
+#include "kept_elements.hpp"
 #include "projection_judge.hpp"
+#include "surface_judge.hpp"
 #include "thread_executor.hpp"
 
 using namespace nestgrid_test;
@@ -216,12 +217,7 @@ double greatest_on_surface(const Hierarchy<double>& h, const Surface<dimension>&
         }
         points.push_back((1.0 / dimension) * sum);
     }
-    const ProbeResult found = probe(h, points);
-    double greatest = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (found.found(i)) greatest = std::max(greatest, std::abs(found.values[i] - isovalue));
-    }
-    return greatest;
+    return greatest_difference(h, points, isovalue);
 }
 
 bool has_simplices_only(const Hierarchy<double>& h) {
@@ -229,63 +225,15 @@ bool has_simplices_only(const Hierarchy<double>& h) {
     return shape == Shape::tetrahedron || shape == Shape::triangle;
 }
 
-/// A split or a leaf as a walk meets it.
-struct Kept {
-    const Rule* rule;  // null for a leaf
-    Shape shape;
-    int level;
-    std::vector<NodeKey> keys;  // of the corners and, behind them, of the new nodes
-    std::vector<double> values;
-};
-
-/// All elements of a hierarchy but copies, depth first.
-std::vector<Kept> elements_of(const Hierarchy<double>& h) {
-    class Keep final : public engine::Visitor<double> {
-        using View = engine::ElementView<double>;
-
-    public:
-        Keep(const engine::Walk<double>& walk, std::vector<Kept>& kept)
-            : walk_{&walk}, kept_{&kept} {}
-        bool sees_hidden() const override { return true; }
-        engine::Decision inspect(const View&, const engine::Split&) override { return {}; }
-        void extract(const View& view) override {
-            std::array<NodeKey, max_corners> keys{};
-            walk_->corners(view, keys.data(), nullptr);
-            keep(view, nullptr, std::span(keys).first(view.corner_count()), view.value);
-        }
-        void entered(const View& view, const engine::Split& split, const double* u) override {
-            engine::SplitKeys room;
-            keep(view, split.rule, walk_->split_keys(view, split, room), u);
-        }
-
-    private:
-        void keep(const View& view, const Rule* rule, std::span<const NodeKey> keys,
-                  const double* u) {
-            kept_->push_back({rule, view.shape, view.level, {keys.begin(), keys.end()}, {}});
-            for (std::size_t i = 0; i < keys.size(); ++i) {
-                kept_->back().values.push_back(u[i * walk_->components()]);
-            }
-        }
-        const engine::Walk<double>* walk_;
-        std::vector<Kept>* kept_;
-    };
-    const HangingNodes hanging = engine::find_hanging_nodes(h);
-    const engine::Walk<double> walk(h, {.keys = true}, &hanging);
-    std::vector<Kept> kept;
-    Keep visitor(walk, kept);
-    walk.run(visitor);
-    return kept;
-}
-
 /// The errors of the interpolant of element i on all leaves below it.
-Errors errors_below(const std::vector<Kept>& elements, std::size_t i, double isovalue) {
+Errors errors_below(const std::vector<KeptElement>& elements, std::size_t i, double isovalue) {
     const auto corners = static_cast<std::size_t>(elements[i].rule->corner_count());
     std::map<NodeKey, double> z;
     for (std::size_t k = 0; k < corners; ++k) z[elements[i].keys[k]] = elements[i].values[k];
     Errors e;
     for (std::size_t j = i;
          j < elements.size() && (j == i || elements[j].level > elements[i].level); ++j) {
-        const Kept& below = elements[j];
+        const KeptElement& below = elements[j];
         if (below.rule == nullptr) {
             JudgedLeaf leaf{below.shape, {}, {}};
             for (std::size_t k = 0; k < below.keys.size(); ++k) {
@@ -318,7 +266,7 @@ TYPED_TEST(CutDeviation, OfNodesIsNoLessThanTheErrorOfTheirElements) {
         const HierarchicalIndicator bounds(h);
         const SweptIndicator indicator = cut_deviations(h, isovalues, bounds);
         expect_saturated(h, indicator);
-        const std::vector<Kept> elements = elements_of(h);
+        const std::vector<KeptElement> elements = elements_of(h);
         double greatest = 0;
         double greatest_stop = 0;
         bool one_at_a_time = true;
@@ -413,12 +361,12 @@ TYPED_TEST(CutDeviation, DependsNeitherOnThreadsNorOnTheOrder) {
         const SweptIndicator one = cut_deviations(h, isovalues, bounds);
         const SweptIndicator slope = slope_deviations(h, isovalues, bounds);
         expect_saturated(h, slope);
-        const std::vector<Kept> elements = elements_of(h);
+        const std::vector<KeptElement> elements = elements_of(h);
         for (const std::size_t threads : {2U, 3U}) {
             const ThreadExecutor executor(threads);
             const SweptIndicator many = cut_deviations(h, isovalues, bounds, {}, executor);
             const SweptIndicator slopes = slope_deviations(h, isovalues, bounds, {}, executor);
-            for (const Kept& element : elements) {
+            for (const KeptElement& element : elements) {
                 for (const NodeKey node : element.keys) {
                     EXPECT_EQ(many.stop(node), one.stop(node));
                     EXPECT_EQ(slopes.stop(node), slope.stop(node));

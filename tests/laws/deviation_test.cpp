@@ -13,6 +13,7 @@
 #include <nestgrid/algorithms/isosurface.hpp>
 
 #include "families.hpp"
+#include "kept_elements.hpp"
 #include "projection_judge.hpp"
 #include "thread_executor.hpp"
 
@@ -23,49 +24,9 @@ namespace {
 constexpr double bfloat16_steps = 1 + 1.0 / 128;  // numbers are rounded up by less
 constexpr std::array<double, 7> all_thresholds{0, 0.01, 0.05, 0.2, 0.5, 1, 2};
 
-/// A split as a walk meets it.
-struct KeptSplit {
-    const Rule* rule;
-    int level;
-    std::vector<NodeKey> keys;  // of the corners and, behind them, of the new nodes
-    std::vector<double> values;
-};
-
-/// All splits of a hierarchy, depth first.
-std::vector<KeptSplit> splits_of(const Hierarchy<double>& h) {
-    class Keep final : public engine::Visitor<double> {
-        using View = engine::ElementView<double>;
-
-    public:
-        Keep(const engine::Walk<double>& walk, std::vector<KeptSplit>& kept)
-            : walk_{&walk}, kept_{&kept} {}
-        bool sees_hidden() const override { return true; }
-        engine::Decision inspect(const View&, const engine::Split&) override { return {}; }
-        void extract(const View&) override {}
-        void entered(const View& view, const engine::Split& split, const double* u) override {
-            engine::SplitKeys room;
-            const auto keys = walk_->split_keys(view, split, room);
-            kept_->push_back({split.rule, view.level, {keys.begin(), keys.end()}, {}});
-            for (std::size_t i = 0; i < keys.size(); ++i) {
-                kept_->back().values.push_back(u[i * walk_->components()]);
-            }
-        }
-
-    private:
-        const engine::Walk<double>* walk_;
-        std::vector<KeptSplit>* kept_;
-    };
-    const HangingNodes hanging = engine::find_hanging_nodes(h);
-    const engine::Walk<double> walk(h, {.keys = true}, &hanging);
-    std::vector<KeptSplit> kept;
-    Keep visitor(walk, kept);
-    walk.run(visitor);
-    return kept;
-}
-
 /// By node, the greatest deviation of the elements whose split makes it: all nodes below each
 /// element are compared with its interpolant.
-std::map<NodeKey, double> deviations(const std::vector<KeptSplit>& splits) {
+std::map<NodeKey, double> deviations(const std::vector<KeptElement>& splits) {
     std::map<NodeKey, double> greatest;
     for (std::size_t i = 0; i < splits.size(); ++i) {
         const auto corners = static_cast<std::size_t>(splits[i].rule->corner_count());
@@ -74,7 +35,7 @@ std::map<NodeKey, double> deviations(const std::vector<KeptSplit>& splits) {
         double deviation = 0;
         for (std::size_t j = i; j < splits.size() && (j == i || splits[j].level > splits[i].level);
              ++j) {
-            const KeptSplit& below = splits[j];
+            const KeptElement& below = splits[j];
             const auto first = static_cast<std::size_t>(below.rule->corner_count());
             for (std::size_t n = 0; n < below.rule->new_nodes.size(); ++n) {
                 const Stencil& stencil = below.rule->new_nodes[n];
@@ -163,7 +124,7 @@ TYPED_TEST(Deviation, DependsNeitherOnThreadsNorOnTheOrder) {
         const HierarchicalIndicator one(h, NodeError::deviation);
         for (const std::size_t threads : {2U, 5U}) {
             const HierarchicalIndicator many(h, NodeError::deviation, ThreadExecutor(threads));
-            for (const KeptSplit& split : splits_of(h)) {
+            for (const KeptElement& split : splits_of(h)) {
                 for (const NodeKey node : split.keys) {
                     EXPECT_EQ(many.stop(node), one.stop(node));
                     EXPECT_EQ(many.bound(node), one.bound(node));
@@ -183,7 +144,7 @@ TYPED_TEST(Deviation, IsMadeAnewWhereValuesChange) {
         values = fields.back().values;
         indicator.update(grid, field, [](std::span<const Point>) { return true; });
         const HierarchicalIndicator anew(grid, field, NodeError::deviation);
-        for (const KeptSplit& split : splits_of(erase(grid, field))) {
+        for (const KeptElement& split : splits_of(erase(grid, field))) {
             for (const NodeKey node : split.keys) {
                 EXPECT_EQ(indicator.stop(node), anew.stop(node));
                 EXPECT_EQ(indicator.bound(node), anew.bound(node));

@@ -14,6 +14,7 @@
 
 #include "families.hpp"
 #include "projection_judge.hpp"
+#include "surface_judge.hpp"
 
 using namespace nestgrid_test;
 
@@ -46,12 +47,7 @@ double greatest_difference(const Hierarchy<double>& h, const Surface<dimension>&
         for (const std::uint32_t v : simplex) sum = sum + s.vertices[v];
         points.push_back((1.0 / dimension) * sum);
     }
-    const ProbeResult found = probe(h, points);
-    double greatest = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (found.found(i)) greatest = std::max(greatest, std::abs(found.values[i] - isovalue));
-    }
-    return greatest;
+    return nestgrid_test::greatest_difference(h, points, isovalue);
 }
 
 void expect_bounded(const ErrorBounds& result, double greatest, double range_bound) {

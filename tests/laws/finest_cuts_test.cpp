@@ -8,11 +8,11 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/isosurfaces.hpp>
-#include <nestgrid/algorithms/probe.hpp>
 
 #include "families.hpp"
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
+#include "surface_judge.hpp"
 #include "thread_executor.hpp"
 #include "walked_in_patches.hpp"
 
@@ -29,13 +29,9 @@ struct Distance {
     double mean_square = 0;
 };
 
-template <class Hierarchy>
-Distance distance(const Hierarchy& h, std::span<const Point> points, double isovalue) {
-    const ProbeResult found = probe(h, points);
+Distance distance(const Hierarchy<double>& h, std::span<const Point> points, double isovalue) {
     Distance d;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!found.found(i)) continue;
-        const double off = std::abs(found.values[i] - isovalue);
+    for (const double off : differences(h, points, isovalue)) {
         d.greatest = std::max(d.greatest, off);
         d.mean_square += off * off / static_cast<double>(points.size());
     }
