@@ -32,7 +32,7 @@ void BlockCollapse::push(std::uint32_t a, std::uint32_t b) {
     const Places found = places(u, v, quadric);
     if (found.empty()) return;
     const Point along = mesh_->x(u) - mesh_->x(v);
-    // Where the quadric says nothing the shortest edge comes first.
+    // The length decides between edges whose quadrics are equally small, as in a plane.
     const double cost = std::max(quadric.at(found[0]), 0.0) + 1e-9 * dot(along, along);
     edges_.push({cost, u, v, version_[u] + version_[v]});
 }

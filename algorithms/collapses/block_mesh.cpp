@@ -64,7 +64,7 @@ bool BlockMesh::keeps_manifold(std::uint32_t u, std::uint32_t v, const Star& sta
     mark_around(u, 0);
     if (common != opposite.size()) return false;
     if (opposite.size() == 1) return around_[opposite[0]].size() > 1;  // or it would vanish
-    // Of four triangles around two ends nothing but two would be left, back to back.
+    // The collapse of an edge of a tetrahedron would leave two triangles, back to back.
     bool at_u = false;
     bool at_v = false;
     for (const StarTriangle& t : star) {

@@ -18,7 +18,7 @@ public:
     Blocks(std::span<const Point> positions, std::size_t most, double cut);
 
     std::size_t count() const { return regions_.size(); }
-    /// Where the block lies; without an end on the outer sides.
+    /// The box that the block fills. It extends to infinity where no other block follows.
     const Box& region(std::size_t block) const { return regions_[block]; }
     std::uint32_t block_of(std::uint32_t vertex) const { return block_of_[vertex]; }
     /// Calls function(block) for those that a box meets.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where vertices on the border of a surface may move: on the planes of the domain's boundary that
-// they lie on.
+// Vertices on the border of a surface may move on the planes of the domain's boundary on which they
+// lie.
 #pragma once
 
 #include <collapses/near_leaves.hpp>

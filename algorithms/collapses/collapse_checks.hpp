@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a collapse must keep, besides that the surface is a manifold.
+// Judges collapses: each must keep the error, the sides and the shape, and must not let the surface
+// cross itself. BlockMesh judges whether the surface stays a manifold.
 #pragma once
 
 #include <nestgrid/algorithms/collapse.hpp>
@@ -13,7 +14,7 @@
 
 namespace nestgrid::engine {
 
-/// What every block is judged by. Borrows the checks.
+/// The checks and limits that hold in all blocks. Borrows the checks.
 struct CollapseRules {
     const FieldCheck* field;
     const StrongNodes* strong;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a triangle has in common with a leaf whose map is affine: a polygon, found in the reference
+// The polygon that a triangle has in common with a leaf whose map is affine, found in the reference
 // coordinates of the leaf.
 #pragma once
 

@@ -25,8 +25,9 @@ Kind = Callable[[Any], Any]
 P = ParamSpec("P")
 R = TypeVar("R")
 
-#: What a threshold is compared with.
+#: Where edges of coarse elements are cut.
 Cuts = Literal["linear", "finest"]
+#: What a threshold is compared with.
 Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
 #: Types of samples, as NumPy calls them.
 SampleType = Literal[

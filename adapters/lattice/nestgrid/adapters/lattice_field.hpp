@@ -72,7 +72,7 @@ public:
     void corner_gradients(const Element& e, std::span<Point> out) const {
         for (std::size_t k = 0; k < corners_; ++k) out[k] = gradient_at(grid_->corner_place(e, k));
     }
-    /// The same at any node (known_bisection.hpp).
+    /// Central differences of the samples around a node, as corner_gradients() gives them.
     Point gradient_at(typename Grid::Place p) const;
 
 private:
