@@ -11,6 +11,17 @@
 
 namespace nestgrid::engine {
 
+namespace {
+
+/// A unit normal; 0 where that is 0.
+Point unit(const std::array<float, 3>& normal) {
+    const Point n{normal[0], normal[1], normal[2]};
+    const double length = norm(n);
+    return length > 0 ? (1 / length) * n : n;
+}
+
+}  // namespace
+
 template <int dimension>
 void LevelSurface<dimension>::begin(Builder builder, const VertexNormals& normals, bool verify) {
     builder_ = std::move(builder);
@@ -137,11 +148,7 @@ template <int dimension>
 std::vector<Point> LevelSurface<dimension>::normals_from_gradients() const {
     std::vector<Point> normals;
     normals.reserve(where_.size());
-    for (const Where& where : where_) {
-        const Point g = gradient_at(where);
-        const double length = norm(g);
-        normals.push_back(length > 0 ? (-1 / length) * g : Point{0, 0, 0});
-    }
+    for (const Where& where : where_) normals.push_back(unit(short_normal(gradient_at(where))));
     return normals;
 }
 
@@ -150,11 +157,7 @@ template <int dimension>
 std::vector<Point> LevelSurface<dimension>::normals_of_vertices() const {
     std::vector<Point> normals;
     normals.reserve(of_vertices_.size());
-    for (const auto& [x, y, z] : of_vertices_) {
-        const Point n{x, y, z};
-        const double length = norm(n);
-        normals.push_back(length > 0 ? (1 / length) * n : n);
-    }
+    for (const Normal& n : of_vertices_) normals.push_back(unit(n));
     return normals;
 }
 

@@ -90,11 +90,7 @@ public:
     /// Adds the normal of a new vertex, in the order of the vertices.
     /// \param gradient of the data there
     NESTGRID_INLINE void add_normal(const Point& gradient) {
-        const double length = norm(gradient);
-        const double scale = length > 0 ? -1 / length : 0;
-        of_vertices_.push_back({static_cast<float>(scale * gradient[0]),
-                                static_cast<float>(scale * gradient[1]),
-                                static_cast<float>(scale * gradient[2])});
+        of_vertices_.push_back(short_normal(gradient));
     }
     /// Appends a part. Numbers its vertices in their order; those that earlier parts have keep
     /// their numbers.
@@ -147,7 +143,16 @@ private:
         Number high;
         double fraction;
     };
+    using Normal = std::array<float, 3>;
 
+    /// What is kept of the normal where the data have a gradient, so that it has the same bits
+    /// however the surface is drawn; 0 where the gradient is 0.
+    NESTGRID_INLINE static Normal short_normal(const Point& gradient) {
+        const double length = norm(gradient);
+        const double scale = length > 0 ? -1 / length : 0;
+        return {static_cast<float>(scale * gradient[0]), static_cast<float>(scale * gradient[1]),
+                static_cast<float>(scale * gradient[2])};
+    }
     bool makes_normals() const { return normals_.gradients != nullptr || normals_.with_vertices; }
     Point gradient_at(const Where& where) const;
     std::vector<Point> normals_from_gradients() const;
@@ -158,8 +163,6 @@ private:
     Builder builder_;
     VertexNumbers numbers_;
     SubtreeVertices within_;  // vertices in subtrees of bisections
-    using Normal = std::array<float, 3>;
-
     VertexNormals normals_;
     std::deque<Where> where_;          // by vertex, where normals are interpolated between nodes
     std::vector<Normal> of_vertices_;  // by vertex, where they come with vertices

@@ -81,7 +81,8 @@ TYPED_TEST(Explored, FramesHaveTheBitsOfTheLibrary) {
         for (const double part : {0.0, 0.05}) {
             const double threshold = part * (indicator.greatest() - indicator.least());
             const Threshold s(&indicator, threshold);
-            const auto surface = isosurface(grid, field, isovalue, s, indicator, {.normals = true});
+            const auto surface = isosurface(grid, field, isovalue, s, indicator,
+                                            {.cuts = Cuts::finest, .normals = true});
             const auto cut = slice(grid, field, plane, s, indicator);
             const Frame frame = frame_of(
                 explorer, "isovalue=" + text_of(isovalue) + "&threshold=" + text_of(threshold) +
@@ -255,15 +256,17 @@ TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
     const KeyFrames indicator({&of_a, &of_b}, weights);
     const Between between({&a, &b}, weights);
     const Threshold s(&indicator, 0.02);
+    const IsosurfaceOptions finest{.cuts = Cuts::finest};
     expect_part(frame_of(explorer, what + "&time=3"), "isosurface",
-                isosurface(grid, between, 0.4, s, indicator).surface);
+                isosurface(grid, between, 0.4, s, indicator, finest).surface);
 
     EXPECT_TRUE(frame_of(explorer, what + "&time=6&indicator=wavelet").has("isosurface"));
     const SweptIndicator wavelets_of_a = wavelet_indicator(grid, a);
     const SweptIndicator wavelets_of_b = wavelet_indicator(grid, b);
     const SweptKeyFrames wavelets({&wavelets_of_a, &wavelets_of_b}, weights);
-    expect_part(frame_of(explorer, what + "&time=3&indicator=wavelet"), "isosurface",
-                isosurface(grid, between, 0.4, Threshold(&wavelets, 0.02), indicator).surface);
+    expect_part(
+        frame_of(explorer, what + "&time=3&indicator=wavelet"), "isosurface",
+        isosurface(grid, between, 0.4, Threshold(&wavelets, 0.02), indicator, finest).surface);
     expect_refused([&] { explorer.frame(what + "&time=3&indicator=visual"); }, "between frames");
     expect_refused([&] { explorer.frame(what + "&time=7"); }, "7");
     expect_refused([&] { alone.frame(what + "&time=7"); }, "one frame");
