@@ -10,14 +10,14 @@ namespace nestgrid::engine {
 
 namespace {
 
-constexpr double rounding = 1e-9;  // of directions of planes, and of distances in leaves
+constexpr double plane_rounding = 1e-9;  // of directions of planes, and of distances in leaves
 
 }  // namespace
 
 /// Whether a plane through the vertex is one of its planes.
 bool Freedom::has_direction(const BorderPlane& plane) const {
     for (std::size_t i = 0; i < std::min<std::size_t>(count_, 3); ++i) {
-        if (norm(cross(plane_[i].normal, plane.normal)) < rounding) return true;
+        if (norm(cross(plane_[i].normal, plane.normal)) < plane_rounding) return true;
     }
     return false;
 }
@@ -26,7 +26,7 @@ bool Freedom::has(const BorderPlane& plane) const {
     for (std::size_t i = 0; i < std::min<std::size_t>(count_, 3); ++i) {
         const BorderPlane& own = plane_[i];
         const double level = dot(own.normal, plane.normal) > 0 ? own.level : -own.level;
-        if (norm(cross(own.normal, plane.normal)) < rounding &&
+        if (norm(cross(own.normal, plane.normal)) < plane_rounding &&
             std::abs(level - plane.level) <= own.slack + plane.slack) {
             return true;
         }
@@ -86,7 +86,7 @@ Freedom border_freedom(const NearLeaves& leaves, const Point& x) {
     leaves.for_each(
         [&](const Box& box) {
             Box wide = box;
-            wide.widen(rounding * box.diameter());
+            wide.widen(plane_rounding * box.diameter());
             return wide.meets(at);
         },
         [&](const NearLeaf& leaf) {
@@ -94,7 +94,7 @@ Freedom border_freedom(const NearLeaves& leaves, const Point& x) {
             std::array<Point, max_corners> room;
             const auto corners = leaves.corners(leaf, room);
             Box box = Box::around(corners);
-            box.widen(rounding * box.diameter());
+            box.widen(plane_rounding * box.diameter());
             if (!box.contains(x)) return true;
             if (!leaf.affine) {
                 freedom.fasten();
@@ -104,13 +104,14 @@ Freedom border_freedom(const NearLeaves& leaves, const Point& x) {
             const auto distance = face_distances(leaf.shape, map.reference(x));
             const std::size_t faces = topology(leaf.shape).faces;
             for (std::size_t f = 0; f < faces; ++f) {
-                if (distance[f] < -rounding) return true;
+                if (distance[f] < -plane_rounding) return true;
             }
             for (std::size_t f = 0; f < faces; ++f) {
-                if ((leaf.boundary >> f & 1U) == 0 || distance[f] > rounding) continue;
+                if ((leaf.boundary >> f & 1U) == 0 || distance[f] > plane_rounding) continue;
                 const Point direction = map.face_direction(leaf.shape, f);
                 const Point normal = (1 / norm(direction)) * direction;
-                freedom.add({normal, dot(normal, x), rounding * (box.diameter() + 1e-6 * norm(x))});
+                freedom.add(
+                    {normal, dot(normal, x), plane_rounding * (box.diameter() + 1e-6 * norm(x))});
             }
             return true;
         });

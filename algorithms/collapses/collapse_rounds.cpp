@@ -16,12 +16,10 @@ constexpr std::size_t most_rounds = 12;
 constexpr double worth_a_round = 0.01;                  // part of the triangles that goes in one
 constexpr std::array<double, 3> cuts{0.5, 0.37, 0.63};  // of blocks, by round
 
-using Side = TriangleSide;
-
 /// The edges that belong to one triangle only.
-std::vector<Side> open_sides(std::span<const BlockMesh::Corners> triangles) {
-    std::vector<Side> open;
-    for_each_edge(sorted_sides(triangles), [&](std::span<const Side> edge) {
+std::vector<OrientedSide> open_sides(std::span<const BlockMesh::Corners> triangles) {
+    std::vector<OrientedSide> open;
+    for_each_edge(sorted_sides(triangles), [&](std::span<const OrientedSide> edge) {
         if (edge.size() == 1) open.push_back(edge[0]);
     });
     return open;
@@ -118,7 +116,7 @@ void CollapseRounds::find_borders(const NearLeaves& leaves) {
     for (const auto& edge : surface_->boundary) {
         for (const std::uint32_t v : edge) vertices_[v].at_boundary = true;
     }
-    for (const Side& side : open_sides(triangles_)) {
+    for (const OrientedSide& side : open_sides(triangles_)) {
         for (const std::uint32_t v : {side.low, side.high}) {
             CollapsingVertex& vertex = vertices_[v];
             if (vertex.on_border()) continue;
@@ -143,7 +141,7 @@ void CollapseRounds::add_quadrics() {
         quadric.add_plane(normal, dot(normal, x[c[0]].x), 0.5 * area);
         for (const std::uint32_t v : c) vertices_[v].quadric.add(quadric);
     }
-    for (const Side& side : open_sides(triangles_)) {
+    for (const OrientedSide& side : open_sides(triangles_)) {
         const Corners& c = triangles_[side.triangle];
         const Point along = x[side.high].x - x[side.low].x;
         const Point direction = cross(along, cross(x[c[1]].x - x[c[0]].x, x[c[2]].x - x[c[0]].x));
@@ -233,7 +231,7 @@ void CollapseRounds::finish() {
     for (Point& x : s.vertices) x = x + rules_->middle;
     s.simplices = triangles_;
     s.boundary.clear();
-    for (const Side& side : open_sides(triangles_)) {
+    for (const OrientedSide& side : open_sides(triangles_)) {
         const bool at_boundary =
             vertices_[side.low].at_boundary && vertices_[side.high].at_boundary;
         if (at_boundary) s.boundary.push_back({side.low, side.high});

@@ -11,7 +11,7 @@ namespace nestgrid::engine {
 
 namespace {
 
-constexpr double rounding = 1e-9;  // of lattice coordinates
+constexpr double lattice_rounding = 1e-9;  // of lattice coordinates
 constexpr std::uint32_t no_brick = ~std::uint32_t{0};
 constexpr int families = 9;
 
@@ -70,7 +70,7 @@ bool KuhnLattice::takes(const NearLeaves& leaves, const NearLeaf& leaf) const {
         corner[k] = index_of(x);
         for (std::size_t d = 0; d < 3; ++d) {
             const double off = low_[d] + corner[k][d] * spacing_[d] - x[d];
-            if (std::abs(off) > rounding * spacing_[d]) return false;
+            if (std::abs(off) > lattice_rounding * spacing_[d]) return false;
         }
     }
     // The number of odd coordinates of the corners of such a way: 0, 1, 2, 3, each once.
@@ -246,7 +246,7 @@ bool KuhnLattice::keeps_inside(const Triangle& x, double& greatest) const {
 bool KuhnLattice::contains(const Point& at) const {
     for (std::size_t d = 0; d < 3; ++d) {
         const double from = at[d] - shift_[d];
-        if (!(from >= -rounding && from <= last_[d] + rounding)) return false;
+        if (!(from >= -lattice_rounding && from <= last_[d] + lattice_rounding)) return false;
     }
     return true;
 }

@@ -6,7 +6,7 @@ namespace nestgrid::engine {
 
 namespace {
 
-constexpr double rounding = 1e-12;  // in parts of the bodies' size
+constexpr double separation_rounding = 1e-12;  // in parts of the bodies' size
 
 /// Two bodies, seen from a corner of one.
 template <std::size_t count_a, std::size_t count_b>
@@ -25,7 +25,7 @@ public:
         const double gap = std::max(a_low - b_high, b_low - a_high);
         if (gap > 0) return true;
         // An axis without a direction, or along which neither body has an extent, tells nothing.
-        const double slack = rounding * size_ * norm(axis);
+        const double slack = separation_rounding * size_ * norm(axis);
         const bool flat = std::max(a_high, b_high) - std::min(a_low, b_low) <= 2 * slack;
         return gap >= -slack && !flat;
     }

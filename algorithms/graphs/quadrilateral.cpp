@@ -10,11 +10,11 @@ namespace nestgrid::engine {
 
 namespace {
 
-constexpr double rounding = 1e-12;
+constexpr double rounding_of_sides = 1e-12;
 
 /// -1 where a is less than b, 1 where it is greater, 0 where they differ by rounding only.
 int compare(double a, double b) {
-    if (std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b))) return 0;
+    if (std::abs(a - b) <= rounding_of_sides * std::max(std::abs(a), std::abs(b))) return 0;
     return a < b ? -1 : 1;
 }
 
@@ -45,7 +45,7 @@ std::size_t shorter_diagonal(QuadrilateralCorners x, const std::array<double, 4>
 double quadrilateral_chord(QuadrilateralCorners x, const std::array<double, 4>& u, bool nested,
                            bool centred) {
     const Point skew = (x[0] - x[1]) - (x[2] - x[3]);
-    if (nested && norm(skew) <= rounding * norm(x[3] - x[0])) {
+    if (nested && norm(skew) <= rounding_of_sides * norm(x[3] - x[0])) {
         return centred ? twist(u) / 4 : twist(u);
     }
     return 2 * affine_residual(x, std::span(u));

@@ -9,6 +9,12 @@ namespace nestgrid::engine {
 /// So many bfloat16 numbers lie from x to 2 x.
 inline constexpr int octave = 128;
 
+/// Codes of two thresholds, of which the greater one fits and the lesser one does not; or one code.
+struct Bracket {
+    std::uint16_t beyond;
+    std::uint16_t within;
+};
+
 /// The least code in (beyond, within] that fits. Requires: `within` fits, `beyond` does not, and
 /// what is above a code that fits does.
 template <class Fits>

@@ -30,12 +30,7 @@ double positive(double x, const char* what) {
     return x;
 }
 
-/// Codes of two thresholds, of which the greater one fits and the lesser one does not; or one code.
-struct Bracket {
-    std::uint16_t beyond;
-    std::uint16_t within;
-};
-
+using engine::Bracket;
 using engine::octave;
 
 /// Goes down from a code that fits in steps that double up to an octave, and from `least` to 0.

@@ -16,11 +16,12 @@ namespace nestgrid {
 
 namespace {
 
+using engine::Bracket;
 using engine::octave;
 
 /// The code of the greatest finite threshold. Nodes outside of the domain have the indicator
 /// infinity, and no element may stop at them.
-constexpr std::uint16_t greatest = bfloat16_infinity - 1;
+constexpr std::uint16_t greatest_code = bfloat16_infinity - 1;
 
 std::string short_number(double x) {
     std::ostringstream text;
@@ -34,12 +35,6 @@ constexpr int halvings = 8;
 
 /// Triangles beyond the budget are counted up to so many times the budget.
 constexpr std::uint64_t most_beyond = 16;
-
-/// Codes of two thresholds, of which the greater one fits and the lesser one does not.
-struct Bracket {
-    std::uint16_t beyond;
-    std::uint16_t within;
-};
 
 /// Tries thresholds by their codes, and keeps the last one that fits.
 class Trials {
@@ -80,13 +75,13 @@ public:
     /// Requires: `beyond` does not fit. Tries the greatest threshold first, because where that does
     /// not fit, all other trials would be in vain.
     Bracket bracket_above(std::uint16_t beyond) {
-        if (beyond == greatest || !fits(greatest)) throw_too_few();
-        for (int step = octave; beyond + step < greatest; step *= 2) {
+        if (beyond == greatest_code || !fits(greatest_code)) throw_too_few();
+        for (int step = octave; beyond + step < greatest_code; step *= 2) {
             const auto code = static_cast<std::uint16_t>(beyond + step);
             if (fits(code)) return {beyond, code};
             beyond = code;
         }
-        return {beyond, greatest};
+        return {beyond, greatest_code};
     }
 
     /// Counts the triangles at the next lesser threshold, where the budget is far from filled.
@@ -100,7 +95,7 @@ public:
 private:
     [[noreturn]] void throw_too_few() const {
         const auto triangles =
-            count_(bfloat16_value(greatest), std::numeric_limits<std::uint64_t>::max());
+            count_(bfloat16_value(greatest_code), std::numeric_limits<std::uint64_t>::max());
         throw InvalidInput("even the coarsest surface has more than " +
                            std::to_string(max_triangles_) +
                            " triangles: " + std::to_string(triangles.value()));
@@ -115,7 +110,7 @@ private:
 void search(Trials& trials, double start) {
     if (trials.fits(0)) return;
     const std::uint16_t first =
-        std::min(bfloat16_above(float_above(std::max(start, 0.0))), greatest);
+        std::min(bfloat16_above(float_above(std::max(start, 0.0))), greatest_code);
     const Bracket bracket =
         first > 0 && trials.fits(first) ? trials.bracket_below(first) : trials.bracket_above(first);
     const std::uint16_t least = engine::least_that_fits(
@@ -160,7 +155,7 @@ TriangleBudget least_threshold(const CountTriangles& count, double start,
     } catch (const engine::Cancelled&) {
         TriangleBudget best = trials.best();
         best.cancelled = true;
-        if (!trials.any_fits()) best.threshold = bfloat16_value(greatest);
+        if (!trials.any_fits()) best.threshold = bfloat16_value(greatest_code);
         return best;
     }
 }

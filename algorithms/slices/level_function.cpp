@@ -13,7 +13,7 @@ namespace nestgrid {
 
 namespace {
 
-void require_finite(const Point& x, const char* what) {
+void require_finite_coordinates(const Point& x, const char* what) {
     for (const double coordinate : x) {
         if (!std::isfinite(coordinate)) {
             throw InvalidInput(std::string(what) + " has a coordinate that is not a finite number");
@@ -23,7 +23,7 @@ void require_finite(const Point& x, const char* what) {
 
 /// The vector scaled to length 1, without overflow on the way.
 Point direction(const Point& vector, const char* what) {
-    require_finite(vector, what);
+    require_finite_coordinates(vector, what);
     const double greatest =
         std::max({std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2])});
     if (!(greatest > 0)) throw InvalidInput(std::string(what) + " is 0");
@@ -41,13 +41,13 @@ void require_radius(double radius, const char* what) {
 
 Plane::Plane(const Point& through, const Point& normal)
     : normal_{direction(normal, "the normal of the plane")}, offset_{dot(normal_, through)} {
-    require_finite(through, "the point on the plane");
+    require_finite_coordinates(through, "the point on the plane");
 }
 double Plane::value(const Point& x) const { return dot(normal_, x) - offset_; }
 double Plane::variation(const Point& /*centre*/, double radius) const { return radius; }
 
 Sphere::Sphere(const Point& centre, double radius) : centre_{centre}, radius_{radius} {
-    require_finite(centre, "the centre of the sphere");
+    require_finite_coordinates(centre, "the centre of the sphere");
     require_radius(radius, "the sphere");
 }
 double Sphere::value(const Point& x) const { return norm(x - centre_) - radius_; }
@@ -55,7 +55,7 @@ double Sphere::variation(const Point& /*centre*/, double radius) const { return 
 
 Cylinder::Cylinder(const Point& through, const Point& axis, double radius)
     : through_{through}, axis_{direction(axis, "the axis of the cylinder")}, radius_{radius} {
-    require_finite(through, "the point on the cylinder's axis");
+    require_finite_coordinates(through, "the point on the cylinder's axis");
     require_radius(radius, "the cylinder");
 }
 double Cylinder::value(const Point& x) const {

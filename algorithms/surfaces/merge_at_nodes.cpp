@@ -15,7 +15,7 @@ namespace {
 
 using Vertex = std::uint32_t;
 using Edge = std::array<Vertex, 2>;
-constexpr std::uint32_t none = ~std::uint32_t{0};
+constexpr std::uint32_t no_number = ~std::uint32_t{0};
 
 class NodeMerge {
 public:
@@ -106,7 +106,7 @@ void NodeMerge::find_boundary() {
 
 /// Writes the result into the surface, vertices in their old order.
 void NodeMerge::rewrite() {
-    std::vector<Vertex> number(surface_.vertices.size(), none);
+    std::vector<Vertex> number(surface_.vertices.size(), no_number);
     for (const NumberedTriangle& t : triangles_) {
         for (const Vertex v : t.v) number[v] = 0;
     }
@@ -114,7 +114,7 @@ void NodeMerge::rewrite() {
         number.empty() ? 0 : surface_.attributes.size() / surface_.vertices.size();
     Vertex next = 0;
     for (Vertex v = 0; v < number.size(); ++v) {
-        if (number[v] == none) continue;
+        if (number[v] == no_number) continue;
         std::copy_n(classes_.attributes(v, stride), stride,
                     surface_.attributes.data() + next * stride);
         surface_.vertices[next] = classes_.position(v);

@@ -10,7 +10,7 @@ namespace nestgrid::engine {
 
 namespace {
 
-constexpr std::uint32_t none = ~std::uint32_t{0};
+constexpr std::uint32_t no_entry = ~std::uint32_t{0};
 
 template <class Function>
 void for_each_side(const std::array<std::uint32_t, 3>& v, Function&& function) {
@@ -24,17 +24,18 @@ void for_each_side(const std::array<std::uint32_t, 3>& v, Function&& function) {
 NodeClasses::NodeClasses(const Surface<3>& surface, const VerticesAtNodes& at_nodes)
     : surface_{surface},
       at_nodes_{at_nodes},
-      entry_(surface.vertices.size(), none),
+      entry_(surface.vertices.size(), no_entry),
       classes_{surface.vertices.size()},
       merged_(surface.vertices.size()) {
     for (std::uint32_t i = 0; i < at_nodes_.vertex.size(); ++i) entry_[at_nodes_.vertex[i]] = i;
     for (const auto& triangle : surface_.simplices) {
         for_each_side(triangle, [&](Vertex a, Vertex b) {
-            if (entry_[a] != none && entry_[b] != none && key(a) == key(b)) classes_.join(a, b);
+            if (entry_[a] != no_entry && entry_[b] != no_entry && key(a) == key(b))
+                classes_.join(a, b);
         });
     }
     for (Vertex v = 0; v < merged_.size(); ++v) {
-        merged_[v] = entry_[v] != none && classes_.root(v) == v;
+        merged_[v] = entry_[v] != no_entry && classes_.root(v) == v;
     }
 }
 

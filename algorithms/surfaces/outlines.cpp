@@ -14,21 +14,22 @@ namespace nestgrid {
 
 namespace {
 
-using Side = std::array<std::uint32_t, 2>;
+using OrderedSide = std::array<std::uint32_t, 2>;
 
 /// The sides of some triangles of which no other of these triangles has the same.
 class LonelySides {
 public:
     /// The sides that exactly one of the triangles has, turned as there. Valid until the next call.
-    std::span<const Side> of(std::span<const std::array<std::uint32_t, 3>> triangles) {
+    std::span<const OrderedSide> of(std::span<const std::array<std::uint32_t, 3>> triangles) {
         sides_.clear();
         for (const auto& [a, b, c] : triangles) {
-            for (const Side side : {Side{a, b}, Side{b, c}, Side{c, a}}) sides_.push_back(side);
+            for (const OrderedSide side : {OrderedSide{a, b}, OrderedSide{b, c}, OrderedSide{c, a}})
+                sides_.push_back(side);
         }
         std::ranges::sort(sides_, {}, ascending);
         auto kept = sides_.begin();
         for (auto first = sides_.begin(); first != sides_.end();) {
-            const auto last = std::find_if(first, sides_.end(), [&](const Side& side) {
+            const auto last = std::find_if(first, sides_.end(), [&](const OrderedSide& side) {
                 return ascending(side) != ascending(*first);
             });
             if (last - first == 1) *kept++ = *first;
@@ -38,11 +39,11 @@ public:
     }
 
 private:
-    static Side ascending(const Side& side) {
+    static OrderedSide ascending(const OrderedSide& side) {
         return {std::min(side[0], side[1]), std::max(side[0], side[1])};
     }
 
-    std::vector<Side> sides_;
+    std::vector<OrderedSide> sides_;
 };
 
 /// Gathers segments, each once, with the vertices they need.
@@ -53,7 +54,7 @@ public:
           stride_{surface.attributes.size() / std::max<std::size_t>(surface.vertices.size(), 1)},
           number_(surface.vertices.size(), none_) {}
 
-    void add(const Side& side) {
+    void add(const OrderedSide& side) {
         segments_.reserve(1);
         const auto next = static_cast<std::uint32_t>(to_.simplices.size());
         if (!segments_.find_or_add(segments_.name({side[0], side[1]}), next).is_new) return;
@@ -101,7 +102,7 @@ Surface<2> outlines(const Surface<3>& surface) {
         while (last < triangles.size() && surface.element_of[last] == surface.element_of[first]) {
             ++last;
         }
-        for (const Side& side : sides.of(triangles.subspan(first, last - first))) {
+        for (const OrderedSide& side : sides.of(triangles.subspan(first, last - first))) {
             result.add(side);
         }
         first = last;

@@ -14,14 +14,14 @@ namespace nestgrid {
 
 namespace {
 
-constexpr std::uint32_t none = 0xFFFFFFFFU;
+constexpr std::uint32_t no_vertex = 0xFFFFFFFFU;
 
 /// Follows directed segments. Each segment is followed once.
 class Chains {
 public:
     explicit Chains(const Surface<2>& segments)
         : segments_{&segments},
-          next_from_(segments.vertices.size(), none),
+          next_from_(segments.vertices.size(), no_vertex),
           next_(segments.simplices.size()),
           excess_(segments.vertices.size(), 0) {
         for (auto s = static_cast<std::uint32_t>(next_.size()); s-- > 0;) {
@@ -34,7 +34,7 @@ public:
     }
 
     /// Whether a segment that begins in a vertex is left.
-    bool leaves(std::uint32_t vertex) const { return next_from_[vertex] != none; }
+    bool leaves(std::uint32_t vertex) const { return next_from_[vertex] != no_vertex; }
     /// Whether more segments are left that begin in a vertex than such that end there.
     bool begins(std::uint32_t vertex) const { return excess_[vertex] > 0; }
 
@@ -62,10 +62,10 @@ private:
 };
 
 /// Appends lines through the vertices of segments.
-class Joining {
+class SegmentJoining {
 public:
-    Joining(Polylines& to, const Surface<2>& segments)
-        : to_{&to}, from_{&segments}, number_(segments.vertices.size(), none) {}
+    SegmentJoining(Polylines& to, const Surface<2>& segments)
+        : to_{&to}, from_{&segments}, number_(segments.vertices.size(), no_vertex) {}
 
     /// Appends a line without repeated positions, or nothing where only one is left.
     /// \param line vertices of the segments; a ring ends with its first one
@@ -83,10 +83,10 @@ public:
 
 private:
     std::uint32_t number_of(std::uint32_t v) {
-        if (number_[v] != none) return number_[v];
+        if (number_[v] != no_vertex) return number_[v];
         const std::size_t n = to_->attribute_count;
         const auto attributes = std::span(from_->attributes).subspan(v * n, n);
-        if (to_->vertices.size() >= none) engine::throw_too_many_vertices();
+        if (to_->vertices.size() >= no_vertex) engine::throw_too_many_vertices();
         number_[v] = static_cast<std::uint32_t>(to_->vertices.size());
         to_->vertices.push_back(from_->vertices[v]);
         to_->attributes.insert(to_->attributes.end(), attributes.begin(), attributes.end());
@@ -124,7 +124,7 @@ void append_polylines(Polylines& to, const Surface<2>& segments, double value) {
     require_joinable(to, segments, attributes);
     to.attribute_count = attributes;
     Chains chains(segments);
-    Joining joining(to, segments);
+    SegmentJoining joining(to, segments);
     std::vector<std::uint32_t> line;
     for (std::uint32_t v = 0; v < vertices; ++v) {
         while (chains.begins(v)) {

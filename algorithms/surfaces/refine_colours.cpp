@@ -16,13 +16,13 @@ namespace nestgrid {
 namespace {
 
 using Triangle = Surface<3>::Simplex;
-using Side = engine::TriangleSide;
+using engine::TriangleSide;
 
 constexpr int most_halvings = 10;
 /// Greatest sum of |cubic Lagrange polynomials| of a triangle, those of its corners left out.
 constexpr double lebesgue = 2.2;
 
-void sort_each_once(std::vector<Side>& sides) {
+void sort_each_once(std::vector<TriangleSide>& sides) {
     std::sort(sides.begin(), sides.end());
     sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
 }
@@ -35,7 +35,7 @@ public:
     ColourRefinement run() {
         std::vector<bool> is_new(surface_.simplices.size(), true);  // by triangle: not yet probed
         for (int i = 0; i < most_halvings; ++i) {
-            const std::vector<Side> marked = find_sides(is_new);
+            const std::vector<TriangleSide> marked = find_sides(is_new);
             if (marked.empty()) break;
             result_.split += marked.size();
             const std::size_t first_middle = surface_.vertices.size();
@@ -47,8 +47,8 @@ public:
 
 private:
     /// The sides of new triangles that are to be split, ascending.
-    std::vector<Side> find_sides(const std::vector<bool>& is_new) {
-        std::vector<Side> sides;
+    std::vector<TriangleSide> find_sides(const std::vector<bool>& is_new) {
+        std::vector<TriangleSide> sides;
         std::vector<std::uint32_t> triangles;
         for (std::uint32_t t = 0; t < surface_.simplices.size(); ++t) {
             if (!is_new[t]) continue;
@@ -58,9 +58,9 @@ private:
         }
         sort_each_once(sides);
         const std::vector<double> misses = colours_.misses_at(samples_of(sides, triangles));
-        std::vector<Side> marked;
+        std::vector<TriangleSide> marked;
         double within = 0;
-        const auto mark_where = [&](double miss, Side side) {
+        const auto mark_where = [&](double miss, TriangleSide side) {
             if (miss > tolerance_)
                 marked.push_back(side);
             else
@@ -79,9 +79,9 @@ private:
 
     /// Two points of each side, then the centre of each triangle.
     std::vector<engine::ColourSample> samples_of(
-        const std::vector<Side>& sides, const std::vector<std::uint32_t>& triangles) const {
+        const std::vector<TriangleSide>& sides, const std::vector<std::uint32_t>& triangles) const {
         std::vector<engine::ColourSample> samples;
-        for (const Side side : sides) {
+        for (const TriangleSide side : sides) {
             const Triangle ends{side.first(), side.second(), side.first()};
             samples.push_back({ends, {2.0 / 3, 1.0 / 3, 0}});
             samples.push_back({ends, {1.0 / 3, 2.0 / 3, 0}});
@@ -92,7 +92,7 @@ private:
         return samples;
     }
 
-    Side longest_side(std::uint32_t triangle) const {
+    TriangleSide longest_side(std::uint32_t triangle) const {
         const Triangle& v = surface_.simplices[triangle];
         const auto length = [&](std::size_t i) {
             return norm(surface_.vertices[v[i]] - surface_.vertices[v[(i + 1) % 3]]);

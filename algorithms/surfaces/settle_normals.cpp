@@ -15,7 +15,7 @@ namespace engine {
 
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
+using CornerNumbers = std::array<std::uint32_t, 3>;  // of a triangle
 
 constexpr double least_of_gradient = 0.2;  // with each triangle
 constexpr double least_with_mean = 0.5;    // of a gradient that says anything
@@ -48,7 +48,7 @@ Point first_agreeing(const Point& from, const Point& to, std::span<const Point> 
 
 class SettledNormals {
 public:
-    SettledNormals(std::span<const Triangle> triangles, std::span<const Point> x,
+    SettledNormals(std::span<const CornerNumbers> triangles, std::span<const Point> x,
                    std::span<Point> normals)
         : triangles_{triangles}, x_{x}, normals_{normals}, place_(normals.size(), accepted) {
         for (const Point& at : x) extent_ = std::max(extent_, norm(at));
@@ -68,7 +68,7 @@ private:
 
     /// The direction of a triangle and twice its area, which is 0 where rounding decides about the
     /// direction.
-    FanTriangle look_at(const Triangle& t) const {
+    FanTriangle look_at(const CornerNumbers& t) const {
         const Point a = x_[t[1]] - x_[t[0]];
         const Point b = x_[t[2]] - x_[t[0]];
         const Point n = cross(a, b);
@@ -84,7 +84,7 @@ private:
     void list_fans();
     bool settle(std::size_t i);
 
-    std::span<const Triangle> triangles_;
+    std::span<const CornerNumbers> triangles_;
     std::span<const Point> x_;
     std::span<Point> normals_;
     double extent_ = 0;                   // the greatest distance from the origin
@@ -97,7 +97,7 @@ private:
 
 /// Refuses normals whose cosine with a triangle is too small.
 void SettledNormals::refuse() {
-    for (const Triangle& t : triangles_) {
+    for (const CornerNumbers& t : triangles_) {
         const FanTriangle seen = look_at(t);
         if (seen.area == 0) continue;
         for (const std::uint32_t v : t) {
@@ -112,7 +112,7 @@ void SettledNormals::refuse() {
 /// Calls function(place of a refused vertex, a triangle around it).
 template <class Function>
 void SettledNormals::for_each_of_fans(const Function& function) const {
-    for (const Triangle& t : triangles_) {
+    for (const CornerNumbers& t : triangles_) {
         if (std::ranges::all_of(t, [&](auto v) { return place_[v] == accepted; })) continue;
         const FanTriangle seen = look_at(t);
         if (seen.area == 0) continue;
@@ -158,7 +158,7 @@ bool SettledNormals::settle(std::size_t i) {
 
 }  // namespace
 
-std::size_t settle_normals(std::span<const Triangle> triangles, std::span<const Point> x,
+std::size_t settle_normals(std::span<const CornerNumbers> triangles, std::span<const Point> x,
                            std::span<Point> normals) {
     return SettledNormals(triangles, x, normals).run();
 }

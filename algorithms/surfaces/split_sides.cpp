@@ -11,7 +11,7 @@ namespace nestgrid::engine {
 namespace {
 
 using Triangle = Surface<3>::Simplex;
-constexpr std::uint32_t none = ~std::uint32_t{0};
+constexpr std::uint32_t no_middle = ~std::uint32_t{0};
 
 /// The mean of two unit vectors, or the first one where there is none.
 Point unit_mean(const Point& a, const Point& b) {
@@ -55,7 +55,7 @@ private:
     std::uint32_t middle_of(std::uint32_t a, std::uint32_t b) const {
         const TriangleSide side(a, b);
         const auto at = std::lower_bound(sides_.begin(), sides_.end(), side);
-        if (at == sides_.end() || *at != side) return none;
+        if (at == sides_.end() || *at != side) return no_middle;
         return static_cast<std::uint32_t>(first_middle_ +
                                           static_cast<std::size_t>(at - sides_.begin()));
     }
@@ -84,10 +84,10 @@ private:
         std::size_t split = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             m[i] = middle_of(v[i], v[(i + 1) % 3]);
-            split += m[i] != none ? 1 : 0;
+            split += m[i] != no_middle ? 1 : 0;
         }
         // Turns the triangle so that its split sides come first, and are one behind the other.
-        while (split % 3 != 0 && (m[0] == none || m[2] != none)) {
+        while (split % 3 != 0 && (m[0] == no_middle || m[2] != no_middle)) {
             std::rotate(v.begin(), v.begin() + 1, v.end());
             std::rotate(m.begin(), m.begin() + 1, m.end());
         }
@@ -120,7 +120,7 @@ private:
         old.swap(surface_.boundary);
         for (const auto& [a, b] : old) {
             const std::uint32_t m = middle_of(a, b);
-            if (m == none) {
+            if (m == no_middle) {
                 surface_.boundary.push_back({a, b});
             } else {
                 surface_.boundary.push_back({a, m});

@@ -22,7 +22,7 @@ std::size_t attribute_count(const Surface<3>& surface) {
 std::vector<bool> open_vertices(const Surface<3>& surface) {
     std::vector<bool> open(surface.vertices.size(), false);
     engine::for_each_edge(engine::sorted_sides(surface.simplices),
-                          [&](std::span<const engine::TriangleSide> edge) {
+                          [&](std::span<const engine::OrientedSide> edge) {
                               if (edge.size() == 1) open[edge[0].low] = true;
                           });
     return open;

@@ -16,8 +16,8 @@ namespace nestgrid {
 namespace {
 
 using engine::for_each_edge;
-using Side = engine::TriangleSide;
-using Sides = std::vector<Side>;
+using engine::OrientedSide;
+using Sides = std::vector<OrientedSide>;
 
 /// \throw InvalidInput where a triangle repeats a vertex or names one that does not exist
 void require_triangles(const Surface<3>& surface) {
@@ -36,7 +36,7 @@ void count_edges(const Sides& sides, const Surface<3>& surface, SurfaceReport& r
     std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary;
     for (const auto& edge : surface.boundary) boundary.emplace_back(std::minmax(edge[0], edge[1]));
     std::sort(boundary.begin(), boundary.end());
-    for_each_edge(sides, [&](std::span<const Side> edge) {
+    for_each_edge(sides, [&](std::span<const OrientedSide> edge) {
         ++report.edges;
         if (edge.size() == 1) {
             const bool known = std::binary_search(boundary.begin(), boundary.end(), edge[0].ends());
@@ -59,8 +59,8 @@ std::uint32_t corner_at(const Surface<3>& surface, std::uint32_t triangle, std::
 /// triangles share a side, so that each class is a fan.
 std::size_t count_nonmanifold_vertices(const Surface<3>& surface, const Sides& sides) {
     engine::UnionFind fans(3 * surface.simplices.size());
-    for_each_edge(sides, [&](std::span<const Side> edge) {
-        for (const Side& side : edge.subspan(1)) {
+    for_each_edge(sides, [&](std::span<const OrientedSide> edge) {
+        for (const OrientedSide& side : edge.subspan(1)) {
             for (const std::uint32_t v : {side.low, side.high}) {
                 fans.join(corner_at(surface, edge[0].triangle, v),
                           corner_at(surface, side.triangle, v));

@@ -15,7 +15,7 @@
 namespace nestgrid::engine {
 
 /// One side of a triangle, ends ascending; `forward` where the triangle runs along it upwards.
-struct TriangleSide {
+struct OrientedSide {
     std::uint32_t low;
     std::uint32_t high;
     std::uint32_t triangle;
@@ -25,9 +25,9 @@ struct TriangleSide {
 };
 
 /// All sides of all triangles. The sides on one edge follow each other.
-inline std::vector<TriangleSide> sorted_sides(
+inline std::vector<OrientedSide> sorted_sides(
     std::span<const std::array<std::uint32_t, 3>> triangles) {
-    std::vector<TriangleSide> sides;
+    std::vector<OrientedSide> sides;
     sides.reserve(3 * triangles.size());
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         const auto& v = triangles[t];
@@ -37,7 +37,7 @@ inline std::vector<TriangleSide> sorted_sides(
             sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const TriangleSide& a, const TriangleSide& b) {
+    std::sort(sides.begin(), sides.end(), [](const OrientedSide& a, const OrientedSide& b) {
         return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
     });
     return sides;
@@ -45,9 +45,9 @@ inline std::vector<TriangleSide> sorted_sides(
 
 /// Calls function(sides of the edge) for every edge, of sides as sorted_sides() returns them.
 template <class Function>
-void for_each_edge(std::span<const TriangleSide> sides, Function&& function) {
-    for (std::span<const TriangleSide> rest = sides; !rest.empty();) {
-        const auto other = std::find_if(rest.begin(), rest.end(), [&](const TriangleSide& side) {
+void for_each_edge(std::span<const OrientedSide> sides, Function&& function) {
+    for (std::span<const OrientedSide> rest = sides; !rest.empty();) {
+        const auto other = std::find_if(rest.begin(), rest.end(), [&](const OrientedSide& side) {
             return side.ends() != rest.front().ends();
         });
         const auto count = static_cast<std::size_t>(other - rest.begin());

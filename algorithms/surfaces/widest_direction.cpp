@@ -9,14 +9,16 @@ namespace nestgrid::engine {
 namespace {
 
 /// A direction counts as within a cone up to this difference of cosines.
-constexpr double rounding = 1e-14;
+constexpr double cosine_rounding = 1e-14;
 
 /// A circular cone around some directions.
 struct Cone {
     Point axis;
     double cosine;  ///< of the angle between the axis and the cone
 
-    bool holds(const Point& direction) const { return dot(axis, direction) >= cosine - rounding; }
+    bool holds(const Point& direction) const {
+        return dot(axis, direction) >= cosine - cosine_rounding;
+    }
 };
 
 Point unit(const Point& v) {
