@@ -6,7 +6,7 @@
 
 namespace {
 
-struct Options {
+struct BoundaryArguments {
     Input input;
     SurfaceOptions surface;
     LensText lens;
@@ -18,7 +18,7 @@ struct Options {
 }  // namespace
 
 Command add_boundary(CLI::App& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<BoundaryArguments>();
     CLI::App* boundary =
         program.add_subcommand("boundary", "draw the boundary of a grid in space, coloured");
     boundary->footer(

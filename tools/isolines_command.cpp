@@ -11,7 +11,7 @@
 
 namespace {
 
-struct Options {
+struct IsolinesArguments {
     Input input;
     SurfaceOptions surface;
     SliceOptions slice;
@@ -22,7 +22,7 @@ struct Options {
     int count = 0;
 };
 
-void run_isolines(Options& o, Report& report) {
+void run_isolines(IsolinesArguments& o, Report& report) {
     if (o.values.empty() == (o.count == 0)) {
         throw nestgrid::InvalidInput("isolines need either --values or --count");
     }
@@ -56,7 +56,7 @@ void run_isolines(Options& o, Report& report) {
 }  // namespace
 
 Command add_isolines(CLI::App& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<IsolinesArguments>();
     CLI::App* isolines = program.add_subcommand(
         "isolines", "draw isolines on a slice, on an isosurface, or in the plane");
     isolines->footer(

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct IsosurfaceArguments {
     Input input;
     SurfaceOptions surface;
     TimeOptions time;
@@ -32,7 +32,7 @@ struct Options {
     bool against_vtk = false;
 };
 
-FineBox fine_box(const Options& o) {
+FineBox fine_box(const IsosurfaceArguments& o) {
     FineBox box{{}, o.box_threshold};
     std::copy_n(o.box.begin(), 6, box.bounds.begin());
     for (std::size_t d = 0; d < 3; ++d) {
@@ -47,7 +47,7 @@ FineBox fine_box(const Options& o) {
     return box;
 }
 
-ExtractionRequest request_of(const Options& o) {
+ExtractionRequest request_of(const IsosurfaceArguments& o) {
     ExtractionRequest request{
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     const SurfaceOptions& s = o.surface;
@@ -70,8 +70,8 @@ ExtractionRequest request_of(const Options& o) {
     return request;
 }
 
-/// Options that this field or this file leaves without effect.
-void check_for(const Options& o, const InputField& field) {
+/// IsosurfaceArguments that this field or this file leaves without effect.
+void check_for(const IsosurfaceArguments& o, const InputField& field) {
     const CLI::App& command = *o.surface.command;
     if (!field.volumes || o.time.in_use()) {
         refuse_options(command, {"--against-vtk"}, "is for one volume");
@@ -133,7 +133,7 @@ void say_what_distances_are(const std::string& unit, Report& report) {
                ", and estimates: where the data are flat, the surface may be further off");
 }
 
-void run_isosurface(Options& o, Report& report) {
+void run_isosurface(IsosurfaceArguments& o, Report& report) {
     check(o.surface);
     check(o.time, o.input.path);
     check_film(o.time, o.surface);
@@ -180,7 +180,7 @@ void run_isosurface(Options& o, Report& report) {
 }
 
 /// The range of the data, and a value that shows the thing in them.
-std::string advice(const Options& o) {
+std::string advice(const IsosurfaceArguments& o) {
     if (o.input.path.empty()) return "";
     Input input = o.input;
     const InputField field = read_field(input, o.time.more, o.time.times);
@@ -192,7 +192,7 @@ std::string advice(const Options& o) {
            ", try --value " + texts[2];
 }
 
-void add_box_options(CLI::App& command, Options& o) {
+void add_box_options(CLI::App& command, IsosurfaceArguments& o) {
     CLI::Option* box =
         command.add_option("--box", o.box, "a box with a threshold of its own, --box-threshold")
             ->type_name("X,X,Y,Y,Z,Z")
@@ -208,7 +208,7 @@ void add_box_options(CLI::App& command, Options& o) {
 }  // namespace
 
 Command add_isosurface(CLI::App& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<IsosurfaceArguments>();
     CLI::App* isosurface = program.add_subcommand("isosurface", "draw where the data have a value");
     isosurface->footer(
         "Prints:\n"

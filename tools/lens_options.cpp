@@ -18,13 +18,13 @@ namespace {
 using nestgrid::Distance;
 using nestgrid::Point;
 
-constexpr const char* known =
+constexpr const char* known_lenses =
     "ball:x,y,z,r, box:x,x,y,y,z,z, halfspace:x,y,z,x,y,z, cone:x,y,z,x,y,z,degrees, "
     "frustum:EYE,TOWARDS,UP,degrees,aspect,nearest,farthest (three times x,y,z), "
     "polyhedron:FILE, polygon:FILE or surface:FILE";
 
 [[noreturn]] void refuse(const std::string& text) {
-    throw nestgrid::InvalidInput("the lens '" + text + "' is none of " + known);
+    throw nestgrid::InvalidInput("the lens '" + text + "' is none of " + known_lenses);
 }
 
 /// \throw nestgrid::InvalidInput unless there are so many finite numbers between commas
@@ -33,10 +33,6 @@ std::vector<double> lens_numbers(const std::string& text, const std::string& lis
     std::vector<double> numbers = numbers_of(list);
     if (numbers.size() != count) refuse(text);
     return numbers;
-}
-
-Point point_at(const std::vector<double>& numbers, std::size_t first) {
-    return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
 
 /// \param each how many numbers are on each line, and `what` they are
@@ -123,7 +119,7 @@ void add_lens_options(CLI::App& command, LensText& text) {
                      .add_option("--lens", text.domains,
                                  "draw finely in a domain and coarsely far from it; again for "
                                  "several: " +
-                                     std::string(known))
+                                     std::string(known_lenses))
                      ->type_name("DOMAIN")
                      ->group("Lens")
                      ->take_all();

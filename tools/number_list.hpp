@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <nestgrid/detail/geometry.hpp>
+
 /// The finite numbers of a text with commas between them; none where it is anything else.
 inline std::vector<double> numbers_of(const std::string& text) {
     std::vector<double> numbers;
@@ -19,4 +21,9 @@ inline std::vector<double> numbers_of(const std::string& text) {
         if (*end != ',') return {};
         at = end + 1;
     }
+}
+
+/// The point whose coordinates are three of these numbers.
+inline nestgrid::Point point_at(const std::vector<double>& numbers, std::size_t first) {
+    return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }

@@ -9,14 +9,14 @@
 
 namespace {
 
-struct Options {
+struct PackArguments {
     Paths inputs;
     std::vector<double> times;
     EncodingOptions encoding;
     std::filesystem::path output;
 };
 
-void run_pack(const Options& o, Report& report) {
+void run_pack(const PackArguments& o, Report& report) {
     require_hierarchy_name(o.output);
     require_hierarchy_name(o.inputs.front());
     check_writable(o.output);
@@ -40,7 +40,7 @@ void run_pack(const Options& o, Report& report) {
 }  // namespace
 
 Command add_pack(CLI::App& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<PackArguments>();
     CLI::App* pack = program.add_subcommand(
         "pack", "write .nestgrid files into one, as frames, or encoded otherwise");
     pack->footer(

@@ -10,7 +10,7 @@
 
 namespace {
 
-struct Options {
+struct PlaneArguments {
     Input input;
     SurfaceOptions surface;
     LensText lens;
@@ -22,7 +22,7 @@ struct Options {
 
 Command add(CLI::App& program, const char* name, const char* what, const char* example,
             bool lifted) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<PlaneArguments>();
     CLI::App* command = program.add_subcommand(name, what);
     command->footer(
         std::string("Prints:\n"

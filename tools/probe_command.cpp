@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using nestgrid::InvalidInput;
 using nestgrid::Point;
 
-struct Options {
+struct ProbeArguments {
     Input input;
     std::vector<double> line;
     int count = 100;
@@ -117,7 +117,7 @@ void add_rows(const nestgrid::ProbeResult& result, const std::vector<Point>& poi
 
 /// Takes the points down at each moment: as .csv, or into the report where that is JSON and no file
 /// is asked for.
-void probe_all(Options& o, const std::vector<Point>& points, Report& report) {
+void probe_all(ProbeArguments& o, const std::vector<Point>& points, Report& report) {
     std::vector<ThresholdText> threshold;
     for (const std::string& text : o.threshold) threshold.push_back(parse_threshold(text));
     const std::optional<LensRequest> lens = parse(o.lens);
@@ -150,7 +150,7 @@ void probe_all(Options& o, const std::vector<Point>& points, Report& report) {
     }
 }
 
-void check(const Options& o) {
+void check(const ProbeArguments& o) {
     if (o.line.empty() == o.points.empty()) {
         throw InvalidInput("a probe needs either --line or --points");
     }
@@ -163,7 +163,7 @@ void check(const Options& o) {
     check(o.time, o.input.path);
 }
 
-void run_probe(Options& o, Report& report) {
+void run_probe(ProbeArguments& o, Report& report) {
     check(o);
     std::vector<Point> points;
     if (o.line.empty()) {
@@ -180,7 +180,7 @@ void run_probe(Options& o, Report& report) {
 }  // namespace
 
 Command add_probe(CLI::App& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ProbeArguments>();
     CLI::App* probe = program.add_subcommand("probe", "print values at points, as .csv");
     probe->footer(
         "Examples:\n"

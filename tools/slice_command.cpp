@@ -11,7 +11,7 @@
 
 namespace {
 
-struct Options {
+struct SliceArguments {
     Input input;
     SurfaceOptions surface;
     SliceOptions slice;
@@ -23,7 +23,7 @@ struct Options {
     std::optional<double> isovalue;
 };
 
-void run_slice(Options& o, Report& report) {
+void run_slice(SliceArguments& o, Report& report) {
     const SliceFunction f = slice_function(o.slice);
     if (o.isovalue && !std::isfinite(*o.isovalue)) {
         throw nestgrid::InvalidInput("--with-isosurface is not a finite number");
@@ -43,7 +43,7 @@ void run_slice(Options& o, Report& report) {
 }  // namespace
 
 Command add_slice(CLI::App& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<SliceArguments>();
     CLI::App* slice =
         program.add_subcommand("slice", "draw a plane, sphere, cylinder or other slice, coloured");
     slice->footer(

@@ -10,6 +10,7 @@
 
 #include "command_line.hpp"
 #include "expression.hpp"
+#include "number_list.hpp"
 
 namespace {
 
@@ -43,10 +44,6 @@ private:
 int count_slices(const SliceOptions& o) {
     return int(!o.plane.empty()) + int(!o.axis.empty()) + int(!o.sphere.empty()) +
            int(!o.cylinder.empty()) + int(!o.function.empty());
-}
-
-nestgrid::Point point_at(const std::vector<double>& numbers, std::size_t first) {
-    return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
 
 }  // namespace

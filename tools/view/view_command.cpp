@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using namespace nestgrid::view;
 using nestgrid::InvalidInput;
 
-struct Options {
+struct ViewArguments {
     Input input;
     std::vector<fs::path> more;
     std::vector<double> times;
@@ -127,7 +127,7 @@ void serve(PageServer& server) {
     waiting.join();
 }
 
-void run_view(Options& o, Report& report) {
+void run_view(ViewArguments& o, Report& report) {
     if (o.port < 0 || o.port > 65535) throw InvalidInput("--port is not from 0 to 65535");
     if (o.threads < 0) throw InvalidInput("--threads is negative");
     check_times(o.times);
@@ -166,7 +166,7 @@ void run_view(Options& o, Report& report) {
 }  // namespace
 
 Command add_view(CLI::App& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ViewArguments>();
     CLI::App* view =
         program.add_subcommand("view", "explore a field in the browser, by a page on 127.0.0.1");
     view->footer(
