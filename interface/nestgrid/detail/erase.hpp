@@ -86,6 +86,12 @@ void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& 
     }
 }
 
+/// A field that gives the gradient of the data at any node, of a grid with known bisections.
+template <class Field, class Grid>
+concept GivesGradientsAtNodes = requires(const Field& field, typename Grid::Node node) {
+    field.gradient_at(node);
+};
+
 template <class Grid, class Field>
 class ErasedHierarchy final : public Hierarchy<typename Field::value_type> {
     static_assert(require_nested_grid<Grid>());
@@ -287,7 +293,7 @@ private:
             facts.knows_star_positions = nestgrid::knows_stars(grid);
         }
         if constexpr (may_know_patches_) facts.knows_patches = knows_patches(grid, field, facts);
-        if constexpr (requires(typename Grid::Node node) { field.gradient_at(node); }) {
+        if constexpr (GivesGradientsAtNodes<Field, Grid>) {
             facts.gradients_at_nodes = facts.knows_patches;
         }
         facts.bisects_means = bisects_means_;
