@@ -53,7 +53,7 @@ namespace {
 double off_centre(const Point& x) { return norm(x - Point{0.11, 0.05, -0.07}) - 0.73; }
 
 /// A gyroid, whose gradient has about the length 1.
-double waves(const Point& x) {
+double wide_gyroid(const Point& x) {
     const auto [a, b, c] = 2.0 * x + Point{0.3, 0.7, 1.1};
     return 0.5 *
            (std::sin(a) * std::cos(b) + std::sin(b) * std::cos(c) + std::sin(c) * std::cos(a));
@@ -105,7 +105,7 @@ Moduli greatest_moduli(const OctreeGrid<3>& grid, double factor) {
 /// The greatest distance of two surfaces whose thresholds differ by a relative step.
 template <class Grid>
 double greatest_step(const Grid& grid, double factor, double relative) {
-    const std::vector<double> u = values(grid, waves);
+    const std::vector<double> u = values(grid, wide_gyroid);
     const NodeField<Grid, double> field(grid, u);
     // [blended]
     const HierarchicalIndicator indicator(grid, field, Spread{.factor = factor});
