@@ -17,7 +17,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace c_isosurface_test {
 
 template <class Grid, class Field>
 void expect_same(const Grid& grid, const Field& field, double isovalue, double threshold) {
@@ -166,4 +166,4 @@ TEST_F(FailuresForC, AreToldInTheWordsOfTheTable) {
     EXPECT_EQ(code, 2);
 }
 
-}  // namespace
+}  // namespace c_isosurface_test

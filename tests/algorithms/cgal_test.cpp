@@ -22,7 +22,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace cgal_test {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
@@ -99,4 +99,4 @@ TEST(Cgal, FindsNoSelfIntersectionOfTheSphere) {
     }
 }
 
-}  // namespace
+}  // namespace cgal_test

@@ -14,7 +14,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace closed_families_test {
 
 using namespace engine;
 
@@ -214,4 +214,4 @@ TEST(ClosedLevelSetsOfSamples, OnTheImplicitOctree) {
     }
 }
 
-}  // namespace
+}  // namespace closed_families_test

@@ -22,7 +22,7 @@
 
 using namespace nestgrid;
 
-namespace {
+namespace contour_test {
 
 const std::vector<Shape> solids{Shape::tetrahedron, Shape::pyramid, Shape::prism,
                                 Shape::hexahedron};
@@ -436,4 +436,4 @@ TEST(AffineResidual, IsTheSameInBoxesAndNearThem) {
     expect_same_residual_in_boxes<8>();
 }
 
-}  // namespace
+}  // namespace contour_test

@@ -17,7 +17,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace criteria_test {
 
 /// Holds at every other node by key, whatever holds around it.
 class EveryOther final : public Criterion {
@@ -108,4 +108,4 @@ TYPED_TEST(NodeLevelsOn, DrawClosedSurfacesAtEveryDepth) {
     }
 }
 
-}  // namespace
+}  // namespace criteria_test

@@ -15,7 +15,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace domains_test {
 
 TEST(Domains, OfSimpleShapesAreLipschitz) {
     expect_lipschitz(Ball{{0.1, 0.2, -0.1}, 0.7}, [](const Point& x) {
@@ -149,4 +149,4 @@ TEST(Domains, AreRefusedWhereTheyMakeNoSense) {
     expect_refused([&] { seen_in(camera, Polygon(star)); }, "crosses itself");
 }
 
-}  // namespace
+}  // namespace domains_test

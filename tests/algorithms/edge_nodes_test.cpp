@@ -11,7 +11,7 @@
 using namespace nestgrid;
 using engine::EdgeNodes;
 
-namespace {
+namespace edge_nodes_test {
 
 /// Several sheets at one edge record some nodes each, some of them twice.
 TEST(EdgeNodes, AreKeptOnceInTheirOrder) {
@@ -37,4 +37,4 @@ TEST(EdgeNodes, AreKeptOnceInTheirOrder) {
     EXPECT_TRUE(nodes.on({3, 8}).empty());
 }
 
-}  // namespace
+}  // namespace edge_nodes_test

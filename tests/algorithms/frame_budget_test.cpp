@@ -23,7 +23,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace frame_budget_test {
 
 /// A bucky ball, or another field of 65^3 samples, on a grid.
 template <class Grid>
@@ -235,4 +235,4 @@ TEST(FrameBudget, RefusesNumbersThatMakeNoSense) {
     EXPECT_THROW(FrameBudget(1, 1).drawn(-1), InvalidInput);
 }
 
-}  // namespace
+}  // namespace frame_budget_test

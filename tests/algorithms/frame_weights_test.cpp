@@ -13,7 +13,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace frame_weights_test {
 
 const std::vector<double> four_times{0, 1, 2.5, 3};
 
@@ -75,4 +75,4 @@ TEST(FrameWeights, AreRefusedOutsideAndForDisorder) {
     }
 }
 
-}  // namespace
+}  // namespace frame_weights_test

@@ -4,10 +4,10 @@
 // Hidden elements: nothing is drawn in them, and beside them what would be drawn without.
 #include <gtest/gtest.h>
 
-#include <nestgrid/algorithms/discontinuous.hpp>
 #include <nestgrid/algorithms/count_triangles.hpp>
-#include <nestgrid/algorithms/shading.hpp>
+#include <nestgrid/algorithms/discontinuous.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <walk/project.hpp>
@@ -19,7 +19,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace hidden_test {
 
 /// The simplices of elements that are shown, by the positions of their corners.
 template <int dim>
@@ -152,4 +152,4 @@ TEST(Hidden, LeavesConstrainNoNode) {
     EXPECT_TRUE(found);
 }
 
-}  // namespace
+}  // namespace hidden_test

@@ -20,7 +20,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace isosurface_bisections_test {
 
 template <int dim>
 using Unknown = UnknownGrid<LatticeBisection<dim>>;
@@ -448,4 +448,4 @@ TEST(KnownBisections, ReportProgressAndStop) {
     EXPECT_LT(part.surface.simplices.size(), whole.surface.simplices.size());
 }
 
-}  // namespace
+}  // namespace isosurface_bisections_test

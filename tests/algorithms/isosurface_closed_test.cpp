@@ -14,7 +14,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace isosurface_closed_test {
 
 void expect_closed(const SurfaceReport& report) {
     EXPECT_EQ(report.open_edges, 0U);
@@ -168,4 +168,4 @@ TEST(Saturation, WithoutItAGyroidIsLostWhole) {
     EXPECT_EQ(lost.surface.simplices.size(), 0U);
 }
 
-}  // namespace
+}  // namespace isosurface_closed_test

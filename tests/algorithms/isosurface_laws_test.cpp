@@ -16,7 +16,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace isosurface_laws_test {
 
 /// The vertices of the surface on the finest grid, edge by edge, without any hierarchy.
 std::vector<Point> finest_vertices(const SampledField& data, const Samples& n) {
@@ -348,4 +348,4 @@ TEST(Isosurface, CanBeCancelled) {
     EXPECT_EQ(calls, 3);
 }
 
-}  // namespace
+}  // namespace isosurface_laws_test

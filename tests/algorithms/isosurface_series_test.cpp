@@ -17,7 +17,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace isosurface_series_test {
 
 template <class Grid>
 class SeriesOn : public testing::Test {};
@@ -124,4 +124,4 @@ TEST(Series, RefusesWhatIsosurfaceRefuses) {
     EXPECT_GT(series.draw(c.data.isovalue).surface.simplices.size(), 0U);
 }
 
-}  // namespace
+}  // namespace isosurface_series_test

@@ -15,7 +15,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace isosurface_stored_test {
 
 /// The same sphere on all families, within the square of the mesh size.
 TEST(StoredSurfaces, AgreeBetweenFamilies) {
@@ -68,4 +68,4 @@ TEST(StoredSurfaces, WalkTheSameBehindTables) {
     expect_same_behind_tables(red_green);
 }
 
-}  // namespace
+}  // namespace isosurface_stored_test

@@ -17,7 +17,7 @@
 
 using namespace nestgrid;
 
-namespace {
+namespace lattice_indicators_test {
 
 constexpr std::array<Spread, 4> spreads{{{}, {.slope = 0.5}, {.factor = 1.5}, {1.25, 1}}};
 
@@ -174,4 +174,4 @@ TYPED_TEST(LatticeIndicators, AreNoGreaterThanThoseOfTheSweep) {
     }
 }
 
-}  // namespace
+}  // namespace lattice_indicators_test

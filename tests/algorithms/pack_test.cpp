@@ -18,7 +18,7 @@
 
 using namespace nestgrid;
 
-namespace {
+namespace pack_test {
 
 template <class T>
 auto bits_of(T x) {
@@ -309,4 +309,4 @@ TEST(SubtreeEdges, OutsideSubtreesHaveNone) {
     }
 }
 
-}  // namespace
+}  // namespace pack_test

@@ -11,7 +11,7 @@
 
 using namespace nestgrid;
 
-namespace {
+namespace polylines_test {
 
 /// Segments along a line through some of the vertices.
 void add_line(Surface<2>& to, std::initializer_list<std::uint32_t> vertices) {
@@ -82,4 +82,4 @@ TEST(Polylines, BeginsLinesWhereTheyBranchOff) {
     EXPECT_EQ(lines.line(1).size(), 4U);
 }
 
-}  // namespace
+}  // namespace polylines_test

@@ -12,7 +12,7 @@
 
 using namespace nestgrid;
 
-namespace {
+namespace round_up_test {
 
 using Floats = Pack<float, 4>;
 
@@ -91,4 +91,4 @@ TEST(RoundUp, GivesTheSameOfSeveralAtOnce) {
     }
 }
 
-}  // namespace
+}  // namespace round_up_test

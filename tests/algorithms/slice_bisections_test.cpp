@@ -18,7 +18,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace slice_bisections_test {
 
 using Unknown = UnknownGrid<LatticeBisection<3>>;
 
@@ -178,4 +178,4 @@ TEST(KnownBisections, KeepTheBudgetOfASlice) {
     }
 }
 
-}  // namespace
+}  // namespace slice_bisections_test

@@ -14,7 +14,7 @@
 using namespace nestgrid;
 using engine::TriangleSide;
 
-namespace {
+namespace split_sides_test {
 
 /// Two triangles of a parallelogram, with 2x + 3y and 1 at their vertices.
 Surface<3> two_triangles() {
@@ -72,8 +72,6 @@ void expect_split(const std::vector<TriangleSide>& sides) {
     EXPECT_EQ(sum[1], 1);
 }
 
-}  // namespace
-
 TEST(SplitSides, LeaveTheSameSurface) {
     const std::array<TriangleSide, 5> all{{{0, 1}, {2, 0}, {0, 3}, {2, 1}, {3, 2}}};
     ASSERT_TRUE(std::ranges::is_sorted(all));
@@ -86,3 +84,5 @@ TEST(SplitSides, LeaveTheSameSurface) {
         expect_split(sides);
     }
 }
+
+}  // namespace split_sides_test

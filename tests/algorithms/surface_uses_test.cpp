@@ -24,7 +24,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace surface_uses_test {
 
 constexpr double pi = 3.14159265358979323846;
 const Point centre{0.5, 0.5, 0.5};
@@ -397,4 +397,4 @@ TYPED_TEST(Uses, RegionsHaveTheirOwnThreshold) {
     }
 }
 
-}  // namespace
+}  // namespace surface_uses_test

@@ -21,7 +21,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace threads_test {
 
 template <class Grid, class Field>
 void expect_same_from_threads(const Grid& grid, const Field& field,
@@ -472,4 +472,4 @@ TEST(Frontiers, CutAWalkIntoPartsThatMissNothing) {
     }
 }
 
-}  // namespace
+}  // namespace threads_test

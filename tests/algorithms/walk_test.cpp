@@ -22,7 +22,7 @@
 using namespace nestgrid;
 using namespace nestgrid_test;
 
-namespace {
+namespace walk_test {
 
 using View = engine::ElementView<double>;
 using Walk = engine::Walk<double>;
@@ -403,4 +403,4 @@ TEST(Frontier, LooksThroughCopies) {
     expect_whole_in_parts(Walk(hierarchy, everything));
 }
 
-}  // namespace
+}  // namespace walk_test

@@ -5,8 +5,8 @@
 // grid gives, surfaces are closed; where they do not, check_grid and the preroll refuse the grid.
 #include <gtest/gtest.h>
 
-#include <nestgrid/algorithms/node_levels.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/node_levels.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/check_grid.hpp>
 
@@ -18,7 +18,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace anisotropic_test {
 
 /// A function of the place, random: two nodes at one place have one value.
 ForestField<3> noise(const Forest<3>& forest, unsigned seed) {
@@ -364,4 +364,4 @@ TEST(Anisotropic, SupportedGridsDrawClosedSurfaces) {
     EXPECT_LE(refused, 36U);
 }
 
-}  // namespace
+}  // namespace anisotropic_test

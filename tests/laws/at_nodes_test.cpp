@@ -17,7 +17,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace at_nodes_test {
 
 template <class Family>
 class AtNodes : public testing::Test {};
@@ -107,4 +107,4 @@ TEST(AtNodesOptions, RefuseReferenceCoordinates) {
     }
 }
 
-}  // namespace
+}  // namespace at_nodes_test

@@ -13,7 +13,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace boundary_surface_test {
 
 template <class Family>
 class BoundarySurfaces : public testing::Test {};
@@ -75,4 +75,4 @@ TYPED_TEST(BoundarySurfaces, CloseTheCubeCutOpen) {
     }
 }
 
-}  // namespace
+}  // namespace boundary_surface_test

@@ -18,7 +18,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace collapse_crossing_test {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
@@ -69,4 +69,4 @@ TEST(CollapsedSurfaces, DoNotCrossThemselvesInHexahedra) {
     expect_no_new_crossing<LatticeOctree<3>>();
 }
 
-}  // namespace
+}  // namespace collapse_crossing_test

@@ -20,7 +20,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace collapse_test {
 
 constexpr double rounding = 1e-9;
 
@@ -330,4 +330,4 @@ TEST(FieldChecks, OfLatticesAreThoseOfTheirLeaves) {
     }
 }
 
-}  // namespace
+}  // namespace collapse_test

@@ -16,7 +16,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace colour_test {
 
 template <class Family>
 class Colours : public testing::Test {};
@@ -103,4 +103,4 @@ TYPED_TEST(Colours, JumpWhereElementsInterpolateThem) {
     }
 }
 
-}  // namespace
+}  // namespace colour_test

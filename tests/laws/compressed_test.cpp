@@ -26,7 +26,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace compressed_test {
 
 template <class Family>
 class Compressed : public testing::Test {};
@@ -186,4 +186,4 @@ TEST(Compressed, RefusesWhatCannotBeDecoded) {
     expect_refused([&] { CompressedValues<float>(erase(grid, field), {.step = 1}); }, "multiples");
 }
 
-}  // namespace
+}  // namespace compressed_test

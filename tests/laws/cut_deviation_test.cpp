@@ -23,7 +23,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace cut_deviation_test {
 
 constexpr double bfloat16_steps = 1 + 1.0 / 128;  // numbers are rounded up by less
 constexpr double rounding = 1e-12;
@@ -429,4 +429,4 @@ TEST(CutDeviation, RefusesWhatIsNoIsovalue) {
     EXPECT_THROW(slope_deviations(grid, field, nan, bounds), InvalidInput);
 }
 
-}  // namespace
+}  // namespace cut_deviation_test

@@ -19,7 +19,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace deviation_test {
 
 constexpr double bfloat16_steps = 1 + 1.0 / 128;  // numbers are rounded up by less
 constexpr std::array<double, 7> all_thresholds{0, 0.01, 0.05, 0.2, 0.5, 1, 2};
@@ -201,4 +201,4 @@ TEST(Deviation, IsExactOnLattices) {
     expect_exact_on_lattice<2>({20, 13});
 }
 
-}  // namespace
+}  // namespace deviation_test

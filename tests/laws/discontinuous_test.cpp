@@ -20,7 +20,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace discontinuous_test {
 
 double smooth(const Point& x) { return std::sin(4 * x[0]) + x[1] * x[1] - 0.5 * x[2]; }
 double linear(const Point& x) { return 2 * x[0] - 3 * x[1] + x[2] + 0.125; }
@@ -369,4 +369,4 @@ TEST(DiscontinuousCells, EndsWhenProgressSaysSo) {
     EXPECT_LT(result.surface.level_of.size(), grid.leaf_count());
 }
 
-}  // namespace
+}  // namespace discontinuous_test

@@ -18,7 +18,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace error_bound_test {
 
 constexpr double rounding = 1e-12;
 constexpr double cut_distance = 1e-5;  // cuts stay away from nodes
@@ -150,4 +150,4 @@ TYPED_TEST(ErrorBound, OfACriterionThatInsistsIsTheRange) {
     });
 }
 
-}  // namespace
+}  // namespace error_bound_test

@@ -18,7 +18,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace finest_cuts_test {
 
 constexpr std::array<double, 3> all_thresholds{0.02, 0.2, 0.7};
 constexpr double cut_distance = 1e-5;  // cuts stay away from nodes
@@ -144,4 +144,4 @@ TEST(FinestCutsOfLattices, AreTheSameByAllWalks) {
     expect_same_by_all_walks<2>({33, 21, 2});
 }
 
-}  // namespace
+}  // namespace finest_cuts_test

@@ -18,7 +18,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace graded_test {
 
 /// Where the reference element is cut along each axis; 0 where it is not.
 using Cuts = std::array<double, 3>;
@@ -266,4 +266,4 @@ TEST(Graded, LinearFunctionsHaveNoOffsets) {
     expect_linear_functions_kept<3>();
 }
 
-}  // namespace
+}  // namespace graded_test

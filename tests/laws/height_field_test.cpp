@@ -20,7 +20,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace height_field_test {
 
 constexpr std::array<double, 6> shading_thresholds{0, 0.05, 0.1, 0.3, 0.6, 1};
 
@@ -494,4 +494,4 @@ TEST(HeightFields, RefuseWrongInput) {
     EXPECT_THROW(shading(grid, field, indicator), GridError);
 }
 
-}  // namespace
+}  // namespace height_field_test

@@ -24,7 +24,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace indicators_test {
 
 /// An indicator with a name, and a threshold that projects about half of a gyroid away.
 struct Named {
@@ -174,7 +174,7 @@ TYPED_TEST(Indicators, ChangeNothingAtThresholdZero) {
 /// The greatest eta of all nodes.
 double greatest(const Hierarchy<double>& h, const Indicator& indicator) {
     double result = 0;
-    for_each_split(h, [&](const JudgedSplit& split) {
+    for_each_judged_split(h, [&](const JudgedSplit& split) {
         for (const NodeKey key : split.keys) result = std::max(result, indicator.stop(key));
     });
     return result;
@@ -183,7 +183,7 @@ double greatest(const Hierarchy<double>& h, const Indicator& indicator) {
 /// Whether a grid is a surface in space: the tangential gradients of linear data jump there.
 bool is_bent(const Hierarchy<double>& h) {
     bool bent = false;
-    for_each_split(h, [&](const JudgedSplit& split) {
+    for_each_judged_split(h, [&](const JudgedSplit& split) {
         for (const Point& x : split.positions)
             bent = bent || (h.facts().dimension == 2 && x[2] != 0);
     });
@@ -212,7 +212,7 @@ TYPED_TEST(Indicators, OfFoldsDependOnNoAmplitude) {
         const SweptIndicator eta = visual_indicator(h, {.tau = 1e-6});
         const SweptIndicator of_scaled = visual_indicator(grid, scaled_field, {.tau = 1e-3});
         double least = 2;
-        for_each_split(h, [&](const JudgedSplit& split) {
+        for_each_judged_split(h, [&](const JudgedSplit& split) {
             for (const NodeKey key : split.keys) {
                 EXPECT_NEAR(eta.stop(key), of_scaled.stop(key), 0.01);
                 least = std::min(least, eta.stop(key));
@@ -245,7 +245,7 @@ struct RandomLifting {
 
     RandomLifting(const Hierarchy<double>& h, std::mt19937& random) {
         std::unordered_map<NodeKey, std::size_t> numbers;
-        for_each_split(h, [&](const JudgedSplit& split) {
+        for_each_judged_split(h, [&](const JudgedSplit& split) {
             std::vector<std::size_t> nodes;
             for (const NodeKey key : split.keys) {
                 const auto [at, is_new] = numbers.emplace(key, numbers.size());
@@ -343,7 +343,7 @@ TEST(VisualIndicator, SeesNoNoiseBelowTau) {
     const auto h = erase(grid, field);
     const auto folds = [&](const SweptIndicator& eta) {
         std::size_t count = 0;
-        for_each_split(h, [&](const JudgedSplit& split) {
+        for_each_judged_split(h, [&](const JudgedSplit& split) {
             for (const NodeKey key : split.keys) count += eta.stop(key) > 0.5 ? 1U : 0U;
         });
         return count;
@@ -356,7 +356,7 @@ TEST(VisualIndicator, SeesSaddlesInsideHexahedra) {
     with_function<BalancedOctree>([](const Point& x) { return (x[0] - 0.5) * (x[1] - 0.5); },
                                   [](const Hierarchy<double>& h) {
                                       const SweptIndicator eta = visual_indicator(h);
-                                      for_each_split(h, [&](const JudgedSplit& split) {
+                                      for_each_judged_split(h, [&](const JudgedSplit& split) {
                                           for (const NodeKey key : split.keys)
                                               EXPECT_GT(eta.stop(key), 0.01);
                                       });
@@ -423,7 +423,7 @@ TYPED_TEST(Indicators, OfNormsAreOrderedAndCountAllComponents) {
     const SweptIndicator of_second = norm_indicator(h, {.scales = {infinity, 2, infinity}});
     const SweptIndicator alone = norm_indicator(grid, second_alone);
     for (const SweptIndicator* indicator : {&sum, &euclid, &most}) expect_saturated(h, *indicator);
-    for_each_split(h, [&](const JudgedSplit& split) {
+    for_each_judged_split(h, [&](const JudgedSplit& split) {
         for (const NodeKey key : split.keys) {
             EXPECT_LE(alone.stop(key), most.stop(key));
             EXPECT_LE(most.stop(key), euclid.stop(key));
@@ -458,4 +458,4 @@ TEST(VisualIndicator, RefusesValuesThatAreNotFinite) {
     expect_refused([&] { norm_indicator(grid, field); }, "not a usable number");
 }
 
-}  // namespace
+}  // namespace indicators_test

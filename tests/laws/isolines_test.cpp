@@ -17,7 +17,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace isolines_test {
 
 constexpr std::array thresholds{0.0, 0.1, 1.0};
 const Point oblique{0.3, 0.5, 0.81};
@@ -447,4 +447,4 @@ TEST(Isolines, RefusesWrongInput) {
     EXPECT_THROW(isolines(erase(space[0], solid), std::array{0.0}), InvalidInput);
 }
 
-}  // namespace
+}  // namespace isolines_test

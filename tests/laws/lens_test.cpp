@@ -25,7 +25,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace lens_test {
 
 template <class Family>
 class Lenses : public testing::Test {};
@@ -382,4 +382,4 @@ TEST(Lens, IsRefusedWhereItMakesNoSense) {
     expect_refused([&] { mesh_size(grid, {.slope = -1}); }, "slope");
 }
 
-}  // namespace
+}  // namespace lens_test

@@ -20,7 +20,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace normals_test {
 
 constexpr std::array<double, 7> all_thresholds{0, 0.02, 0.1, 0.3, 0.7, 2, 10};
 
@@ -223,4 +223,4 @@ TEST(Normals, AreTheSameInSinksAndFromAnyNumberOfThreads) {
     }
 }
 
-}  // namespace
+}  // namespace normals_test

@@ -15,7 +15,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace outlines_test {
 
 using PointPair = std::array<Point, 2>;
 
@@ -231,4 +231,4 @@ TEST(Outlines, RefusesSurfacesWithoutElements) {
     EXPECT_THROW(outlines(triangle), InvalidInput);
 }
 
-}  // namespace
+}  // namespace outlines_test

@@ -19,7 +19,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace probe_cases_test {
 
 double wave(const Point& x) { return std::sin(3 * x[0] + 1) * std::cos(4 * x[1]) + x[2] * x[0]; }
 
@@ -187,4 +187,4 @@ TEST(ProbeCases, RefuseWhatCannotBeProbed) {
     EXPECT_NE(refusal<GridError>([&] { probe(grid, finer, fine, Exact{}, indicator); }), "");
 }
 
-}  // namespace
+}  // namespace probe_cases_test

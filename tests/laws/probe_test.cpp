@@ -15,7 +15,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace probe_test {
 
 template <class Family>
 class Probes : public testing::Test {};
@@ -189,4 +189,4 @@ TYPED_TEST(Probes, AllocateForLevelsAndNotForElements) {
         });
 }
 
-}  // namespace
+}  // namespace probe_test

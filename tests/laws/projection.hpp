@@ -19,11 +19,11 @@ namespace nestgrid_test {
 using namespace nestgrid;
 
 /// A node of the adaptive grid.
-struct Projected {
+struct ProjectedValues {
     double value;  ///< P_S U
     Point position;
 };
-using Projection = std::map<NodeKey, Projected>;
+using Projection = std::map<NodeKey, ProjectedValues>;
 
 /// The nodes of the adaptive grid; each is the same in all elements.
 template <class Grid, class Field>
@@ -37,7 +37,7 @@ Projection projection(const Grid& grid, const Field& field, const Criterion& cri
         std::array<Point, max_corners> x{};
         walk.corners(view, keys.data(), x.data());
         for (std::size_t i = 0; i < view.corner_count(); ++i) {
-            const auto [at, is_new] = nodes.emplace(keys[i], Projected{view.value[i], x[i]});
+            const auto [at, is_new] = nodes.emplace(keys[i], ProjectedValues{view.value[i], x[i]});
             EXPECT_EQ(at->second.value, view.value[i]);
             EXPECT_EQ(at->second.position, x[i]);
         }

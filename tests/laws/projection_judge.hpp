@@ -29,12 +29,12 @@ struct JudgedSplit {
 };
 
 /// Calls a function for every split.
-class SplitVisitor final : public engine::Visitor<double> {
+class JudgedSplitVisitor final : public engine::Visitor<double> {
 public:
     using View = engine::ElementView<double>;
 
-    SplitVisitor(const engine::Walk<double>& walk,
-                 const std::function<void(const JudgedSplit&)>& function)
+    JudgedSplitVisitor(const engine::Walk<double>& walk,
+                       const std::function<void(const JudgedSplit&)>& function)
         : walk_{&walk}, function_{&function} {}
 
     bool sees_hidden() const override { return true; }
@@ -52,11 +52,11 @@ private:
     engine::SplitPositions positions_{};
 };
 
-inline void for_each_split(const Hierarchy<double>& hierarchy,
-                           const std::function<void(const JudgedSplit&)>& function) {
+inline void for_each_judged_split(const Hierarchy<double>& hierarchy,
+                                  const std::function<void(const JudgedSplit&)>& function) {
     const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
     const engine::Walk<double> walk(hierarchy, {.keys = true, .positions = true}, &hanging);
-    SplitVisitor visitor(walk, function);
+    JudgedSplitVisitor visitor(walk, function);
     walk.run(visitor);
 }
 
@@ -64,7 +64,7 @@ inline void for_each_split(const Hierarchy<double>& hierarchy,
 inline void expect_saturated(const Hierarchy<double>& hierarchy, const Indicator& indicator) {
     std::size_t wrong = 0;
     const auto [factor, slope] = indicator.spread();
-    for_each_split(hierarchy, [&, factor = factor, slope = slope](const JudgedSplit& split) {
+    for_each_judged_split(hierarchy, [&, factor = factor, slope = slope](const JudgedSplit& split) {
         for (std::size_t n = split.corner_count(); n < split.keys.size(); ++n) {
             for (std::size_t k = 0; k < split.corner_count(); ++k) {
                 const double distance = norm(split.positions[n] - split.positions[k]);

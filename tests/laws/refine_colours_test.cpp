@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/boundary_surface.hpp>
-#include <nestgrid/algorithms/shading.hpp>
-#include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/refine_colours.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 
 #include "closedness.hpp"
@@ -21,7 +21,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace refine_colours_test {
 
 template <class Family>
 class RefinedColours : public testing::Test {};
@@ -255,4 +255,4 @@ TEST(RefinedColours, AreRefusedWhereTheyMakeNoSense) {
     EXPECT_EQ(refine_colours(empty, grid, field, 1).split, 0U);
 }
 
-}  // namespace
+}  // namespace refine_colours_test

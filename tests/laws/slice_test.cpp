@@ -21,7 +21,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace slice_test {
 
 struct PlaneAt {
     const char* name;
@@ -266,4 +266,4 @@ TEST(SlicesOfBoxes, RefuseWrongInput) {
     }
 }
 
-}  // namespace
+}  // namespace slice_test

@@ -22,7 +22,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace swept_key_frames_test {
 
 constexpr std::array three_times{0.0, 1.0, 2.5};
 
@@ -179,4 +179,4 @@ TEST(SweptTime, RefusesWhatIsNoFrames) {
     EXPECT_NE(refusal<InvalidInput>([&] { SweptKeyFrames({&indicator}, none); }), "");
 }
 
-}  // namespace
+}  // namespace swept_key_frames_test

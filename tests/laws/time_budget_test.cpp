@@ -14,7 +14,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace time_budget_test {
 
 /// At the threshold of a budget the surface keeps within it, and one 1/128 below it does not.
 TEST(TimeBudgets, AreKeptByAThresholdNextToTheLeast) {
@@ -61,4 +61,4 @@ TEST(TimeBudgets, AreKeptByAThresholdNextToTheLeast) {
     }
 }
 
-}  // namespace
+}  // namespace time_budget_test

@@ -10,9 +10,9 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/between.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/probe.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <walk/project.hpp>
@@ -27,7 +27,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace time_test {
 
 const std::vector<double> four_times{0, 1, 2.5, 3};
 
@@ -477,4 +477,4 @@ TYPED_TEST(TimeOfVolumes, AreThoseOfTheirSamples) {
     }
 }
 
-}  // namespace
+}  // namespace time_test

@@ -25,7 +25,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace triangle_budget_test {
 
 template <class Family>
 class TriangleBudgets : public testing::Test {};
@@ -323,4 +323,4 @@ TEST(LeastThreshold, EndsAtThePlaceWhereTheNumberFalls) {
     }
 }
 
-}  // namespace
+}  // namespace triangle_budget_test

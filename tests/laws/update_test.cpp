@@ -21,7 +21,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace update_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -278,4 +278,4 @@ TEST(Update, DoesNotGrowWithTheGrid) {
     EXPECT_LE(asked[2], asked[1] + a_level + a_level / 2);
 }
 
-}  // namespace
+}  // namespace update_test

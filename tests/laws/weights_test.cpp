@@ -17,7 +17,7 @@
 
 using namespace nestgrid_test;
 
-namespace {
+namespace weights_test {
 
 template <class Family>
 class Weights : public testing::Test {};
@@ -138,4 +138,4 @@ TYPED_TEST(Weights, AreRefusedWithoutTheFactor) {
     expect_refused([&] { HierarchicalIndicator(grid, field, Spread{.slope = -1}); }, "slope");
 }
 
-}  // namespace
+}  // namespace weights_test
