@@ -4,7 +4,7 @@
 // Space cut into boxes with about equally many vertices of a surface, and its triangles by box.
 #pragma once
 
-#include <collapses/box_tree.hpp>
+#include <distances/box_tree.hpp>
 
 namespace nestgrid::engine {
 

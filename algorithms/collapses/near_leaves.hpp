@@ -12,7 +12,7 @@
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/hierarchy.hpp>
 
-#include <collapses/box_tree.hpp>
+#include <distances/box_tree.hpp>
 
 namespace nestgrid::engine {
 

@@ -4,7 +4,7 @@
 // The triangles of a block, sorted into the cells of a lattice.
 #pragma once
 
-#include <collapses/box_tree.hpp>
+#include <distances/box_tree.hpp>
 
 namespace nestgrid::engine {
 

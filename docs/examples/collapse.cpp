@@ -7,6 +7,7 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
 #include "bucky_ball.hpp"
@@ -29,6 +30,13 @@ int main() {
     // [collapse]
     std::printf("%zu triangles, then %zu, |U - C| <= %.3f\n", drawn, surface.simplices.size(),
                 collapsed.error);
+    // [measure]
+    const auto whole = isosurface(grid, field, isovalue).surface;
+    const MeasuredError measured = measure_error(surface, whole, grid, field, isovalue);
+    // [measure]
+    std::printf("measured: |U - C| <= %.3f, distances %.4f there, %.4f back\n",
+                measured.value.greatest, measured.distance.greatest, measured.back.greatest);
     const SurfaceReport report = surface_report(surface);
-    return report.closed() && report.manifold() && collapsed.error <= error ? 0 : 1;
+    const bool keeps = measured.value.greatest <= error && collapsed.error <= error;
+    return report.closed() && report.manifold() && keeps ? 0 : 1;
 }

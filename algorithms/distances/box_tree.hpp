@@ -48,6 +48,15 @@ struct Box {
     }
     bool contains(const Point& x) const { return meets({x, x}); }
     double diameter() const { return norm(high - low); }
+    /// The square of the distance of a point; 0 inside.
+    double square_distance(const Point& x) const {
+        double sum = 0;
+        for (std::size_t d = 0; d < 3; ++d) {
+            const double off = std::max({low[d] - x[d], x[d] - high[d], 0.0});
+            sum += off * off;
+        }
+        return sum;
+    }
     /// Makes the box larger on all sides.
     void widen(double by) {
         low = low - Point{by, by, by};

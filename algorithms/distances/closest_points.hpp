@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Distances of points from a surface, exact up to rounding.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <distances/box_tree.hpp>
+#include <nestgrid/algorithms/surface.hpp>
+
+namespace nestgrid::engine {
+
+/// The square of the distance of a point from a triangle, which may be without area.
+double square_distance(const Point& x, const Triangle& triangle);
+
+/// Finds the triangles that are nearest to points. Several threads may ask at once.
+class ClosestPoints {
+public:
+    /// \param surface borrowed
+    explicit ClosestPoints(const Surface<3>& surface);
+
+    /// The distance of a point from the surface; infinite where that is empty.
+    /// \param bound which it is known not to exceed: makes the search short
+    double distance(const Point& x, double bound = std::numeric_limits<double>::infinity()) const;
+
+private:
+    Triangle triangle(std::uint32_t t) const {
+        const auto& v = surface_->simplices[t];
+        return {surface_->vertices[v[0]], surface_->vertices[v[1]], surface_->vertices[v[2]]};
+    }
+
+    const Surface<3>* surface_;
+    std::vector<std::uint32_t> order_;  // triangles, near ones one after the other
+    BoxTree tree_;                      // over them
+};
+
+}  // namespace nestgrid::engine
