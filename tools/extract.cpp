@@ -34,6 +34,37 @@ nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool co
     return options;
 }
 
+/// Collapses edges of a surface, and tells what is left and its bounds.
+template <class Real>
+void collapse_one(nestgrid::Surface<3>& surface, const nestgrid::Hierarchy<Real>& hierarchy,
+                  const nestgrid::Bounds& bounds, const nestgrid::Executor& executor,
+                  const ExtractionRequest& request, Extraction& e) {
+    const double start = now();
+    const nestgrid::Collapsed done = nestgrid::collapse(surface, hierarchy, request.isovalue,
+                                                        bounds, {.error = e.threshold}, executor);
+    e.collapse_seconds = now() - start;
+    e.collapsed = done;
+    // Triangles that do not keep the error have the bound of what was drawn.
+    if (done.exceeding == 0 || done.error > e.bounds.error_bound) {
+        e.bounds.error_bound = done.error;
+    }
+    e.surface_error = done.exceeding == 0 ? done.error : std::max(done.error, e.surface_error);
+}
+
+/// Measures a surface against that of all data.
+template <class Real>
+void measure_one(const nestgrid::Surface<3>& surface, const nestgrid::Hierarchy<Real>& hierarchy,
+                 const nestgrid::Executor& executor, const ExtractionRequest& request,
+                 Extraction& e) {
+    constexpr std::size_t points = 200000;
+    if (request.progress) request.progress("measuring");
+    const double start = now();
+    const auto whole = nestgrid::isosurface<3>(hierarchy, request.isovalue, {}, executor);
+    e.measured = nestgrid::measure_error(surface, whole.surface, hierarchy, request.isovalue,
+                                         points, executor);
+    e.measure_seconds = now() - start;
+}
+
 /// Draws one surface.
 /// \param e takes what the surface costs and, where it is kept, the surface
 template <int dimension, class Real>
@@ -44,9 +75,8 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Cri
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
-    const auto result =
-        nestgrid::isosurface<dimension>(hierarchy, request.isovalue, criterion, bounds,
-                                        options_of(request, has_one_thread), executor);
+    auto result = nestgrid::isosurface<dimension>(hierarchy, request.isovalue, criterion, bounds,
+                                                  options_of(request, has_one_thread), executor);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
@@ -55,6 +85,10 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Cri
     e.surface_error = result.surface_error;
     e.stack_bytes = result.stack_bytes;
     if constexpr (dimension == 3) {
+        if (request.collapses) {
+            collapse_one(result.surface, hierarchy, bounds, executor, request, e);
+        }
+        if (request.measures) measure_one(result.surface, hierarchy, executor, request, e);
         e.report = nestgrid::surface_report(result.surface);
     } else {
         e.report.vertices = result.surface.vertices.size();
@@ -102,7 +136,8 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
     run.preroll_seconds += now() - begin;
     const auto draw = [&](const auto& criterion_at, Extraction e) {
         e.time = moment.time();
-        extract_one<dimension>(hierarchy, criterion_at(e.threshold), indicators.bounds(), executor,
+        const double threshold = request.collapses ? e.threshold / 2 : e.threshold;
+        extract_one<dimension>(hierarchy, criterion_at(threshold), indicators.bounds(), executor,
                                request, e);
         if (e.surface) describe(e.surface, field.length_unit, {{field.name, request.isovalue}});
         run.surfaces.push_back(std::move(e));

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
@@ -38,6 +40,10 @@ struct ExtractionRequest {
     /// Where edges are cut; nothing: on their finest pieces where `budgets` are asked for, but for
     /// deviations, whose error linear cuts keep.
     std::optional<nestgrid::Cuts> cuts{};
+    /// Whether edges are collapsed while the error keeps within the thresholds. What is drawn first
+    /// has half the error.
+    bool collapses = false;
+    bool measures = false;       ///< against the surface of all data
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
     /// Told that a preroll begins; or empty.
@@ -60,6 +66,10 @@ struct Extraction {
     nestgrid::TraversalCounts counts;
     nestgrid::ErrorBounds bounds;
     double surface_error = 0;  ///< Isosurface::surface_error
+    std::optional<nestgrid::Collapsed> collapsed;
+    double collapse_seconds = 0;
+    std::optional<nestgrid::MeasuredError> measured;
+    double measure_seconds = 0;
     std::size_t stack_bytes = 0;
     nestgrid::SurfaceReport report;  ///< of isolines: vertices, and segments as triangles
     double seconds = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <optional>
 
+#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/error.hpp>
 
 #include "collection.hpp"
@@ -28,6 +29,8 @@ struct IsosurfaceArguments {
     bool cap = false;
     bool flat = false;
     bool at_nodes = false;
+    bool collapses = false;
+    bool measures = false;
     std::string cuts;
     bool against_vtk = false;
 };
@@ -50,6 +53,8 @@ FineBox fine_box(const IsosurfaceArguments& o) {
 ExtractionRequest request_of(const IsosurfaceArguments& o) {
     ExtractionRequest request{
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
+    request.collapses = o.collapses;
+    request.measures = o.measures;
     const SurfaceOptions& s = o.surface;
     if (!o.cuts.empty()) {
         request.cuts = o.cuts == "finest" ? nestgrid::Cuts::finest : nestgrid::Cuts::linear;
@@ -79,7 +84,8 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
     const int dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
                                      field.frames.front());
     if (dimension == 2) {
-        refuse_options(command, {"--cap", "--no-normals"}, "is for surfaces, not for isolines");
+        refuse_options(command, {"--cap", "--no-normals", "--collapse", "--measure"},
+                       "is for surfaces, not for isolines");
     }
     const std::string format = ending_of(o.surface.output);
     if (o.surface.picture.image.empty() && (format == ".stl" || format == ".ply")) {
@@ -92,12 +98,8 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
 /// flatness of triangles several times.
 bool suits_cuts(const InputField& field) {
     if (field.frames.size() > 1) return false;
-    return std::visit(
-        [](const auto& frame) {
-            const nestgrid::Shape shape = frame->facts().only_shape;
-            return shape == nestgrid::Shape::tetrahedron || shape == nestgrid::Shape::triangle;
-        },
-        field.frames.front());
+    return std::visit([](const auto& frame) { return nestgrid::cuts_are_errors(frame->facts()); },
+                      field.frames.front());
 }
 
 /// Writes and paints the surfaces that were kept.
@@ -127,10 +129,18 @@ void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progr
     }
 }
 
-void say_what_distances_are(const std::string& unit, Report& report) {
-    report.say("distances are in " +
-               (unit.empty() ? "the unit of the grid, which is not known" : unit) +
-               ", and estimates: where the data are flat, the surface may be further off");
+void say_what_distances_are(const ExtractionRequest& request, const std::string& unit,
+                            Report& report) {
+    const bool estimates = request.projection.indicator == "slope";
+    if (!estimates && !request.measures) return;
+    std::string text =
+        "distances are in " + (unit.empty() ? "the unit of the grid, which is not known" : unit);
+    if (estimates) {
+        text +=
+            "; the threshold is an estimate: where the data are flat, the surface may be "
+            "further off";
+    }
+    report.say(text);
 }
 
 void run_isosurface(IsosurfaceArguments& o, Report& report) {
@@ -175,7 +185,7 @@ void run_isosurface(IsosurfaceArguments& o, Report& report) {
     progress.reset();
     report_field(field.name, field.length_unit, report);
     report_surfaces(run, o.value, seconds, contour, report);
-    if (request.projection.indicator == "slope") say_what_distances_are(field.length_unit, report);
+    say_what_distances_are(request, field.length_unit, report);
     say_what_was_kept(o.surface, report);
 }
 
@@ -236,6 +246,11 @@ Command add_isosurface(CLI::App& program) {
         ->excludes("--max-triangles")
         ->excludes("--error")
         ->excludes("--indicator");
+    isosurface
+        ->add_flag("--collapse", o->collapses,
+                   "take edges away while the --error is kept: some times fewer triangles, some "
+                   "times the time")
+        ->needs(isosurface->get_option("--error"));
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume")
         ->group("Surface");
     isosurface
@@ -254,6 +269,15 @@ Command add_isosurface(CLI::App& program) {
         ->check(CLI::IsMember({"linear", "finest"}))
         ->group("Surface")
         ->excludes("--at-nodes");
+    for (const char* const other : {"--cap", "--at-nodes"}) {
+        isosurface->get_option("--collapse")->excludes(other);
+    }
+    isosurface
+        ->add_flag("--measure", o->measures,
+                   "measure the error and the distances from the surface of all data, there and "
+                   "back")
+        ->group("Surface")
+        ->excludes("--cap");
     isosurface
         ->add_flag("--against-vtk", o->against_vtk,
                    "compare with VTK's own contour of the same samples")
@@ -261,6 +285,9 @@ Command add_isosurface(CLI::App& program) {
     add_box_options(*isosurface, *o);
     add_time_options(*isosurface, o->time);
     add_lens_options(*isosurface, o->lens);
+    for (const char* const other : {"--lens", "--box"}) {
+        isosurface->get_option("--collapse")->excludes(other);
+    }
     isosurface->get_option("--lens")->excludes("--box");
     add_read_options(*isosurface, o->input);
     return {isosurface, [o](Report& report) { run_isosurface(*o, report); },

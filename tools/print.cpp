@@ -14,11 +14,14 @@ bool is_promised(const Extraction& e) { return e.threshold > 0 && std::isfinite(
 
 void say_what_is_promised(const ExtractionRun& run, Report& report) {
     if (run.surfaces.size() != 1 || !is_promised(run.surfaces.front())) return;
+    const Extraction& e = run.surfaces.front();
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
-                  "surface within %.4g of the isovalue, and the whole surface of the data within "
-                  "it of what is drawn",
-                  run.surfaces.front().surface_error);
+                  e.collapsed ? "surface within %.4g of the isovalue, and data that differ from it "
+                                "by more than the error lie on their side"
+                              : "surface within %.4g of the isovalue, and the whole surface of the "
+                                "data within it of what is drawn",
+                  e.surface_error);
     report.say(text.data());
 }
 
@@ -33,6 +36,20 @@ Row row_of(const Extraction& e, bool in_space) {
     const bool encloses = r.closed() && r.triangles > 0;
     if (in_space) row.add("volume", encloses ? Cell(std::abs(r.volume)) : Cell());
     row.add("seconds", e.seconds);
+    if (e.collapsed) {
+        row.add("collapse_seconds", e.collapse_seconds);
+        row.add("collapses", std::uint64_t{e.collapsed->collapses});
+        row.add("exceeding", std::uint64_t{e.collapsed->exceeding});
+    }
+    if (e.measured) {
+        row.add("measured_error", e.measured->value.greatest);
+        row.add("measured_rms", e.measured->value.rms);
+        row.add("distance", e.measured->distance.greatest);
+        row.add("distance_rms", e.measured->distance.rms);
+        row.add("distance_back", e.measured->back.greatest);
+        row.add("distance_back_rms", e.measured->back.rms);
+        row.add("measure_seconds", e.measure_seconds);
+    }
     if (in_space) {
         row.add("boundary_edges", r.boundary_edges).add("components", r.components);
         row.add("euler_number", static_cast<double>(r.euler));

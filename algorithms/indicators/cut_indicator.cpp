@@ -124,10 +124,6 @@ void walk_cuts(const Walk<Real>& walk, const CutWalk& what, CutEtas& etas,
     visitor.finish();
 }
 
-bool are_simplices(const HierarchyFacts& facts) {
-    return facts.only_shape == Shape::tetrahedron || facts.only_shape == Shape::triangle;
-}
-
 template <class Real>
 SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& request,
                             const Spread& spread, const Executor& executor) {
@@ -149,7 +145,7 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
         const bool measures = spread.slope > 0 && !in_rows;
         const Needs needs{.values = true,
                           .keys = true,
-                          .positions = measures || request.distances || !are_simplices(facts)};
+                          .positions = measures || request.distances || !cuts_are_errors(facts)};
         CutEtas etas(facts.node_count);
         walk_cuts(Walk<Real>(hierarchy, needs, request.bounds->hanging()),
                   CutWalk{request, !in_rows, measures}, etas, executor);
@@ -162,6 +158,10 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
 }  // namespace
 
 }  // namespace engine
+
+bool cuts_are_errors(const HierarchyFacts& facts) {
+    return facts.only_shape == Shape::tetrahedron || facts.only_shape == Shape::triangle;
+}
 
 SweptIndicator cut_deviations(const Hierarchy<float>& hierarchy, std::span<const double> isovalues,
                               const Bounds& bounds, const Spread& spread,

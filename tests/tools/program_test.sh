@@ -55,7 +55,19 @@ for error in 5 20 60 10%; do
     [ "$(value open_edges)" = 0 ] || fail "error $error: an open surface"
     awk -v b="$(value surface_error)" -v t="$(value threshold)" 'BEGIN { exit !(0 < b && b <= t) }' &&
         grep -q '^surface within .* of the isovalue' out || fail "error $error there and back: $(cat out)"
+    triangles=$(value triangles)
+    "$program" isosurface v.vti --value 130 --error $error --collapse --measure >out ||
+        fail "collapses, error $error: $(cat out)"
+    awk -v m="$(value measured_error)" -v b="$(value surface_error)" -v t="$(value threshold)" \
+        'BEGIN { exit !(0 < m && m <= b && b <= t) }' || fail "collapses, error $error: $(cat out)"
+    [ "$(value triangles)" -lt "$triangles" ] && [ "$(value open_edges)" = 0 ] ||
+        fail "collapses, error $error: $(value triangles) triangles in the place of $triangles"
+    grep -q 'lie on their side' out && grep -q '^distances are in' out || fail "collapses: $(cat out)"
 done
+# All data are nowhere away from themselves.
+"$program" isosurface v.vti --value 130 --measure >out || fail "measure: $(cat out)"
+awk -v d="$(value distance)" -v b="$(value distance_back)" -v m="$(value measured_error)" \
+    'BEGIN { exit !(d < 1e-9 && b < 1e-9 && m < 1e-3) }' || fail "measure: $(cat out)"
 "$program" isosurface v.vti --value 130 --threshold 50 --box=-100,100,-100,100,-100,100 >out ||
     fail "box"
 [ "$(value triangles)" = "$finest" ] || fail "box around everything: $(value triangles)"
