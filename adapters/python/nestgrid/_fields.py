@@ -76,7 +76,14 @@ class Field:
         """Forgets what was computed of the values: call it after changing the array."""
         self._source.clear()
 
-    @takes(level=number, cap=flag, at_nodes=flag, cuts=optional(name_of(Cuts)))
+    @takes(
+        level=number,
+        distance=optional(not_negative),
+        collapse=flag,
+        cap=flag,
+        at_nodes=flag,
+        cuts=optional(name_of(Cuts)),
+    )
     def isosurface(
         self,
         level: float,
@@ -87,6 +94,8 @@ class Field:
         blend: float = 1,
         lens: LensLike | None = None,
         error: float | None = None,
+        distance: float | None = None,
+        collapse: bool = False,
         normals: bool = True,
         cap: bool = False,
         at_nodes: bool = False,
@@ -97,6 +106,12 @@ class Field:
         """The surface on which the field has a value. No gap opens where the level changes.
 
         level     the value, in the units of the data
+        error     here of this surface alone: |data - level| on it, and where what is drawn leaves
+                  out a part of the data, is at most this
+        distance  about how far what is drawn may be from the surface of all data, in units of
+                  length: an estimate, and given alone
+        collapse  whether to take edges away while error is kept, which must be given: some times
+                  fewer triangles, some times the time
         cap       whether to close the surface along the boundary of the domain, around what is at
                   least the level
         at_nodes  whether to draw no slivers around nodes at which the field has the value
@@ -108,12 +123,16 @@ class Field:
         Raises InvalidInput where an argument makes no sense, a value is not finite, or even the
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
         """
-        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
+        projection = _surface_projection(
+            threshold, max_triangles, indicator, blend, lens, error, distance
+        )
+        if collapse and (error is None or cap or at_nodes or lens is not None):
+            raise InvalidInput("collapse needs an error, and neither cap, at_nodes nor lens")
         if cuts is None:
             finest = max_triangles is not None and indicator != "deviation"
         else:
             finest = cuts == "finest"
-        options = (normals, cap, elements, at_nodes, finest)
+        options = (normals, cap, elements, at_nodes, finest, collapse)
         return Surface._of(
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
         )
@@ -261,6 +280,30 @@ class Field:
         return _html.table(f"nestgrid.{type(self).__name__}", rows)
 
 
+def _surface_projection(
+    threshold: float | None,
+    max_triangles: int | None,
+    indicator: Indicator,
+    blend: float,
+    lens: LensLike | None,
+    error: float | None,
+    distance: float | None,
+) -> _nestgrid.Projection:
+    """The projection of an isosurface, which has an error and a distance of its own."""
+    asked = {"error": error, "distance": distance}
+    given = {name: value for name, value in asked.items() if value is not None}
+    if not given:
+        return _projection(threshold, max_triangles, indicator, blend, lens, None)
+    if len(given) > 1 or (threshold, max_triangles, indicator) != (None, None, "offset"):
+        name = next(iter(given))
+        raise InvalidInput(f"{name} is given alone: beside it no other says how fine to draw")
+    ((name, value),) = given.items()
+    if not value > 0:
+        raise InvalidInput(f"{name} is not a number > 0: leave it out to draw all detail")
+    compiled = lens._lens if isinstance(lens, Lens) else None
+    return _nestgrid.Projection(value, None, name, blend, compiled)
+
+
 def _projection(
     threshold: float | None,
     max_triangles: int | None,
@@ -269,6 +312,8 @@ def _projection(
     lens: LensLike | None,
     error: float | None,
 ) -> _nestgrid.Projection:
+    if threshold is not None and max_triangles is not None:
+        raise InvalidInput("max_triangles is given alone: it finds the threshold")
     if error is not None:
         if threshold is not None or max_triangles is not None or indicator != "offset":
             raise InvalidInput("error is given alone: it is the threshold of the deviation")

@@ -127,6 +127,8 @@ class Surface:
     @property
     def triangles(self) -> NDArray[np.uint32]: ...
     @property
+    def surface_error(self) -> float: ...
+    @property
     def budget_reason(self) -> str: ...
     @property
     def attributes(self) -> NDArray[np.float64]: ...
@@ -179,6 +181,7 @@ def isosurface(
     elements: bool,
     at_nodes: bool,
     finest_cuts: bool,
+    collapses: bool,
     projection: Projection,
     threads: int,
 ) -> Surface: ...

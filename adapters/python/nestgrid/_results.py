@@ -192,6 +192,16 @@ class Surface(_Result):
         return self._data.normals
 
     @property
+    def surface_error(self) -> float:
+        """What is kept of an error that was asked for, in the units of the data.
+
+        On every triangle |data - level| is at most this. Where nothing was collapsed, no part of
+        the surface of all data differs more from what is drawn. Infinite where nothing is
+        promised: where no error was asked for.
+        """
+        return self._data.surface_error
+
+    @property
     def budget_reason(self) -> str:
         """Why there are less than nine tenths of max_triangles, as a sentence; empty elsewhere."""
         return self._data.budget_reason

@@ -316,11 +316,15 @@ def _placed(
     origin: Numbers | None,
     direction: Numbers | None = None,
 ) -> Place:
-    return (
-        np.ones(dimension) if spacing is None else np.asarray(spacing, float),
-        np.zeros(dimension) if origin is None else np.asarray(origin, float),
-        np.eye(dimension) if direction is None else np.asarray(direction, float),
-    )
+    steps = np.ones(dimension) if spacing is None else np.asarray(spacing, float)
+    start = np.zeros(dimension) if origin is None else np.asarray(origin, float)
+    axes = np.eye(dimension) if direction is None else np.asarray(direction, float)
+    if not (np.isfinite(steps) & (steps > 0)).all():
+        raise InvalidInput(f"spacing has a number that is not finite and > 0: it is {spacing}")
+    for what, numbers in (("origin", start), ("direction", axes)):
+        if not np.isfinite(numbers).all():
+            raise InvalidInput(f"{what} has a number that is not finite")
+    return steps, start, axes
 
 
 def _ordered(array: np.ndarray) -> tuple[np.ndarray, list[int]]:

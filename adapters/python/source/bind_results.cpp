@@ -100,7 +100,7 @@ py::tuple state_of_surface(const py::object& self, const Drawn& d) {
     return py::make_tuple(numbers_of(d), array(0.0, s.vertices), array(0.0, s.normals),
                           array(0.0, s.attributes), array(std::uint32_t{}, s.simplices),
                           array(std::uint32_t{}, s.element_of), array(std::uint32_t{}, s.boundary),
-                          d.budget_reason);
+                          d.budget_reason, d.surface_error);
 }
 std::shared_ptr<Drawn> surface_of_state(const py::tuple& state) {
     auto drawn = std::make_shared<Drawn>();
@@ -115,6 +115,7 @@ std::shared_ptr<Drawn> surface_of_state(const py::tuple& state) {
     s.element_of = values_in<std::uint32_t, std::uint32_t>(state[5]);
     s.boundary = values_in<Surface<3>::Ridge, std::uint32_t>(state[6]);
     drawn->budget_reason = state[7].cast<std::string>();
+    drawn->surface_error = state[8].cast<double>();
     return drawn;
 }
 
@@ -168,6 +169,7 @@ void bind_surface(py::module_& m) {
     py::class_<Drawn, std::shared_ptr<Drawn>> c(m, "Surface");
     bind_numbers(c);
     c.def_readonly("budget_reason", &Drawn::budget_reason);
+    c.def_readonly("surface_error", &Drawn::surface_error);
     c.def_property_readonly("vertices", on<Drawn>([](const py::object& self, const Drawn& d) {
                                 return points_on(self, d.surface.vertices);
                             }))

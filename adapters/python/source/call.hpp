@@ -17,12 +17,33 @@ namespace nestgrid::python {
 /// A hierarchy with values of either type, borrowed.
 using AnyHierarchy = std::variant<const Hierarchy<float>*, const Hierarchy<double>*>;
 
+/// Runs tasks on threads, and throws Stopped between them once the flag is set.
+class StoppableExecutor final : public Executor {
+public:
+    /// \param threads as of ThreadExecutor
+    StoppableExecutor(int threads, const std::atomic<bool>& stopped)
+        : executor_(threads), stopped_{stopped} {}
+
+    std::size_t concurrency() const override { return executor_.concurrency(); }
+    void run(std::size_t count, const std::function<void(std::size_t)>& work,
+             const std::function<void(std::size_t)>& consume) const override {
+        executor_.run(count, work, [&](std::size_t i) {
+            if (stopped_.load(std::memory_order_relaxed)) throw Stopped();
+            consume(i);
+        });
+    }
+
+private:
+    ThreadExecutor executor_;
+    const std::atomic<bool>& stopped_;
+};
+
 /// Invariant: once stop() was called, every algorithm that asks a hierarchy given by with(), or
-/// asks go_on(), throws Stopped. Safe for several threads.
+/// runs tasks of executor(), throws Stopped. Safe for several threads.
 class Call {
 public:
     /// \throw InvalidInput as ThreadExecutor
-    explicit Call(int threads) : executor_(threads) {}
+    explicit Call(int threads) : executor_(threads, stopped_) {}
 
     const Executor& executor() const { return executor_; }
     void stop() { stopped_.store(true, std::memory_order_relaxed); }
@@ -41,8 +62,8 @@ public:
     }
 
 private:
-    ThreadExecutor executor_;
     std::atomic<bool> stopped_{false};
+    StoppableExecutor executor_;
 };
 
 }  // namespace nestgrid::python

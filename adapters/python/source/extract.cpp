@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include <nestgrid/algorithms/blended.hpp>
+#include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
@@ -18,13 +20,16 @@ namespace {
 class Criteria {
 public:
     /// \throw InvalidInput where a number is out of range
-    Criteria(const Source& source, const Projection& projection, const Call& call)
+    /// \param isovalue of an isosurface; nothing for other extractions
+    Criteria(const Source& source, const Projection& projection, const Call& call,
+             std::optional<double> isovalue = std::nullopt)
         : projection_{projection} {
         if (!(projection.blend >= 1) || !std::isfinite(projection.blend)) {
             throw InvalidInput("blend is not a finite number of at least 1");
         }
         if (!(threshold() >= 0)) throw InvalidInput("the threshold is not a number >= 0");
-        chosen_ = source.choose(projection.indicator, projection.blend, call);
+        chosen_ = isovalue ? choose_for(source, *isovalue, call)
+                           : source.choose(projection.indicator, projection.blend, call);
         if (!projection.lens) return;
         if (!(projection.lens->slope >= 0) || !std::isfinite(projection.lens->slope)) {
             throw InvalidInput("the slope of the lens is not a finite number >= 0");
@@ -57,6 +62,31 @@ public:
     }
 
 private:
+    /// The indicator of one isosurface. Between frames the deviations of these serve, without a
+    /// preroll of each moment.
+    ChosenIndicator choose_for(const Source& source, double isovalue, const Call& call) const {
+        const bool distance = projection_.indicator == "distance";
+        if (projection_.indicator != "error" && !distance) {
+            return source.choose(projection_.indicator, projection_.blend, call);
+        }
+        return call.with(source.hierarchy(), [&](const auto& hierarchy) {
+            ChosenIndicator chosen = source.choose("offset", 1, call);
+            const bool between = std::holds_alternative<const KeyFrames*>(chosen.ranged);
+            if (!distance && (between || !cuts_are_errors(hierarchy.facts()))) {
+                return source.choose("deviation", projection_.blend, call);
+            }
+            const auto measure = [&](const auto& function) {
+                return std::make_shared<SweptIndicator>(
+                    function(hierarchy, std::span(&isovalue, 1), *chosen.bounds,
+                             Spread{.factor = projection_.blend}, call.executor()));
+            };
+            chosen.indicator =
+                distance ? measure([](const auto&... a) { return slope_deviations(a...); })
+                         : measure([](const auto&... a) { return cut_deviations(a...); });
+            return chosen;
+        });
+    }
+
     template <class Function, class CriterionAt>
     auto in_lens(const Function& function, const CriterionAt& criterion_at) const {
         if (!projection_.lens) return function(criterion_at);
@@ -85,12 +115,29 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
             .progress = progress_of(call)};
 }
 
+/// Draws with half the threshold, and collapses edges while that is kept.
+template <class Real, class CriterionAt>
+Isosurface<3> draw_collapsed(const Hierarchy<Real>& hierarchy, double isovalue,
+                             const CriterionAt& criterion_at, double error, const Bounds& bounds,
+                             const IsosurfaceOptions& options, const Call& call) {
+    Isosurface<3> drawn = isosurface<3>(hierarchy, isovalue, criterion_at(error / 2), bounds,
+                                        options, call.executor());
+    if (drawn.cancelled) return drawn;
+    const Collapsed done =
+        collapse(drawn.surface, hierarchy, isovalue, bounds, {.error = error}, call.executor());
+    drawn.error_bound = done.exceeding == 0 ? done.error : std::max(done.error, drawn.error_bound);
+    drawn.surface_error =
+        done.exceeding == 0 ? done.error : std::max(done.error, drawn.surface_error);
+    return drawn;
+}
+
 /// \param search of the threshold; its max_triangles is 0 where the threshold was given
 Drawn drawn_of(Isosurface<3> result, const TriangleBudget& search) {
     return {static_cast<const ErrorBounds&>(result),
             std::move(result.surface),
             result.counts,
             search.threshold,
+            result.surface_error,
             search.max_triangles > 0 ? search.reason() : std::string(),
             result.cancelled};
 }
@@ -105,10 +152,15 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
                       const Projection& projection, const Call& call) {
     return call.with(source.hierarchy(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(3);
-        const Criteria criteria(source, projection, call);
+        const Criteria criteria(source, projection, call, isovalue);
         const IsosurfaceOptions options = options_of(request, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
             TriangleBudget search{.threshold = criteria.threshold()};
+            if (request.collapses) {
+                return drawn_of(draw_collapsed(hierarchy, isovalue, criterion_at, search.threshold,
+                                               criteria.bounds(), options, call),
+                                search);
+            }
             if (projection.max_triangles > 0) {
                 search = criteria.with_offsets([&](const auto& offsets) {
                     return find_threshold<3>(hierarchy, isovalue, criterion_at, offsets,
@@ -179,6 +231,7 @@ Drawn draw_height_field(const Source& source, std::optional<double> scale, doubl
                          std::move(result.surface),
                          result.counts,
                          criteria.threshold(),
+                         std::numeric_limits<double>::infinity(),
                          {},
                          result.cancelled};
         });

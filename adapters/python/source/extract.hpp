@@ -32,6 +32,8 @@ struct Projection {
     /// Nothing: 0, or with a lens infinity, so that the lens decides alone.
     std::optional<double> threshold;
     std::uint64_t max_triangles = 0;  ///< 0: no limit
+    /// As Source::choose(); for isosurfaces also "error", a threshold of |data - isovalue| that is
+    /// kept, and "distance", an estimate.
     std::string indicator = "offset";
     double blend = 1;
     std::optional<LensRequest> lens;
@@ -41,6 +43,7 @@ struct Drawn : ErrorBounds {
     Surface<3> surface;
     TraversalCounts counts;
     double threshold = 0;
+    double surface_error = std::numeric_limits<double>::infinity();  ///< as of Isosurface
     std::string budget_reason;  ///< why there are fewer triangles than max_triangles, or empty
     bool cancelled = false;
 };
@@ -57,6 +60,7 @@ struct SurfaceRequest {
     bool elements = false;
     bool at_nodes = false;
     bool finest_cuts = false;
+    bool collapses = false;  ///< needs the indicator "error"
 };
 
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1

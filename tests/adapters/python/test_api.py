@@ -42,10 +42,13 @@ def test_wrong_volumes():
         nestgrid.Volume(np.ma.masked_array(CUBE, CUBE > 2))
     with refused("spacing has 2 numbers, but the array 3 indices"):
         nestgrid.Volume(CUBE, spacing=(1, 1))
-    with refused("flat or not finite"):
-        nestgrid.Volume(CUBE, spacing=(1, 0, 1))
-    with refused("flat or not finite"):
+    for wrong in ((1, 0, 1), (1, -1, 1), (1, np.inf, 1)):
+        with refused("spacing has a number that is not finite and > 0"):
+            nestgrid.Volume(CUBE, spacing=wrong)
+    with refused("origin has a number that is not finite"):
         nestgrid.Volume(CUBE, origin=(1, np.nan, 1))
+    with refused("max_triangles is given alone"):
+        nestgrid.Volume(CUBE).isosurface(0.5, 1, 2)
 
 
 def test_values_that_are_no_numbers():
@@ -223,8 +226,14 @@ def test_an_error_that_is_asked_for_is_kept(gyroid):
         assert surface.report()["open_edges"] == 0
         assert 0 < len(surface.triangles) < before
         before = len(surface.triangles)
-        same = volume.isosurface(0.5, error, indicator="deviation")
-        assert np.array_equal(same.vertices, surface.vertices)
+        assert surface.error_bound <= surface.surface_error <= error
+        everywhere = volume.isosurface(0.5, error, indicator="deviation")
+        assert len(surface.triangles) < len(everywhere.triangles)
+        fewer = volume.isosurface(0.5, error=error, collapse=True)
+        assert fewer.surface_error <= error
+        assert fewer.report()["closed"] == surface.report()["closed"]
+        assert fewer.report()["euler"] == volume.isosurface(0.5, error=error / 2).report()["euler"]
+        assert len(fewer.triangles) < 0.7 * len(surface.triangles)
         plane = ((16, 16, 16), (1, 2, 3))
         assert volume.slice(plane=plane, error=error).error_bound <= error
         exact = volume.slice(plane=plane)
@@ -233,10 +242,31 @@ def test_an_error_that_is_asked_for_is_kept(gyroid):
     budget = volume.isosurface(0.5, max_triangles=5000, indicator="deviation")
     assert budget.error_bound <= budget.threshold
     for others in ({"threshold": 1}, {"max_triangles": 9}, {"indicator": "visual"}):
-        with refused("error is given alone"):
-            volume.isosurface(0.5, error=0.1, **others)
-    with refused("error"):
-        volume.isosurface(0.5, error=-1)
+        for asked in ("error", "distance"):
+            with refused(f"{asked} is given alone"):
+                volume.isosurface(0.5, **{asked: 0.1}, **others)
+    for wrong in (-1, 0, np.nan):
+        for asked in ("error", "distance"):
+            with refused(asked):
+                volume.isosurface(0.5, **{asked: wrong})
+    with refused("error is given alone"):
+        volume.isosurface(0.5, error=0.1, distance=0.1)
+    for wrong in ({}, {"error": 0.1, "cap": True}, {"error": 0.1, "at_nodes": True}):
+        with refused("collapse needs an error"):
+            volume.isosurface(0.5, collapse=True, **wrong)
+
+
+def test_a_distance_that_is_asked_for_is_kept_about():
+    x, y, z = np.mgrid[-1:1:33j, -1:1:33j, -1:1:33j]
+    radius = np.sqrt(x * x + y * y + z * z).astype("float32")
+    volume = nestgrid.Volume(radius, spacing=(1 / 16,) * 3, origin=(-1, -1, -1))
+    before = len(volume.isosurface(0.6).triangles)
+    for distance in (0.01, 0.03, 0.1):
+        surface = volume.isosurface(0.6, distance=distance)
+        off = np.abs(np.linalg.norm(surface.vertices, axis=1) - 0.6).max()
+        assert off < 1.5 * distance
+        assert len(surface.triangles) < before
+        before = len(surface.triangles)
 
 
 def test_two_threads_at_once(gyroid):

@@ -62,6 +62,14 @@ def check_image_data():
     filter.Indicator = "visual"
     filter.Threshold = 0.2
     same(fetch(filter), volume.isosurface(157, 0.2, indicator="visual"))
+    filter.Error = 20
+    same(fetch(filter), volume.isosurface(157, error=20))
+    filter.Collapse = 1
+    same(fetch(filter), volume.isosurface(157, error=20, collapse=True))
+    filter.Error = 0
+    filter.Distance = 0.5
+    same(fetch(filter), volume.isosurface(157, distance=0.5))
+    filter.Distance = 0
     filter.Cap = 1
     assert open_edges(fetch(filter)) == 0
     slice = pv.NestgridSlice(Input=wavelet)
@@ -71,6 +79,8 @@ def check_image_data():
     same(data, expected)
     values = vtk_to_numpy(data.GetPointData().GetArray("RTData"))
     np.testing.assert_array_equal(values, expected.attributes[:, 0])
+    slice.Error = 2
+    same(fetch(slice), volume.slice(plane=((1, 0, 0), (1, 1, 0)), error=2))
 
 
 def check_hyper_tree_grid():

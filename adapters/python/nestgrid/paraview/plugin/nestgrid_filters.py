@@ -71,11 +71,35 @@ THRESHOLD = """
   everything.</Documentation>
 </DoubleVectorProperty>
 """
+ERROR = """
+<DoubleVectorProperty name="Error" command="SetError" number_of_elements="1" default_values="0">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>Data and drawing differ by no more, in the units of the data; 0 asks for
+  nothing. Goes before the threshold.</Documentation>
+</DoubleVectorProperty>
+"""
+DISTANCE = """
+<DoubleVectorProperty name="Distance" command="SetDistance" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>About how far the drawing may be from the surface of all data, in units of
+  length: an estimate; 0 asks for nothing. Goes before the threshold.</Documentation>
+</DoubleVectorProperty>
+"""
+COLLAPSE = """
+<IntVectorProperty name="Collapse" command="SetCollapse" number_of_elements="1"
+    default_values="0">
+  <BooleanDomain name="bool"/>
+  <Documentation>Take edges away while the error is kept: fewer triangles, in more
+  time. Without an error, and with a cap, nothing is taken away.</Documentation>
+</IntVectorProperty>
+"""
 MAX_TRIANGLES = """
 <IntVectorProperty name="MaxTriangles" command="SetMaxTriangles" number_of_elements="1"
     default_values="0">
   <IntRangeDomain name="range" min="0"/>
-  <Documentation>Finds the least threshold with no more triangles; 0 is no limit.</Documentation>
+  <Documentation>Finds the least threshold with no more triangles; 0 is no limit. Goes before the
+  threshold.</Documentation>
 </IntVectorProperty>
 """
 INDICATOR = f"""
@@ -127,7 +151,10 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def __init__(self, inputs):
         super().__init__(nInputPorts=inputs, nOutputPorts=1, outputType="vtkPolyData")
-        self._options = {"threshold": 0.0, "max_triangles": None, "indicator": "offset"}
+        # How fine to draw: the first of these that is not 0, else the threshold.
+        self._fineness = {"error": 0.0, "distance": 0.0, "max_triangles": 0, "threshold": 0.0}
+        self._indicator = {"indicator": "offset"}
+        self._collapse = {"collapse": False}
         self._isovalue = 0.0
         self._plane = {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)}
         self._surface_options = {"normals": True, "cap": False}
@@ -138,13 +165,22 @@ class Drawing(VTKPythonAlgorithmBase):
             self.Modified()
 
     def SetThreshold(self, value):
-        self._set(self._options, "threshold", value)
+        self._set(self._fineness, "threshold", value)
+
+    def SetError(self, value):
+        self._set(self._fineness, "error", value)
+
+    def SetDistance(self, value):
+        self._set(self._fineness, "distance", value)
+
+    def SetCollapse(self, value):
+        self._set(self._collapse, "collapse", bool(value))
 
     def SetMaxTriangles(self, value):
-        self._set(self._options, "max_triangles", value or None)
+        self._set(self._fineness, "max_triangles", value)
 
     def SetIndicator(self, number):
-        self._set(self._options, "indicator", INDICATORS[number])
+        self._set(self._indicator, "indicator", INDICATORS[number])
 
     def SetIsovalue(self, value):
         if value != self._isovalue:
@@ -163,12 +199,22 @@ class Drawing(VTKPythonAlgorithmBase):
     def SetNormal(self, x, y, z):
         self._set(self._plane, "normal", (x, y, z))
 
+    def fineness(self):
+        """What says how fine to draw, as arguments of a field."""
+        asked = [name for name, value in self._fineness.items() if value > 0]
+        name = asked[0] if asked else "threshold"
+        kind = self._indicator if name in ("threshold", "max_triangles") else {}
+        return {name: self._fineness[name], **kind}
+
     def isosurface(self, field):
-        return field.isosurface(self._isovalue, **self._options, **self._surface_options)
+        options = {**self.fineness(), **self._surface_options}
+        if "error" in options and not options["cap"]:
+            options.update(self._collapse)
+        return field.isosurface(self._isovalue, **options)
 
     def slice(self, field):
         plane = (self._plane["origin"], self._plane["normal"])
-        return field.slice(plane=plane, **self._options)
+        return field.slice(plane=plane, **self.fineness())
 
     def draw(self, outInfo, field_of_data, drawing, name):
         """Draws into the output. What the library refuses is empty, with a message in the log."""
@@ -225,14 +271,17 @@ class Filter(Drawing):
 
 
 @smproxy.filter(name="NestgridIsosurface", label="Nestgrid Isosurface")
-@properties(INPUT, ARRAY, ISOVALUE, THRESHOLD, MAX_TRIANGLES, INDICATOR, NORMALS, CAP)
+@properties(
+    INPUT, ARRAY, ISOVALUE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE, INDICATOR,
+    NORMALS, CAP,
+)
 class NestgridIsosurface(Filter):
     def RequestData(self, request, inInfo, outInfo):
         return self.request(inInfo, outInfo, self.isosurface)
 
 
 @smproxy.filter(name="NestgridSlice", label="Nestgrid Slice")
-@properties(INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, THRESHOLD, MAX_TRIANGLES)
+@properties(INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, THRESHOLD, MAX_TRIANGLES, ERROR)
 class NestgridSlice(Filter):
     def RequestData(self, request, inInfo, outInfo):
         return self.request(inInfo, outInfo, self.slice)
@@ -276,7 +325,7 @@ FREE_ISOVALUE = """
 )
 @properties(
     FILE_NAMES, FIELD_NAME, DRAW, FREE_ISOVALUE, FREE_PLANE, NORMAL, THRESHOLD, MAX_TRIANGLES,
-    INDICATOR, NORMALS, CAP,
+    ERROR, COLLAPSE, DISTANCE, INDICATOR, NORMALS, CAP,
 )
 class NestgridReader(Drawing):
     """Draws hierarchies from files; their elements are no data of VTK."""
