@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Iterable, Sequence, Union
+from typing import Any, Iterable, Literal, Sequence, Union
 
 import numpy as np
 
@@ -290,15 +290,14 @@ def _surface_projection(
     distance: float | None,
 ) -> _nestgrid.Projection:
     """The projection of an isosurface, which has an error and a distance of its own."""
-    asked = {"error": error, "distance": distance}
-    given = {name: value for name, value in asked.items() if value is not None}
-    if not given:
+    if error is None and distance is None:
         return _projection(threshold, max_triangles, indicator, blend, lens, None)
-    if len(given) > 1 or (threshold, max_triangles, indicator) != (None, None, "offset"):
-        name = next(iter(given))
+    name: Literal["error", "distance"] = "distance" if error is None else "error"
+    value = distance if error is None else error
+    alone = (threshold, max_triangles, indicator) == (None, None, "offset")
+    if not alone or (error is not None and distance is not None):
         raise InvalidInput(f"{name} is given alone: beside it no other says how fine to draw")
-    ((name, value),) = given.items()
-    if not value > 0:
+    if value is None or not value > 0:
         raise InvalidInput(f"{name} is not a number > 0: leave it out to draw all detail")
     compiled = lens._lens if isinstance(lens, Lens) else None
     return _nestgrid.Projection(value, None, name, blend, compiled)

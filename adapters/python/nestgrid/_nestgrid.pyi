@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
+_OfSurface = Literal["error", "distance"]
 
 class InvalidInput(ValueError):
     """An argument that cannot be worked with; the sentence says which, and why."""
@@ -93,7 +94,7 @@ class Projection:
         self,
         threshold: float | None,
         max_triangles: int | None,
-        indicator: _Indicator,
+        indicator: _Indicator | _OfSurface,
         blend: float,
         lens: Lens | None,
     ) -> None: ...

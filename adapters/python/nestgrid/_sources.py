@@ -319,8 +319,9 @@ def _placed(
     steps = np.ones(dimension) if spacing is None else np.asarray(spacing, float)
     start = np.zeros(dimension) if origin is None else np.asarray(origin, float)
     axes = np.eye(dimension) if direction is None else np.asarray(direction, float)
-    if not (np.isfinite(steps) & (steps > 0)).all():
-        raise InvalidInput(f"spacing has a number that is not finite and > 0: it is {spacing}")
+    wrong = steps[~(np.isfinite(steps) & (steps > 0))]
+    if wrong.size:
+        raise InvalidInput(f"spacing has a number that is not finite and > 0: {wrong[0]:g}")
     for what, numbers in (("origin", start), ("direction", axes)):
         if not np.isfinite(numbers).all():
             raise InvalidInput(f"{what} has a number that is not finite")
