@@ -80,14 +80,14 @@ void write_part(FrameReply& reply, const Part& part, const FrameRequest& request
 /// The field at the time of a request.
 struct Explorer::Moment {
     SharedHierarchy hierarchy;
-    std::size_t frame = 0;             ///< where it is that of a frame
-    std::optional<KeyFrames> between;  ///< where it is not
-    std::vector<float> weights;        ///< of the frames
-    const HierarchicalIndicator* offsets = nullptr;
+    std::size_t frame = 0;                         ///< where it is that of a frame
+    std::optional<KeyFrames> between;              ///< where it is not
+    std::vector<float> weights;                    ///< of the frames
+    const HierarchicalIndicator* alone = nullptr;  ///< of offsets or deviations, at a frame
 
     const Bounds& bounds() const {
         if (between) return *between;
-        return *offsets;
+        return *alone;
     }
 };
 
@@ -130,7 +130,9 @@ public:
             if (!request_.isovalue) return;
             const bool normals = request_.normals != NormalType::none;
             options.normals = normals && !request_.moving;
-            options.cuts = Cuts::finest;
+            // Linear cuts keep a deviation.
+            const bool keeps = request_.indicator == IndicatorName::deviation;
+            options.cuts = keeps ? Cuts::linear : Cuts::finest;
             parts.push_back({"isosurface", isosurface<3>(hierarchy, *request_.isovalue, criterion,
                                                          moment_.bounds(), options, executor_)});
             if (parts.back().drawn.cancelled) throw FrameAbandoned{};
@@ -262,7 +264,27 @@ std::string Explorer::info() const {
     return text.close('}').text();
 }
 
-Explorer::Moment Explorer::moment_at(const FrameRequest& request) const {
+const HierarchicalIndicator& Explorer::of_nodes(IndicatorName name, std::size_t frame,
+                                                WatchedSteps& steps) {
+    if (name != IndicatorName::deviation) return offsets_[frame];
+    deviations_.resize(offsets_.size());
+    std::optional<HierarchicalIndicator>& deviations = deviations_[frame];
+    if (deviations) return *deviations;
+    steps.begin("Measuring errors");
+    steps.check();
+    const TellingExecutor executor(*executor_, [&steps](double share) { steps.check(share); });
+    deviations.emplace(std::visit(
+        [&](const auto& hierarchy) {
+            if (executor.concurrency() > 1) {
+                return HierarchicalIndicator(*hierarchy, NodeError::deviation, executor);
+            }
+            return HierarchicalIndicator(WatchedHierarchy(*hierarchy, steps), NodeError::deviation);
+        },
+        field_.frames[frame]));
+    return *deviations;
+}
+
+Explorer::Moment Explorer::moment_at(const FrameRequest& request, WatchedSteps& steps) {
     std::vector<float> weights{1};
     if (request.time && field_.frames.size() == 1 && *request.time != field_.times.front()) {
         throw InvalidInput("there is one frame, and the time asked for is not its time");
@@ -271,19 +293,26 @@ Explorer::Moment Explorer::moment_at(const FrameRequest& request) const {
         weights = linear_weights(field_.times, request.time.value_or(field_.times.front()));
     }
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (weights[i] == 1) return {field_.frames[i], i, {}, std::move(weights), &offsets_[i]};
+        if (weights[i] != 1) continue;
+        const HierarchicalIndicator& alone = of_nodes(request.indicator, i, steps);
+        return {field_.frames[i], i, {}, std::move(weights), &alone};
     }
     std::vector<const HierarchicalIndicator*> frames;
-    for (const HierarchicalIndicator& frame : offsets_) frames.push_back(&frame);
-    KeyFrames between(std::move(frames), weights);
+    std::vector<float> of_frames;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        if (weights[i] == 0) continue;
+        frames.push_back(&of_nodes(request.indicator, i, steps));
+        of_frames.push_back(weights[i]);
+    }
+    KeyFrames between(std::move(frames), of_frames);
     return {field_.between(weights), 0, std::move(between), std::move(weights), nullptr};
 }
 
 const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name,
                                         WatchedSteps& steps) {
-    if (name == IndicatorName::offset) {
+    if (name == IndicatorName::offset || name == IndicatorName::deviation) {
         if (moment.between) return *moment.between;
-        return *moment.offsets;
+        return *moment.alone;
     }
     if (!moment.between) return swept_of(name, moment.frame, steps);
     if (name == IndicatorName::visual) {
@@ -400,7 +429,7 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
     const FrameRequest request = parse_request(text);
     const auto start = Clock::now();
     WatchedSteps steps(watch);
-    const Moment moment = moment_at(request);
+    const Moment moment = moment_at(request, steps);
     const Indicator& indicator = indicator_at(moment, request.indicator, steps);
     const SweptIndicator* const size =
         request.lens ? &size_for(moment, request.lens->slope, steps) : nullptr;

@@ -69,7 +69,9 @@ private:
     struct Drawn;
     class Drawing;
 
-    Moment moment_at(const FrameRequest& request) const;
+    Moment moment_at(const FrameRequest& request, WatchedSteps& steps);
+    const HierarchicalIndicator& of_nodes(IndicatorName name, std::size_t frame,
+                                          WatchedSteps& steps);
     const Indicator& indicator_at(const Moment& moment, IndicatorName name, WatchedSteps& steps);
     const SweptIndicator& swept_of(IndicatorName name, std::size_t frame, WatchedSteps& steps);
     const SweptIndicator& size_for(const Moment& moment, double slope, WatchedSteps& steps);
@@ -80,7 +82,9 @@ private:
     ExploredField field_;
     const Executor* executor_;
     std::vector<HierarchicalIndicator> offsets_;  // of the frames
-    double least_ = 0;                            // of all frames
+    /// Of the frames that have needed them.
+    std::vector<std::optional<HierarchicalIndicator>> deviations_;
+    double least_ = 0;  // of all frames
     double greatest_ = 0;
     std::array<double, 2> usual_range_{};  // of the values, or of nearly all
     double preroll_seconds_ = 0;

@@ -92,8 +92,9 @@ FrameRequest parse_request(std::string_view text) {
         request.moving = choice_of<bool, 2>(key, value, {{{"moving", true}, {"settled", false}}});
     });
     entries.take("indicator", [&](auto key, auto value) {
-        request.indicator = choice_of<IndicatorName, 4>(key, value,
+        request.indicator = choice_of<IndicatorName, 5>(key, value,
                                                         {{{"offset", IndicatorName::offset},
+                                                          {"deviation", IndicatorName::deviation},
                                                           {"visual", IndicatorName::visual},
                                                           {"numerical", IndicatorName::numerical},
                                                           {"wavelet", IndicatorName::wavelet}}});

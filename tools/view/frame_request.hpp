@@ -15,7 +15,7 @@
 
 namespace nestgrid::view {
 
-enum class IndicatorName { offset, visual, numerical, wavelet };
+enum class IndicatorName { offset, deviation, visual, numerical, wavelet };
 enum class NormalType { none, int8, float32 };
 
 struct PlaneRequest {

@@ -234,6 +234,23 @@ TEST(Lenses, DrawTheFinestSurfaceInTheirBallAndNotElsewhere) {
     EXPECT_LT(with.number("triangles"), finest.number("triangles") / 2);
 }
 
+TYPED_TEST(Explored, FramesKeepErrors) {
+    for_each_field_at_sphere<TypeParam>(2, 6, [](const auto& grid, const NodalSamples& samples) {
+        using Grid = std::decay_t<decltype(grid)>;
+        const NodeField<Grid, double> field(grid, samples.values);
+        const HierarchicalIndicator deviations(grid, field, NodeError::deviation);
+        const SequentialExecutor executor;
+        Explorer explorer(borrowed_field(grid, samples.values), executor);
+        const double error = 0.1 * (deviations.greatest() - deviations.least());
+        const auto surface = isosurface(grid, field, 0.0, deviations, {.threshold = error});
+        const std::string what = "isovalue=0&threshold=" + text_of(error) + "&indicator=";
+        const Frame frame = frame_of(explorer, what + "deviation");
+        expect_part(frame, "isosurface", surface.surface);
+        EXPECT_EQ(frame.number("error_bound", "isosurface"), surface.error_bound);
+        EXPECT_TRUE(frame_of(explorer, what + "offset").has("isosurface"));
+    });
+}
+
 TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
     const auto first = field_named("sphere", 33).values;
     const auto second = field_named("gyroid", 33).values;

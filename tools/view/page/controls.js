@@ -136,7 +136,8 @@ export class Controls {
       return `folds up to ${readable(degrees)}°`;
     }
     const percent = (100 * state.threshold) / (info.greatest - info.least);
-    return `${readable(state.threshold)} (${Number(percent.toPrecision(2))} % of the range)`;
+    const text = `${readable(state.threshold)} (${Number(percent.toPrecision(2))} % of the range)`;
+    return state.indicator === 'deviation' ? `error at most ${text}` : text;
   }
 
   get #valueScale() {

@@ -33,7 +33,7 @@ export function defaultState(info) {
 
 const choices = {
   detail: ['triangles', 'threshold'],
-  indicator: ['offset', 'visual', 'numerical', 'wavelet'],
+  indicator: ['offset', 'deviation', 'visual', 'numerical', 'wavelet'],
   slice: ['none', 'x', 'y', 'z', 'view'],
   lens: ['off', 'cursor', 'click'],
   projection: ['perspective', 'parallel'],
