@@ -22,6 +22,7 @@ struct Measured {
     double rms = 0;
 };
 
+/// Of an isosurface, beside that of all data.
 struct MeasuredError {
     Measured value;     ///< |U - C| on what is drawn, in the units of the data
     Measured distance;  ///< from what is drawn to the surface of all data, in units of length
