@@ -4,7 +4,7 @@
 // Points that stand for the area of a surface.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include <nestgrid/algorithms/surface.hpp>

@@ -145,8 +145,8 @@ private:
     };
     using Normal = std::array<float, 3>;
 
-    /// What is kept of the normal where the data have a gradient, so that it has the same bits
-    /// however the surface is drawn; 0 where the gradient is 0.
+    /// A gradient as a normal of unit length, rounded to floats; 0 where the gradient is 0. All ways
+    /// to draw round normals by this, so that they have the same bits.
     NESTGRID_INLINE static Normal short_normal(const Point& gradient) {
         const double length = norm(gradient);
         const double scale = length > 0 ? -1 / length : 0;

@@ -82,7 +82,7 @@ private:
     ExploredField field_;
     const Executor* executor_;
     std::vector<HierarchicalIndicator> offsets_;  // of the frames
-    /// Of the frames that have needed them.
+    /// Deviations by frame, measured when a request first needs those of the frame.
     std::vector<std::optional<HierarchicalIndicator>> deviations_;
     double least_ = 0;  // of all frames
     double greatest_ = 0;

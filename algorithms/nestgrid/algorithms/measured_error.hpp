@@ -22,7 +22,7 @@ struct Measured {
     double rms = 0;
 };
 
-/// Of an isosurface, beside that of all data.
+/// How far an isosurface was found to be from the data and from the isosurface of all data.
 struct MeasuredError {
     Measured value;     ///< |U - C| on what is drawn, in the units of the data
     Measured distance;  ///< from what is drawn to the surface of all data, in units of length
@@ -36,9 +36,7 @@ struct MeasuredError {
 /// \param whole the isosurface of all data: isosurface() without a criterion
 /// \param isovalue C
 /// \param points about how many, on each surface; each has those at its triangles at least
-/// \throw InvalidInput where the isovalue is not finite, `points` is 0, or the hierarchy has
-/// another
-///        dimension
+/// \throw InvalidInput where the isovalue is not finite, `points` is 0, or the dimension is not 3
 template <class Real>
 MeasuredError measure_error(const Surface<3>& drawn, const Surface<3>& whole,
                             const Hierarchy<Real>& hierarchy, double isovalue,
