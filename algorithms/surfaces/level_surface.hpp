@@ -145,8 +145,8 @@ private:
     };
     using Normal = std::array<float, 3>;
 
-    /// A gradient as a normal of unit length, rounded to floats; 0 where the gradient is 0. All ways
-    /// to draw round normals by this, so that they have the same bits.
+    /// A gradient as a normal of unit length, rounded to floats; 0 where the gradient is 0. All
+    /// ways to draw round normals by this, so that they have the same bits.
     NESTGRID_INLINE static Normal short_normal(const Point& gradient) {
         const double length = norm(gradient);
         const double scale = length > 0 ? -1 / length : 0;
