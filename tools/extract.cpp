@@ -44,11 +44,7 @@ void collapse_one(nestgrid::Surface<3>& surface, const nestgrid::Hierarchy<Real>
                                                         bounds, {.error = e.threshold}, executor);
     e.collapse_seconds = now() - start;
     e.collapsed = done;
-    // Triangles that do not keep the error have the bound of what was drawn.
-    if (done.exceeding == 0 || done.error > e.bounds.error_bound) {
-        e.bounds.error_bound = done.error;
-    }
-    e.surface_error = done.exceeding == 0 ? done.error : std::max(done.error, e.surface_error);
+    done.hand_to(e.bounds, e.surface_error);
 }
 
 /// Measures a surface against that of all data.

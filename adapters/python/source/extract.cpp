@@ -125,9 +125,7 @@ Isosurface<3> draw_collapsed(const Hierarchy<Real>& hierarchy, double isovalue,
     if (drawn.cancelled) return drawn;
     const Collapsed done =
         collapse(drawn.surface, hierarchy, isovalue, bounds, {.error = error}, call.executor());
-    drawn.error_bound = done.exceeding == 0 ? done.error : std::max(done.error, drawn.error_bound);
-    drawn.surface_error =
-        done.exceeding == 0 ? done.error : std::max(done.error, drawn.surface_error);
+    done.hand_to(drawn, drawn.surface_error);
     return drawn;
 }
 

@@ -15,8 +15,11 @@
 // The result depends neither on the order nor on the number of threads.
 #pragma once
 
+#include <algorithm>
+
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
 #include <nestgrid/algorithms/surface.hpp>
 
 namespace nestgrid {
@@ -40,6 +43,13 @@ struct Collapsed {
     std::size_t refused_by_field = 0;     ///< |U - C| would exceed e
     std::size_t refused_by_sides = 0;     ///< a part where |U - C| > e would change its side
     std::size_t refused_by_crossing = 0;  ///< triangles would cross
+
+    /// Makes the bounds of what was drawn those of what is left of it. Triangles that do not keep e
+    /// have the bounds that they had.
+    void hand_to(ErrorBounds& bounds, double& surface_error) const {
+        bounds.error_bound = exceeding == 0 ? error : std::max(error, bounds.error_bound);
+        surface_error = exceeding == 0 ? error : std::max(error, surface_error);
+    }
 };
 
 /// Collapses edges of a surface that isosurface() has drawn, without a cap. Best begun with one of
