@@ -84,7 +84,7 @@ try {
   } else {
     await opened.go();
   }
-  await told('^[\\d,]+ triangles, error at most: ');
+  await told('[\\d,]+ triangles, error at most: ');
   const stops = await tabThrough();
   check(stops.length > 20, `${stops.length} controls`);
   for (const { name, reached, ring, width, height } of stops) {
@@ -186,7 +186,7 @@ try {
   await slide('lens-radius', /^radius [\d.]+/);
   await page.evaluate(() => document.activeElement.blur());
   await slide('isovalue', /^[\d.e-]+/);
-  await told('^[\\d,]+ triangles, error at most: ');
+  await told('[\\d,]+ triangles, error at most: ');
   await tabTo('slice');
   await press('ArrowDown');
   await asked('axis=x');

@@ -201,7 +201,9 @@ export class ExploredPage {
   }
 
   #showNumbers(frame, bound, { motion }) {
-    if (motion === 'settled') tell(`${readableCount(frame.triangles)} triangles, error at most: ${bound}`);
+    if (motion === 'settled') {
+      tell('frame', `${readableCount(frame.triangles)} triangles, error at most: ${bound}`);
+    }
     const why = motion === 'settled' ? whyNot(this.#seen, frame) : '';
     byId('triangles-why').textContent = why;
     byId('triangles-why').hidden = why === '';

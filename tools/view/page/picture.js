@@ -117,7 +117,7 @@ export class Picture {
 
   #aimAt(x, y) {
     const hit = this.#lookAt(x, y);
-    tell(byId('cursor').textContent.replace('\n', ', ') || 'Nothing is at the aim');
+    tell('aim', byId('cursor').textContent.replace('\n', ', ') || 'Nothing is at the aim');
     return hit;
   }
 

@@ -80,7 +80,7 @@ export class PushedPage {
     if (document.body.dataset.connection === connection) return;
     byId('subtitle').textContent = sentences[connection];
     document.body.dataset.connection = connection;
-    tell(sentences[connection]);
+    tell('connection', sentences[connection]);
     setWhy('outlines-section',
       connection === 'running' ? '' : 'Outlines come from the solver while it runs.');
   }

@@ -6,6 +6,7 @@
 const byId = (id) => document.getElementById(id);
 const rest = 500;
 let waiting = null;
+const untold = new Map();
 
 /** Shows a sentence, or none. */
 export function showMessage(text) {
@@ -30,10 +31,18 @@ export function showConnection(text, parts = []) {
   byId('connection').hidden = text === '';
 }
 
-/** Has a screen reader say a text when nothing else has come for half a second. */
-export function tell(text) {
+/**
+ * Has a screen reader say a text when nothing else has come for half a second; of each topic the
+ * newest text, so that a picture that ends does not silence what the reader has just asked.
+ */
+export function tell(topic, text) {
+  untold.delete(topic);
+  untold.set(topic, text);
   clearTimeout(waiting);
-  waiting = setTimeout(() => { byId('status').textContent = text; }, rest);
+  waiting = setTimeout(() => {
+    byId('status').textContent = [...untold.values()].join('. ');
+    untold.clear();
+  }, rest);
 }
 
 /** Shows the numbers of a picture. rows: [id, name, text, what it means] */

@@ -105,7 +105,7 @@ export class ViewControls {
 
   #lookFrom(side) {
     this.#stage.view.lookFrom(sides[side]);
-    tell(`The picture from the side of ${side.replace('-', 'minus ')}`);
+    tell('camera', `The picture from the side of ${side.replace('-', 'minus ')}`);
     this.#moved();
   }
 
@@ -116,7 +116,7 @@ export class ViewControls {
 
   #reset() {
     this.#stage.look(null);
-    tell('The picture shows all');
+    tell('camera', 'The picture shows all');
     this.#does.reset();
   }
 
