@@ -94,3 +94,12 @@ std::string usage_error(const CLI::ParseError& error, const CLI::App& program) {
                        dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
     return value ? wrong_value(error, command) : error.what();
 }
+
+void refuse_empty_lists(const CLI::App& program) {
+    for (const CLI::Option* option : given_command(program).get_options()) {
+        if (option->get_delimiter() == '\0') continue;
+        for (const std::string& item : option->results()) {
+            if (item.empty()) throw CLI::ConversionError("", option->get_name());
+        }
+    }
+}

@@ -206,6 +206,7 @@ done
 [ "$(result isolines $raw --on-surface 130 --by x --count 3)" != "$(result isolines $raw --on-surface 140 --by x --count 3)" ] || fail "isolines --on-surface"
 for name in count values on-surface by; do echo "isolines --$name" >>covered; done
 refused 1 'either --values or --count' isolines $raw --axis z --at 9 --values 3 --count 3
+refused 2 "values takes V,V,..., but nothing follows it" isolines $raw --axis z --at 9 --values ""
 echo "isosurface --value" >>covered
 
 # The plane.
