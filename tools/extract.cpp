@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include <nestgrid/adapters/vtk_surface.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/error.hpp>
 
@@ -19,7 +20,9 @@ std::string millions(std::uint64_t count) {
 
 /// \param counting whether elements are told, where no share of the work is known
 nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool counting) {
-    const bool finest = !request.budgets.empty() && request.projection.indicator != "deviation";
+    const std::string& indicator = request.projection.indicator;
+    const bool finest =
+        indicator == "slope" || (!request.budgets.empty() && indicator != "deviation");
     nestgrid::IsosurfaceOptions options{
         .cuts = request.cuts.value_or(finest ? nestgrid::Cuts::finest : nestgrid::Cuts::linear),
         .normals = request.normals,
@@ -49,30 +52,46 @@ void collapse_one(nestgrid::Surface<3>& surface, const nestgrid::Hierarchy<Real>
 
 /// Measures a surface against that of all data.
 template <class Real>
-void measure_one(const nestgrid::Surface<3>& surface, const nestgrid::Hierarchy<Real>& hierarchy,
-                 const nestgrid::Executor& executor, const ExtractionRequest& request,
-                 Extraction& e) {
+void measure_one(const nestgrid::Surface<3>& surface, const nestgrid::Surface<3>& whole,
+                 const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Executor& executor,
+                 const ExtractionRequest& request, Extraction& e) {
     constexpr std::size_t points = 200000;
     if (request.progress) request.progress("measuring");
     const double start = now();
-    const auto whole = nestgrid::isosurface<3>(hierarchy, request.isovalue, {}, executor);
-    e.measured = nestgrid::measure_error(surface, whole.surface, hierarchy, request.isovalue,
-                                         points, executor);
+    e.measured =
+        nestgrid::measure_error(surface, whole, hierarchy, request.isovalue, points, executor);
     e.measure_seconds = now() - start;
 }
 
 /// Draws one surface.
 /// \param e takes what the surface costs and, where it is kept, the surface
-template <int dimension, class Real>
-void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Criterion& criterion,
+template <int dimension, class Real, class S>
+void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const S& criterion,
                  const nestgrid::Bounds& bounds, const nestgrid::Executor& executor,
                  const ExtractionRequest& request, Extraction& e) {
-    const bool has_one_thread = executor.concurrency() == 1;
+    const nestgrid::IsosurfaceOptions options = options_of(request, executor.concurrency() == 1);
+    const auto draw = [&](const nestgrid::Criterion& by, const nestgrid::IsosurfaceOptions& how) {
+        return nestgrid::isosurface<dimension>(hierarchy, request.isovalue, by, bounds, how,
+                                               executor);
+    };
+    nestgrid::Surface<dimension> whole;
+    if (request.measures || request.keeps_distances) {
+        whole = draw(nestgrid::Exact{}, {.elements = false, .at_nodes = request.at_nodes}).surface;
+    }
     const std::size_t before = memory::current();
     memory::reset_peak();
     const double start = now();
-    auto result = nestgrid::isosurface<dimension>(hierarchy, request.isovalue, criterion, bounds,
-                                                  options_of(request, has_one_thread), executor);
+    nestgrid::Isosurface<dimension> result;
+    if constexpr (dimension == 3) {
+        if (request.keeps_distances) {
+            nestgrid::IsosurfaceWithin within =
+                nestgrid::isosurface_within(hierarchy, request.isovalue, {whole, e.threshold},
+                                            criterion, bounds, options, executor);
+            e.far_points = within.points;
+            result = std::move(within.isosurface);
+        }
+    }
+    if (!request.keeps_distances) result = draw(criterion, options);
     e.seconds = now() - start;
     const std::size_t peak = memory::peak() - before;
     e.peak_bytes = peak - std::min(peak, result.surface.memory_bytes());
@@ -84,7 +103,7 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Cri
         if (request.collapses) {
             collapse_one(result.surface, hierarchy, bounds, executor, request, e);
         }
-        if (request.measures) measure_one(result.surface, hierarchy, executor, request, e);
+        if (request.measures) measure_one(result.surface, whole, hierarchy, executor, request, e);
         e.report = nestgrid::surface_report(result.surface);
     } else {
         e.report.vertices = result.surface.vertices.size();

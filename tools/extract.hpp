@@ -43,6 +43,8 @@ struct ExtractionRequest {
     /// Whether edges are collapsed while the error keeps within the thresholds. What is drawn first
     /// has half the error.
     bool collapses = false;
+    /// Whether thresholds are distances that are kept there and back.
+    bool keeps_distances = false;
     bool measures = false;       ///< against the surface of all data
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
@@ -65,7 +67,8 @@ struct Extraction {
     vtkSmartPointer<vtkPolyData> surface;  ///< where it is kept
     nestgrid::TraversalCounts counts;
     nestgrid::ErrorBounds bounds;
-    double surface_error = 0;  ///< Isosurface::surface_error
+    double surface_error = 0;                 ///< Isosurface::surface_error
+    std::optional<std::uint64_t> far_points;  ///< drawn more finely, where distances are kept
     std::optional<nestgrid::Collapsed> collapsed;
     double collapse_seconds = 0;
     std::optional<nestgrid::MeasuredError> measured;

@@ -30,6 +30,7 @@ struct IsosurfaceArguments {
     bool flat = false;
     bool at_nodes = false;
     bool collapses = false;
+    bool keeps_distances = false;
     bool measures = false;
     std::string cuts;
     bool against_vtk = false;
@@ -54,6 +55,7 @@ ExtractionRequest request_of(const IsosurfaceArguments& o) {
     ExtractionRequest request{
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     request.collapses = o.collapses;
+    request.keeps_distances = o.keeps_distances;
     request.measures = o.measures;
     const SurfaceOptions& s = o.surface;
     if (!o.cuts.empty()) {
@@ -84,7 +86,8 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
     const int dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
                                      field.frames.front());
     if (dimension == 2) {
-        refuse_options(command, {"--cap", "--no-normals", "--collapse", "--measure"},
+        refuse_options(command,
+                       {"--cap", "--no-normals", "--collapse", "--distance-field", "--measure"},
                        "is for surfaces, not for isolines");
     }
     const std::string format = ending_of(o.surface.output);
@@ -135,7 +138,11 @@ void say_what_distances_are(const ExtractionRequest& request, const std::string&
     if (!estimates && !request.measures) return;
     std::string text =
         "distances are in " + (unit.empty() ? "the unit of the grid, which is not known" : unit);
-    if (estimates) {
+    if (request.keeps_distances) {
+        text +=
+            "; no point of the surface is farther than the threshold from that of all data, and "
+            "none of that from the surface";
+    } else if (estimates) {
         text +=
             "; the threshold is an estimate: where the data are flat, the surface may be "
             "further off";
@@ -247,6 +254,11 @@ Command add_isosurface(CLI::App& program) {
         ->excludes("--error")
         ->excludes("--indicator");
     isosurface
+        ->add_flag("--distance-field", o->keeps_distances,
+                   "keep the --distance there and back: look where the surfaces are farther from "
+                   "each other, and draw more there")
+        ->needs(isosurface->get_option("--distance"));
+    isosurface
         ->add_flag("--collapse", o->collapses,
                    "take edges away while the --error is kept: some times fewer triangles, some "
                    "times the time")
@@ -264,7 +276,7 @@ Command add_isosurface(CLI::App& program) {
     isosurface
         ->add_option("--cuts", o->cuts,
                      "where edges are cut: linear keeps the error, finest lies nearer to the data "
-                     "[finest with --max-triangles]")
+                     "[finest with --max-triangles and --distance]")
         ->type_name("KIND")
         ->check(CLI::IsMember({"linear", "finest"}))
         ->group("Surface")
@@ -287,6 +299,7 @@ Command add_isosurface(CLI::App& program) {
     add_lens_options(*isosurface, o->lens);
     for (const char* const other : {"--lens", "--box"}) {
         isosurface->get_option("--collapse")->excludes(other);
+        isosurface->get_option("--distance-field")->excludes(other);
     }
     isosurface->get_option("--lens")->excludes("--box");
     add_read_options(*isosurface, o->input);

@@ -36,6 +36,7 @@ Row row_of(const Extraction& e, bool in_space) {
     const bool encloses = r.closed() && r.triangles > 0;
     if (in_space) row.add("volume", encloses ? Cell(std::abs(r.volume)) : Cell());
     row.add("seconds", e.seconds);
+    if (e.far_points) row.add("far_points", *e.far_points);
     if (e.collapsed) {
         row.add("collapse_seconds", e.collapse_seconds);
         row.add("collapses", std::uint64_t{e.collapsed->collapses});

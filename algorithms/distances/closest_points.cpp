@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include <distances/curve_order.hpp>
 
 namespace nestgrid::engine {
 
@@ -17,27 +18,6 @@ double square_distance_of_segment(const Point& x, const Point& a, const Point& b
     const double length = square(ab);
     const double along = length > 0 ? std::clamp(dot(x - a, ab) / length, 0.0, 1.0) : 0;
     return square(x - (a + along * ab));
-}
-
-/// The bits of a number of 21 bits, with two zeros between them.
-std::uint64_t spread_bits(std::uint64_t n) {
-    n = (n | n << 32U) & 0x1F00000000FFFFU;
-    n = (n | n << 16U) & 0x1F0000FF0000FFU;
-    n = (n | n << 8U) & 0x100F00F00F00F00FU;
-    n = (n | n << 4U) & 0x10C30C30C30C30C3U;
-    return (n | n << 2U) & 0x1249249249249249U;
-}
-
-/// The place of a point on the Z curve through a box.
-std::uint64_t place_on_curve(const Point& x, const Box& box) {
-    constexpr double last = (1 << 21) - 1;
-    std::uint64_t place = 0;
-    for (std::size_t d = 0; d < 3; ++d) {
-        const double extent = box.high[d] - box.low[d];
-        const double part = extent > 0 ? (x[d] - box.low[d]) / extent : 0;
-        place |= spread_bits(static_cast<std::uint64_t>(std::clamp(part, 0.0, 1.0) * last)) << d;
-    }
-    return place;
 }
 
 }  // namespace
@@ -58,20 +38,14 @@ double square_distance(const Point& x, const Triangle& triangle) {
                      square_distance_of_segment(x, c, a)});
 }
 
-ClosestPoints::ClosestPoints(const Surface<3>& surface)
-    : surface_{&surface}, order_(surface.simplices.size()) {
-    Box all;
-    for (const Point& x : surface.vertices) all.add(x);
-    std::vector<std::uint64_t> place;
-    place.reserve(order_.size());
-    for (std::uint32_t t = 0; t < order_.size(); ++t) {
+ClosestPoints::ClosestPoints(const Surface<3>& surface) : surface_{&surface} {
+    std::vector<Point> middle;
+    middle.reserve(surface.simplices.size());
+    for (std::uint32_t t = 0; t < surface.simplices.size(); ++t) {
         const Triangle x = triangle(t);
-        place.push_back(place_on_curve((1.0 / 3) * (x[0] + x[1] + x[2]), all));
+        middle.push_back((1.0 / 3) * (x[0] + x[1] + x[2]));
     }
-    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::pair(place[a], a) < std::pair(place[b], b);
-    });
+    order_ = order_on_curve(middle);
     for (const std::uint32_t t : order_) tree_.add(Box::around(triangle(t)));
     tree_.finish();
 }
@@ -87,6 +61,18 @@ double ClosestPoints::distance(const Point& x, double bound) const {
         return true;
     });
     return std::sqrt(least);
+}
+
+bool ClosestPoints::is_within(const Point& x, double limit, std::uint32_t& near) const {
+    const double square = limit * limit;
+    const auto is_near = [&](std::uint32_t t) { return square_distance(x, triangle(t)) <= square; };
+    if (near < order_.size() && is_near(near)) return true;
+    return !tree_.for_each([&](const Box& box) { return box.square_distance(x) <= square; },
+                           [&](std::size_t i) {
+                               if (!is_near(order_[i])) return true;
+                               near = order_[i];
+                               return false;
+                           });
 }
 
 }  // namespace nestgrid::engine

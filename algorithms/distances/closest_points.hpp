@@ -25,6 +25,12 @@ public:
     /// The distance of a point from the surface; infinite where that is empty.
     /// \param bound which it is known not to exceed: makes the search short
     double distance(const Point& x, double bound = std::numeric_limits<double>::infinity()) const;
+    /// Whether the distance of a point is at most a limit, which is not negative: faster than the
+    /// distance.
+    /// \param near a triangle that is looked at first, and afterwards one that is near enough; 0
+    /// for
+    ///        the first point
+    bool is_within(const Point& x, double limit, std::uint32_t& near) const;
 
 private:
     Triangle triangle(std::uint32_t t) const {

@@ -152,6 +152,11 @@ for number in 0 -1 nan x; do
     refused 1 "the distance '$number' is no number > 0" isosurface $raw --value 130 --distance=$number
     refused 1 "the error '$number' is no number > 0" isosurface $raw --value 130 --error=$number
 done
+effect isosurface "$raw --value 130 --distance 6" --distance-field
+refused 2 'distance-field requires --distance' isosurface $raw --value 130 --distance-field
+for option in "--lens 0,0,0,1" "--box 0,1,0,1,0,1 --box-threshold 1"; do
+    refused 2 'distance-field excludes|excludes --distance-field' isosurface $raw --value 130 --distance 1 --distance-field $option
+done
 effect isosurface "$raw --value 130 --error 20" --collapse
 refused 2 'collapse requires --error' isosurface $raw --value 130 --collapse
 for option in --cap --at-nodes '--lens ball:5,5,5,4' '--box 0,9,0,9,0,9'; do
@@ -162,6 +167,7 @@ refused 2 'measure excludes|excludes --measure' isosurface $raw --value 130 --me
 for option in --collapse --measure; do
     void isosurface 'is for surfaces, not for isolines' 'hills.pgm --value 60 --error 9' $option
 done
+void isosurface 'is for surfaces, not for isolines' 'hills.pgm --value 60 --distance 2' --distance-field
 refused 1 'is a length, not a percentage' isosurface $raw --value 130 --distance 5%
 effect isosurface "$raw --value 130 --threshold 30" --box 0,20,0,24,0,9
 effect isosurface "$raw --value 130 --threshold 30 --box 0,20,0,24,0,9" --box-threshold 5

@@ -79,6 +79,7 @@ class Field:
     @takes(
         level=number,
         distance=optional(not_negative),
+        distance_field=flag,
         collapse=flag,
         cap=flag,
         at_nodes=flag,
@@ -95,6 +96,7 @@ class Field:
         lens: LensLike | None = None,
         error: float | None = None,
         distance: float | None = None,
+        distance_field: bool = False,
         collapse: bool = False,
         normals: bool = True,
         cap: bool = False,
@@ -110,6 +112,9 @@ class Field:
                   out a part of the data, is at most this
         distance  about how far what is drawn may be from the surface of all data, in units of
                   length: an estimate, and given alone
+        distance_field  whether to keep distance, which must be given: no point of what is drawn is
+                  farther from the surface of all data, and none of that from what is drawn. Some
+                  times the time
         collapse  whether to take edges away while error is kept, which must be given: some times
                   fewer triangles, some times the time
         cap       whether to close the surface along the boundary of the domain, around what is at
@@ -118,7 +123,7 @@ class Field:
         cuts      where edges of coarse elements are cut: "linear" between their ends, which keeps
                   the error that is asked for; "finest" where the finest data have the value, which
                   lies nearer to the data (not at nodes, nor on octrees). None: "finest" where
-                  max_triangles is given, but for the indicator "deviation"
+                  max_triangles or distance is given, but for the indicator "deviation"
 
         Raises InvalidInput where an argument makes no sense, a value is not finite, or even the
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
@@ -128,11 +133,14 @@ class Field:
         )
         if collapse and (error is None or cap or at_nodes or lens is not None):
             raise InvalidInput("collapse needs an error, and neither cap, at_nodes nor lens")
+        if distance_field and (distance is None or lens is not None):
+            raise InvalidInput("distance_field needs a distance, and no lens")
         if cuts is None:
-            finest = max_triangles is not None and indicator != "deviation"
+            nearer = distance is not None or max_triangles is not None
+            finest = nearer and indicator != "deviation"
         else:
             finest = cuts == "finest"
-        options = (normals, cap, elements, at_nodes, finest, collapse)
+        options = (normals, cap, elements, at_nodes, finest, collapse, distance_field)
         return Surface._of(
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
         )

@@ -183,6 +183,7 @@ def isosurface(
     at_nodes: bool,
     finest_cuts: bool,
     collapses: bool,
+    keeps_distance: bool,
     projection: Projection,
     threads: int,
 ) -> Surface: ...

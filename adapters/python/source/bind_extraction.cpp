@@ -148,16 +148,17 @@ void bind_draws(py::module_& m) {
     m.def(
         "isosurface",
         [](const SourcePointer& source, double level, bool normals, bool cap, bool elements,
-           bool at_nodes, bool finest_cuts, bool collapses, const Projection& projection,
-           int threads) {
-            const SurfaceRequest request{normals, cap, elements, at_nodes, finest_cuts, collapses};
+           bool at_nodes, bool finest_cuts, bool collapses, bool keeps_distance,
+           const Projection& projection, int threads) {
+            const SurfaceRequest request{normals,     cap,       elements,      at_nodes,
+                                         finest_cuts, collapses, keeps_distance};
             return drawn(threads, [source, level, request, projection](const Call& call) {
                 return draw_isosurface(*source, level, request, projection, call);
             });
         },
         py::arg("source"), py::arg("level"), py::arg("normals"), py::arg("cap"),
         py::arg("elements"), py::arg("at_nodes"), py::arg("finest_cuts"), py::arg("collapses"),
-        py::arg("projection"), py::arg("threads"));
+        py::arg("keeps_distance"), py::arg("projection"), py::arg("threads"));
     m.def(
         "slice",
         [](const SourcePointer& source, const std::shared_ptr<LevelFunction>& function,

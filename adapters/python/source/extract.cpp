@@ -7,6 +7,7 @@
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
@@ -129,6 +130,21 @@ Isosurface<3> draw_collapsed(const Hierarchy<Real>& hierarchy, double isovalue,
     return drawn;
 }
 
+/// Draws within the distance of the surface of all data, and that within the distance of it.
+template <class Real, class S>
+Isosurface<3> draw_within(const Hierarchy<Real>& hierarchy, double isovalue, const S& criterion,
+                          double distance, const Bounds& bounds, const IsosurfaceOptions& options,
+                          const Call& call) {
+    const IsosurfaceOptions of_whole{
+        .elements = false, .at_nodes = options.at_nodes, .progress = options.progress};
+    Isosurface<3> whole =
+        isosurface<3>(hierarchy, isovalue, Exact{}, bounds, of_whole, call.executor());
+    if (whole.cancelled) return whole;
+    return isosurface_within(hierarchy, isovalue, {whole.surface, distance}, criterion, bounds,
+                             options, call.executor())
+        .isosurface;
+}
+
 /// \param search of the threshold; its max_triangles is 0 where the threshold was given
 Drawn drawn_of(Isosurface<3> result, const TriangleBudget& search) {
     return {static_cast<const ErrorBounds&>(result),
@@ -157,6 +173,11 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
             if (request.collapses) {
                 return drawn_of(draw_collapsed(hierarchy, isovalue, criterion_at, search.threshold,
                                                criteria.bounds(), options, call),
+                                search);
+            }
+            if (request.keeps_distance) {
+                return drawn_of(draw_within(hierarchy, isovalue, criterion_at(search.threshold),
+                                            search.threshold, criteria.bounds(), options, call),
                                 search);
             }
             if (projection.max_triangles > 0) {

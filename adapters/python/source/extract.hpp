@@ -60,7 +60,8 @@ struct SurfaceRequest {
     bool elements = false;
     bool at_nodes = false;
     bool finest_cuts = false;
-    bool collapses = false;  ///< needs the indicator "error"
+    bool collapses = false;       ///< needs the indicator "error"
+    bool keeps_distance = false;  ///< needs the indicator "distance"
 };
 
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1

@@ -269,6 +269,36 @@ def test_a_distance_that_is_asked_for_is_kept_about():
         before = len(surface.triangles)
 
 
+def test_a_distance_is_kept_there_and_back():
+    reference = pytest.importorskip("vtkmodules.vtkCommonCore").reference
+    data_model = pytest.importorskip("vtkmodules.vtkCommonDataModel")
+
+    def farthest(points, surface):
+        locator = data_model.vtkStaticCellLocator()
+        locator.SetDataSet(surface.to_vtk())
+        locator.BuildLocator()
+        found, square = [0.0] * 3, reference(0.0)
+        worst = 0.0
+        for point in points:
+            locator.FindClosestPoint(point, found, reference(0), reference(0), square)
+            worst = max(worst, square.get())
+        return np.sqrt(worst)
+
+    noise = np.random.default_rng(5).normal(size=(17, 17, 17))
+    noise = (noise + np.roll(noise, 1, 0) + np.roll(noise, 1, 1) + np.roll(noise, 1, 2)) / 4
+    volume = nestgrid.Volume(noise.astype("float32"))
+    whole = volume.isosurface(0.4)
+    estimated = volume.isosurface(0.4, distance=1)
+    kept = volume.isosurface(0.4, distance=1, distance_field=True)
+    assert farthest(whole.vertices, estimated) > 1
+    assert farthest(whole.vertices, kept) <= 1 + 1e-6
+    assert farthest(kept.vertices, whole) <= 1 + 1e-6
+    assert len(estimated.triangles) < len(kept.triangles) < len(whole.triangles)
+    for wrong in ({}, {"distance": 1, "lens": nestgrid.Lens(nestgrid.ball((8, 8, 8), 2), 1)}):
+        with refused("distance_field needs a distance"):
+            volume.isosurface(0.4, distance_field=True, **wrong)
+
+
 def test_two_threads_at_once(gyroid):
     expected = [nestgrid.Volume(gyroid).isosurface(0.1 * i, 0.1, threads=1) for i in range(8)]
     volume = nestgrid.Volume(gyroid)

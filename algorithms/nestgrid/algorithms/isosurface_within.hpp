@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Isosurfaces that keep a distance from that of all data, there and back: each point of one surface
+// is within it of the other one (Hausdorff distance).
+//
+// What a criterion draws is compared with the surface of all data. Where a point of either is too
+// far from the other one, the elements that contain it are drawn finely, at first down to the size
+// of the distance, then down to leaves, until no point is left. Points are not samples: a triangle
+// is halved until the nearest points decide for all of it.
+//
+// Consequence: no part of the surface is lost, however thin; and the criterion decides how much is
+// drawn, not how far that is. Take one that promises about the distance, such as a threshold on
+// slope_deviations() (cut_indicator.hpp).
+// Cost: beside the surface of all data, which must be there, for each round one surface, one search
+// of nearest points for every triangle of both, and one walk over all elements.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
+
+namespace nestgrid {
+
+/// A surface, and how near to it another one is to be.
+struct Nearness {
+    const Surface<3>& whole;  ///< the isosurface of all data: isosurface() under Exact
+    double distance;          ///< positive, in units of length
+};
+
+/// An isosurface, and what it took to keep the distance.
+struct IsosurfaceWithin {
+    Isosurface<3> isosurface;
+    int rounds = 0;          ///< of finer drawing; 0 where the criterion was enough
+    std::size_t points = 0;  ///< that were too far, in all rounds
+};
+
+namespace detail {
+
+/// Makes the criterion that also draws finely wherever an indicator is 1, and not 0.
+using AlsoFine = std::function<std::unique_ptr<const Criterion>(const Indicator& fine)>;
+
+template <class Real>
+IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isovalue,
+                                   const Nearness& nearness, const AlsoFine& criterion,
+                                   const Bounds& bounds, const IsosurfaceOptions& options,
+                                   const Executor& executor);
+
+}  // namespace detail
+
+/// What isosurface() draws with the same arguments, and more detail where it is farther than the
+/// distance from the surface of all data. The result does not depend on the executor.
+/// \param options at_nodes must be that of the surface of all data; the cap, if there is one, is
+/// not
+///        compared
+/// \throw InvalidInput as isosurface(); where the distance is not positive, and where it cannot be
+///        kept because `nearness.whole` is another surface than that of all data
+/// \throw GridError as isosurface()
+template <class Real, std::derived_from<Criterion> S>
+IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isovalue,
+                                   const Nearness& nearness, const S& criterion,
+                                   const Bounds& bounds, const IsosurfaceOptions& options = {},
+                                   const Executor& executor = SequentialExecutor{}) {
+    const auto also_fine = [&](const Indicator& fine) -> std::unique_ptr<const Criterion> {
+        using Both = decltype(criterion && Threshold(&fine, 0.5));
+        return std::make_unique<const Both>(criterion && Threshold(&fine, 0.5));
+    };
+    return detail::isosurface_within(hierarchy, isovalue, nearness, also_fine, bounds, options,
+                                     executor);
+}
+template <class Grid, class Field, std::derived_from<Criterion> S>
+    requires(!detail::AnyHierarchy<Grid>)
+IsosurfaceWithin isosurface_within(const Grid& grid, const Field& field, double isovalue,
+                                   const Nearness& nearness, const S& criterion,
+                                   const Bounds& bounds, const IsosurfaceOptions& options = {},
+                                   const Executor& executor = SequentialExecutor{}) {
+    return isosurface_within(erase(grid, field), isovalue, nearness, criterion, bounds, options,
+                             executor);
+}
+
+}  // namespace nestgrid
