@@ -133,7 +133,7 @@ Volume read_volume(Input& input) {
     return read_volume(input.path, input.array, input.raw, input.read_limit);
 }
 
-void add_surface_options(CLI::App& command, SurfaceOptions& options) {
+void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_isosurface) {
     options.command = &command;
     command
         .add_option("--threshold", options.thresholds,
@@ -162,7 +162,7 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
         ->excludes("--max-triangles");
     command.add_option("-o,--output", options.output, "write .vtp, .ply, .stl, .obj or .gltf")
         ->type_name("FILE");
-    add_projection_options(command, options.projection);
+    add_projection_options(command, options.projection, of_isosurface);
     command.get_option("--error")->excludes("--indicator");
     command
         .add_option("--threads", options.threads,

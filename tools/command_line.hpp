@@ -82,7 +82,8 @@ struct SurfaceOptions {
     PictureOptions picture;
     const CLI::App* command = nullptr;  ///< that they are options of
 };
-void add_surface_options(CLI::App& command, SurfaceOptions& options);
+/// \param of_isosurface whether indicators of one isosurface can be chosen, too
+void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_isosurface = false);
 /// \throw nestgrid::InvalidInput for a number that is out of range, and for options that exclude
 ///        each other
 /// \throw nestgrid::IoError where a file cannot be written

@@ -237,7 +237,7 @@ Command add_isosurface(CLI::App& program) {
     isosurface->add_option("--value", o->value, "the isovalue, in units of the data")
         ->type_name("NUMBER")
         ->required();
-    add_surface_options(*isosurface, o->surface);
+    add_surface_options(*isosurface, o->surface, true);
     isosurface
         ->add_option_function<std::vector<std::string>>(
             "--distance",

@@ -203,7 +203,7 @@ Command add_probe(CLI::App& program) {
         ->add_option("-o,--output", o->output,
                      "write .csv [standard output]; points outside the grid have no value")
         ->type_name("FILE");
-    add_projection_options(*probe, o->projection);
+    add_projection_options(*probe, o->projection, false);
     add_time_options(*probe, o->time);
     probe->get_option("--frames")
         ->description("so many times from the first frame to the last, one after the other");

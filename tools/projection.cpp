@@ -87,16 +87,23 @@ void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_len
     if (thresholds.empty()) thresholds.push_back({with_lens ? any_offset : 0, false});
 }
 
-void add_projection_options(CLI::App& command, ProjectionChoice& choice) {
+void add_projection_options(CLI::App& command, ProjectionChoice& choice, bool of_isosurface) {
+    std::vector<std::string> names{"offset",    "deviation", "visual",
+                                   "numerical", "wavelet",   "geometry"};
+    if (of_isosurface) names.insert(names.end(), {"cut", "slope"});
     command
         .add_option("--indicator", choice.indicator,
                     "what --threshold limits: offset, |data - mean|; deviation, |data - what is "
                     "drawn|; visual, folds from 0 to 2; "
                     "numerical, jumps of the gradient; wavelet, coefficients; geometry, |position "
-                    "- mean| of curved grids")
+                    "- mean| of curved grids" +
+                        std::string(of_isosurface ? "; cut, the --error of this surface; slope, "
+                                                    "the --distance: the nearest within "
+                                                    "--max-triangles where data are noisy"
+                                                  : ""))
         ->type_name("NAME")
         ->group("Detail")
-        ->check(one_of({"offset", "deviation", "visual", "numerical", "wavelet", "geometry"}))
+        ->check(one_of(names))
         ->capture_default_str();
     command
         .add_option("--blend", choice.blend,
@@ -205,7 +212,7 @@ const nestgrid::Indicator& ChosenIndicator::chosen() const {
 double ChosenIndicator::threshold(const ThresholdText& text) const {
     const std::string& indicator = prerolls_->choice().indicator;
     if (text.percent && indicator == "slope") {
-        throw InvalidInput("a --distance is a length, not a percentage");
+        throw InvalidInput("a distance is a length, not a percentage");
     }
     if (text.percent && (indicator == "visual" || indicator == "geometry")) {
         throw InvalidInput("thresholds of the " + indicator +

@@ -41,7 +41,8 @@ struct ProjectionChoice {
     double blend = 1;
     double isovalue = 0;  ///< of the indicators "cut" and "slope", which are of one surface
 };
-void add_projection_options(CLI::App& command, ProjectionChoice& choice);
+/// \param of_isosurface whether indicators of one isosurface can be chosen, too
+void add_projection_options(CLI::App& command, ProjectionChoice& choice, bool of_isosurface);
 /// \throw nestgrid::InvalidInput where the factor is out of range
 void check(const ProjectionChoice& choice);
 /// For a command without thresholds and budgets.

@@ -128,9 +128,33 @@ class Samples:
     def scikit_image(self, level, step):
         return marching_cubes(self.values, level, step_size=step)[:2]
 
-    def nestgrid(self, level, most):
-        surface = self.volume.isosurface(level, max_triangles=most, normals=False, threads=1)
+    def nestgrid(self, level, most, indicator="offset"):
+        surface = self.volume.isosurface(
+            level, max_triangles=most, indicator=indicator, normals=False, threads=1
+        )
         return surface.vertices, surface.triangles
+
+    def collapsed(self, level, error):
+        surface = self.volume.isosurface(
+            level, error=error, collapse=True, normals=False, threads=1
+        )
+        return surface.vertices, surface.triangles
+
+    def error_within(self, level, most):
+        """An error whose collapsed surface has at most so many triangles, and hardly fewer."""
+        low, high = 0.0, np.inf
+        error = 0.01 * float(np.ptp(self.values))
+        for _ in range(9):
+            triangles = len(self.collapsed(level, error)[1])
+            if triangles > most:
+                low = error
+            else:
+                high = error
+                if triangles > 0.9 * most:
+                    break
+            guess = error * max(triangles, 1) / most
+            error = guess if low < guess < high else (low + min(high, 4 * error)) / 2
+        return high
 
     def flying_edges(self, level):
         edges = vtkFlyingEdges3D()
@@ -243,6 +267,8 @@ def compare(name, values, level, steps, count, cgal):
         most = row(step, "scikit-image", samples.scikit_image, step)
         samples.volume.changed()  # forgets what was computed
         assert row(step, "nestgrid", samples.nestgrid, most) <= most
+        assert row(step, "nestgrid, by slopes", samples.nestgrid, most, "slope") <= most
+        row(step, "nestgrid, collapsed", samples.collapsed, samples.error_within(level, most))
         row(step, "VTK, quadric", samples.quadric, most)
         row(step, "VTK, DecimatePro", samples.decimate_pro, most)
         if cgal:

@@ -152,6 +152,11 @@ for number in 0 -1 nan x; do
     refused 1 "the distance '$number' is no number > 0" isosurface $raw --value 130 --distance=$number
     refused 1 "the error '$number' is no number > 0" isosurface $raw --value 130 --error=$number
 done
+for indicator in cut slope; do
+    effect isosurface "$raw --value 130 --max-triangles 900" --indicator $indicator
+    refused 2 "'$indicator'" slice $raw --axis z --at 9 --threshold 1 --indicator $indicator
+done
+refused 1 'is a length, not a percentage' isosurface $raw --value 130 --threshold 5% --indicator slope
 effect isosurface "$raw --value 130 --distance 6" --distance-field
 refused 2 'distance-field requires --distance' isosurface $raw --value 130 --distance-field
 for option in "--lens 0,0,0,1" "--box 0,1,0,1,0,1 --box-threshold 1"; do

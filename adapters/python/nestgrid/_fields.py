@@ -13,6 +13,7 @@ from . import _html, _nestgrid
 from ._arguments import (
     Cuts,
     Indicator,
+    SurfaceIndicator,
     InvalidType,
     flag,
     name_of,
@@ -78,6 +79,7 @@ class Field:
 
     @takes(
         level=number,
+        indicator=name_of(SurfaceIndicator),
         distance=optional(not_negative),
         distance_field=flag,
         collapse=flag,
@@ -91,7 +93,7 @@ class Field:
         threshold: float | None = None,
         max_triangles: int | None = None,
         *,
-        indicator: Indicator = "offset",
+        indicator: SurfaceIndicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
         error: float | None = None,
@@ -108,6 +110,8 @@ class Field:
         """The surface on which the field has a value. No gap opens where the level changes.
 
         level     the value, in the units of the data
+        indicator as elsewhere, or "cut": the error of this surface alone; "slope": the distance,
+                  which with max_triangles draws the nearest surface where data are noisy
         error     here of this surface alone: |data - level| on it, and where what is drawn leaves
                   out a part of the data, is at most this
         distance  about how far what is drawn may be from the surface of all data, in units of
@@ -291,7 +295,7 @@ class Field:
 def _surface_projection(
     threshold: float | None,
     max_triangles: int | None,
-    indicator: Indicator,
+    indicator: SurfaceIndicator,
     blend: float,
     lens: LensLike | None,
     error: float | None,
@@ -300,7 +304,7 @@ def _surface_projection(
     """The projection of an isosurface, which has an error and a distance of its own."""
     if error is None and distance is None:
         return _projection(threshold, max_triangles, indicator, blend, lens, None)
-    name: Literal["error", "distance"] = "distance" if error is None else "error"
+    name = "distance" if error is None else "error"
     value = distance if error is None else error
     alone = (threshold, max_triangles, indicator) == (None, None, "offset")
     if not alone or (error is not None and distance is not None):
@@ -308,13 +312,14 @@ def _surface_projection(
     if value is None or not value > 0:
         raise InvalidInput(f"{name} is not a number > 0: leave it out to draw all detail")
     compiled = lens._lens if isinstance(lens, Lens) else None
-    return _nestgrid.Projection(value, None, name, blend, compiled)
+    measured: Literal["error", "slope"] = "slope" if error is None else "error"
+    return _nestgrid.Projection(value, None, measured, blend, compiled)
 
 
 def _projection(
     threshold: float | None,
     max_triangles: int | None,
-    indicator: Indicator,
+    indicator: SurfaceIndicator,
     blend: float,
     lens: LensLike | None,
     error: float | None,

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
-_OfSurface = Literal["error", "distance"]
+_OfSurface = Literal["error", "cut", "slope"]
 
 class InvalidInput(ValueError):
     """An argument that cannot be worked with; the sentence says which, and why."""

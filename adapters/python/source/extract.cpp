@@ -66,14 +66,14 @@ private:
     /// The indicator of one isosurface. Between frames the deviations of these serve, without a
     /// preroll of each moment.
     ChosenIndicator choose_for(const Source& source, double isovalue, const Call& call) const {
-        const bool distance = projection_.indicator == "distance";
-        if (projection_.indicator != "error" && !distance) {
-            return source.choose(projection_.indicator, projection_.blend, call);
+        const std::string& name = projection_.indicator;
+        if (name != "error" && name != "cut" && name != "slope") {
+            return source.choose(name, projection_.blend, call);
         }
         return call.with(source.hierarchy(), [&](const auto& hierarchy) {
             ChosenIndicator chosen = source.choose("offset", 1, call);
             const bool between = std::holds_alternative<const KeyFrames*>(chosen.ranged);
-            if (!distance && (between || !cuts_are_errors(hierarchy.facts()))) {
+            if (name == "error" && (between || !cuts_are_errors(hierarchy.facts()))) {
                 return source.choose("deviation", projection_.blend, call);
             }
             const auto measure = [&](const auto& function) {
@@ -82,8 +82,8 @@ private:
                              Spread{.factor = projection_.blend}, call.executor()));
             };
             chosen.indicator =
-                distance ? measure([](const auto&... a) { return slope_deviations(a...); })
-                         : measure([](const auto&... a) { return cut_deviations(a...); });
+                name == "slope" ? measure([](const auto&... a) { return slope_deviations(a...); })
+                                : measure([](const auto&... a) { return cut_deviations(a...); });
             return chosen;
         });
     }

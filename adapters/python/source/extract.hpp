@@ -61,7 +61,7 @@ struct SurfaceRequest {
     bool at_nodes = false;
     bool finest_cuts = false;
     bool collapses = false;       ///< needs the indicator "error"
-    bool keeps_distance = false;  ///< needs the indicator "distance"
+    bool keeps_distance = false;  ///< needs the indicator "slope"
 };
 
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1

@@ -299,6 +299,23 @@ def test_a_distance_is_kept_there_and_back():
             volume.isosurface(0.4, distance_field=True, **wrong)
 
 
+def test_indicators_of_one_surface(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    assert np.array_equal(
+        volume.isosurface(0.5, 0.1, indicator="cut").vertices,
+        volume.isosurface(0.5, error=0.1).vertices,
+    )
+    assert np.array_equal(
+        volume.isosurface(0.5, 0.3, indicator="slope", cuts="finest").vertices,
+        volume.isosurface(0.5, distance=0.3).vertices,
+    )
+    for indicator in ("cut", "slope"):
+        surface = volume.isosurface(0.5, max_triangles=3000, indicator=indicator)
+        assert 2000 < len(surface.triangles) <= 3000
+        with refused("indicator"):
+            volume.slice(plane=((16, 16, 16), (1, 2, 3)), threshold=0.1, indicator=indicator)
+
+
 def test_two_threads_at_once(gyroid):
     expected = [nestgrid.Volume(gyroid).isosurface(0.1 * i, 0.1, threads=1) for i in range(8)]
     volume = nestgrid.Volume(gyroid)
