@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fewer triangles of the same error (docs/collapse.md).
+// Fewer triangles of the same error (docs/collapse.md), and a distance that is kept
+// (docs/error.md).
+#include <algorithm>
 #include <cstdio>
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
@@ -36,7 +40,22 @@ int main() {
     // [measure]
     std::printf("measured: |U - C| <= %.3f, distances %.4f there, %.4f back\n",
                 measured.value.greatest, measured.distance.greatest, measured.back.greatest);
+    // [within]
+    constexpr double distance = 0.5;
+    const Surface<3> finest = isosurface(grid, field, isovalue, Exact{}, deviations).surface;
+    const auto slopes =
+        slope_deviations(grid, field, std::span<const double>(&isovalue, 1), deviations);
+    const IsosurfaceWithin within =
+        isosurface_within(grid, field, isovalue, {finest, distance}, Threshold(&slopes, distance),
+                          deviations, {.cuts = Cuts::finest});
+    // [within]
+    const MeasuredError off =
+        measure_error(within.isosurface.surface, finest, grid, field, isovalue);
+    std::printf("%zu of %zu triangles, distances %.4f there, %.4f back\n",
+                within.isosurface.surface.simplices.size(), finest.simplices.size(),
+                off.distance.greatest, off.back.greatest);
     const SurfaceReport report = surface_report(surface);
-    const bool keeps = measured.value.greatest <= error && collapsed.error <= error;
+    const bool keeps = measured.value.greatest <= error && collapsed.error <= error &&
+                       std::max(off.distance.greatest, off.back.greatest) <= distance;
     return report.closed() && report.manifold() && keeps ? 0 : 1;
 }
