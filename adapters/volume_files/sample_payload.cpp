@@ -124,6 +124,10 @@ void swap_bytes(std::span<std::byte> samples, std::size_t size) {
 std::size_t checked_size(const SampleLayout& layout) {
     std::uintmax_t samples = 1;  // at most 2^60
     for (const int n : layout.geometry.samples) samples *= static_cast<std::uintmax_t>(n);
+    for (const std::size_t n : {layout.components, layout.frames}) {
+        if (n == 0 || samples > PTRDIFF_MAX / 8 / n) throw std::bad_alloc();
+        samples *= n;
+    }
     const std::uintmax_t parts = layout.files.size();
     const std::string path = layout.path.string();
     if (samples % parts != 0) {
@@ -141,7 +145,6 @@ std::size_t checked_size(const SampleLayout& layout) {
                           std::to_string(expected));
         }
     }
-    if (samples > PTRDIFF_MAX / 8) throw std::bad_alloc();
     return samples * bytes_of(layout.type);
 }
 

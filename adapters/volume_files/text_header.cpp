@@ -74,10 +74,19 @@ std::vector<double> TextHeader::numbers(const std::string& key) const {
     std::istringstream words(text);
     for (std::string word; words >> word;) {
         char* end = nullptr;
-        const double number = std::strtod(word.c_str(), &end);
-        if (*end == '\0') result.push_back(number);
+        result.push_back(std::strtod(word.c_str(), &end));
+        if (*end == '\0') continue;
+        throw IoError(path.string() + " has the " + key + " '" + value(key) + "', of which '" +
+                      word + "' is no number");
     }
     return result;
+}
+
+std::vector<double> TextHeader::numbers(const std::string& key, std::size_t count) const {
+    std::vector<double> result = numbers(key);
+    if (result.empty() || result.size() == count) return result;
+    throw IoError(path.string() + " has the " + key + " '" + value(key) + "', not " +
+                  std::to_string(count) + (count == 1 ? " number" : " numbers"));
 }
 
 std::string TextHeader::value(const std::string& key) const {

@@ -19,8 +19,11 @@ struct TextHeader {
     std::uintmax_t length = 0;                 ///< bytes
     bool ended = false;                        ///< by a blank line or by the last key
 
-    /// The words of a value that are numbers, brackets and commas aside.
+    /// The words of a value, brackets and commas aside.
+    /// \throw nestgrid::IoError where one of them is no number
     std::vector<double> numbers(const std::string& key) const;
+    /// The same; their number must be `count`, or 0 where there is no such key.
+    std::vector<double> numbers(const std::string& key, std::size_t count) const;
     /// Empty where there is no such key.
     std::string value(const std::string& key) const;
 };
