@@ -428,6 +428,7 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
         write(options, field, what, report);
     }
     report_drawn(field, what, report);
+    if (!read.note.empty()) report.say(read.note);
     const std::string reason = why_empty(moments, what);
     if (!reason.empty()) report.say("the isosurface is empty: " + reason);
     say_what_was_kept(options, report);
