@@ -269,7 +269,8 @@ std::intmax_t skipped(const std::vector<double>& numbers, std::intmax_t least) {
 Encoding nrrd_encoding(const TextHeader& header) {
     static const std::map<std::string, Encoding> encodings{
         {"raw", Encoding::raw},  {"gzip", Encoding::deflated}, {"gz", Encoding::deflated},
-        {"txt", Encoding::text}, {"text", Encoding::text},     {"ascii", Encoding::text}};
+        {"txt", Encoding::text}, {"text", Encoding::text},     {"ascii", Encoding::text},
+        {"hex", Encoding::hex}};
     const auto encoding = encodings.find(lower(header.value("encoding")));
     if (encoding == encodings.end()) {
         throw IoError(header.path.string() + " has the encoding '" + header.value("encoding") +

@@ -16,7 +16,7 @@
 
 #include <nestgrid/adapters/lattice.hpp>
 
-enum class Encoding { raw, deflated, text };
+enum class Encoding { raw, deflated, text, hex };
 
 struct SampleLayout {
     std::filesystem::path path;  ///< of the header

@@ -172,10 +172,10 @@ bool is_dense(const FileSamples& samples) {
     return samples.stride == std::array{std::size_t{1}, nx, nx * static_cast<std::size_t>(n[1])};
 }
 
-/// Reads the numbers into memory, unless they are there.
-void fill(FileSamples& samples) {
+/// Reads all numbers into memory, unless they are there.
+void fill(FileSamples& samples, std::size_t numbers) {
     if (samples.data != nullptr) return;
-    const std::size_t bytes = numbers_in_file(samples) * bytes_of(samples.type);
+    const std::size_t bytes = numbers * bytes_of(samples.type);
     const std::shared_ptr<std::byte[]> memory(new std::byte[bytes]);
     samples.fill({memory.get(), bytes});
     samples.memory = std::shared_ptr<void>(memory, memory.get());
@@ -234,7 +234,7 @@ void put_chosen(FileSamples& samples, const VolumeChoice& choice, Parcel& parcel
     const bool list_is_sample = samples.frames_are_list && samples.components.count == 1 &&
                                 !choice.frame && (choice.component || choice.magnitude);
     if (list_is_sample) std::swap(samples.frames, samples.components);
-    const bool all_at_once = numbers_in_file(samples) == places_in(samples.geometry);
+    const std::size_t numbers = numbers_in_file(samples);
     const std::size_t offset = choose_frame(samples, choice) + choose_component(samples, choice);
     const bool computed =
         samples.components.count > 1 || samples.slope != 1 || samples.intercept != 0;
@@ -249,13 +249,13 @@ void put_chosen(FileSamples& samples, const VolumeChoice& choice, Parcel& parcel
     put(samples.note, description.note);
     const std::size_t count = description.sample_count();
     parcel.put(std::span<const VolumeDescription>(&description, 1));
-    if (!computed && all_at_once && samples.data == nullptr) {
+    if (!computed && numbers == count && samples.data == nullptr) {
         const std::span<std::byte> block = parcel.append(count * bytes_of(type));
         samples.fill(block);
         check_finite(samples, type, block.data(), count);
         return;
     }
-    fill(samples);
+    fill(samples, numbers);
     samples.data += offset * bytes_of(samples.type);
     if (!computed && is_dense(samples)) {
         check_finite(samples, type, samples.data, count);
