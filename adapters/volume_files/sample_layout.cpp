@@ -60,8 +60,7 @@ double finite(const TextHeader& header, const char* key, const std::vector<doubl
               std::size_t i, double otherwise) {
     if (numbers.empty()) return otherwise;
     if (std::isfinite(numbers[i])) return numbers[i];
-    throw IoError(header.path.string() + " has the " + key + " '" + header.value(key) +
-                  "', which is not finite");
+    throw IoError(header.path.string() + " has " + header.described(key) + ", which is not finite");
 }
 
 /// The first of the keys that is there.
@@ -128,8 +127,8 @@ std::vector<std::string> words_of(const TextHeader& header, const std::string& k
         words.push_back(word);
     }
     if (words.empty() || words.size() == count) return words;
-    throw IoError(header.path.string() + " has the " + key + " '" + header.value(key) +
-                  "', not one for each of its " + std::to_string(count) + " axes");
+    throw IoError(header.path.string() + " has " + header.described(key) +
+                  ", not one for each of its " + std::to_string(count) + " axes");
 }
 
 enum class Role { components, space, frames };
@@ -314,6 +313,7 @@ SampleLayout meta_layout(const fs::path& path) {
           std::pair{"elementtointensityfunctionoffset", &layout.intercept}}) {
         *factor = finite(header, key, header.numbers(key, 1), 0, *factor);
     }
+    if (layout.slope == 0) throw IoError(path.string() + " has an intensity function of slope 0");
     layout.name = header.value("name");
     layout.unit = header.value("distanceunits");
     if (layout.unit == "?") layout.unit.clear();

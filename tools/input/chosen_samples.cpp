@@ -151,6 +151,14 @@ void check_counts(const FileSamples& samples) {
                        " samples; an isosurface needs at least 2 along each direction");
 }
 
+void check_place(const FileSamples& samples) {
+    try {
+        const nestgrid::Lattice<3> lattice(samples.geometry);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(samples.path.string() + " cannot be read: " + error.what());
+    }
+}
+
 void check_finite(const FileSamples& file, const std::string& type, const std::byte* data,
                   std::size_t count) {
     with_samples(type, data, count, [&](auto samples) {
@@ -231,6 +239,7 @@ void check_plausible(const std::filesystem::path& path, std::uintmax_t found, do
 
 void put_chosen(FileSamples& samples, const VolumeChoice& choice, Parcel& parcel) {
     check_counts(samples);
+    check_place(samples);
     const bool list_is_sample = samples.frames_are_list && samples.components.count == 1 &&
                                 !choice.frame && (choice.component || choice.magnitude);
     if (list_is_sample) std::swap(samples.frames, samples.components);
