@@ -180,6 +180,11 @@ def nifti_cases():
     good("packed.nii.gz", nifti("packed.nii.gz", plain, unit="mm"), space="RAS", unit="mm")
     os.rename("packed.nii.gz", "CAPITALS.NII.GZ")
     good("CAPITALS.NII.GZ", plain, space="RAS", unit="mm")
+    program("isosurface", "CAPITALS.NII.GZ", "--value", 88, "-o", "SURFACE.VTP")
+    with open("SURFACE.VTP", "rb") as file:
+        content = file.read()
+    if b'Name="space"' not in content or b'Name="length_unit"' not in content:
+        fail("SURFACE.VTP has no space and no unit")
     good("metres.nii", nifti("metres.nii", plain, unit="meter"), space="RAS", unit="m")
     good("microns.nii", nifti("microns.nii", plain, unit="micron"), space="RAS", unit="µm")
     good("qform.nii", nifti("qform.nii", plain, qform=1, sform=None), space="RAS")
@@ -457,6 +462,7 @@ def itk_cases():
         (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 two 2.5", "'two' is no number"),
         (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 2", "not 3 numbers"),
         (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 nan 2.5", "not finite"),
+        (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 0 2.5", "flat"),
         (b"DimSize = 24 22 20", b"DimSize = 24 22", "3 dimensions"),
         (b"NDims = 3", b"NDims = 4", "4 dimensions"),
         (b"MET_FLOAT", b"MET_FLOOT", "sample type 'MET_FLOOT'"),
