@@ -34,6 +34,7 @@ struct DrawnField {
     std::string name;         ///< of the colours
     std::string input_name;   ///< of the field that isosurfaces are of
     std::string length_unit;  ///< empty where it is unknown
+    std::string space;        ///< such as RAS; empty where it is unknown
     double least = std::numeric_limits<double>::infinity();  ///< of the colours
     double greatest = -std::numeric_limits<double>::infinity();
     double preroll_seconds = 0;

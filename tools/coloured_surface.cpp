@@ -307,7 +307,7 @@ void write(const SurfaceOptions& options, const DrawnField& field, const Coloure
         Panel& panel = panels.back();
         if (!options.output.empty()) {
             written.push_back(data_of(panel, !field.values.empty()));
-            describe(written.back(), field.length_unit);
+            describe(written.back(), field.length_unit, field.space);
         }
         shade(panel);
     }
@@ -359,7 +359,7 @@ void draw_moments(const Moments& moments, const SurfaceOptions& options,
                 if (film != nullptr) {
                     draw_isolines(d, field.values);
                     const auto data = data_of(make_panel(d, field, what), !field.values.empty());
-                    describe(data, field.length_unit);
+                    describe(data, field.length_unit, field.space);
                     film->add(data, *d.time);
                     d.slice.surface = {};
                     d.isosurface = {};
@@ -406,6 +406,7 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
                           [&](double share) { progress.part(share); });
     field.input_name = read.name;
     field.length_unit = read.length_unit;
+    field.space = read.space;
     const bool by_another = what.isovalue && what.function == nullptr;
     field.name = by_another ? input.by : read.name;
     const std::size_t expected =
@@ -428,6 +429,7 @@ void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface&
         write(options, field, what, report);
     }
     report_drawn(field, what, report);
+    if (!read.note.empty()) report.say(read.note);
     const std::string reason = why_empty(moments, what);
     if (!reason.empty()) report.say("the isosurface is empty: " + reason);
     say_what_was_kept(options, report);

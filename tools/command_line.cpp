@@ -13,6 +13,7 @@
 #include <nestgrid/error.hpp>
 
 #include "input_file.hpp"
+#include "raster.hpp"
 #include "suggestion.hpp"
 #include "surface_file.hpp"
 #include "text_header.hpp"
@@ -60,15 +61,25 @@ void add_input(CLI::App& command, Input& input) {
 }
 
 void add_array_option(CLI::App& command, Input& input) {
-    command
-        .add_option("--array", input.array,
-                    "the point data array of a .vti, the field of a .nestgrid")
+    command.add_option("--array", input.array, "the array of a .vti, the field of a .nestgrid")
         ->type_name("NAME")
         ->group("Input");
 }
 
 void add_read_options(CLI::App& command, Input& input) {
     add_array_option(command, input);
+    command
+        .add_option("--frame", input.choice.frame,
+                    "one of several volumes in a file, from 0 [the first]")
+        ->type_name("NUMBER")
+        ->group("Input");
+    command
+        .add_option("--component", input.choice.component,
+                    "one of several numbers per sample, from 0")
+        ->type_name("NUMBER")
+        ->group("Input");
+    command.add_flag("--magnitude", input.choice.magnitude, "or the norm of all of them")
+        ->group("Input");
     command.add_option("--dims", input.raw.dims, "samples of a .raw file in each direction")
         ->type_name("NX,NY,NZ")
         ->group("Input")
@@ -122,6 +133,10 @@ void check(const Input& input) {
         refuse_options(*input.command, {"--array"},
                        "is for .vti and .nestgrid files: " + name + " has one array only");
     }
+    if (format == ".nestgrid" || is_raster(input.path)) {
+        refuse_options(*input.command, {"--frame", "--component", "--magnitude"},
+                       "is for volumes, not for " + name);
+    }
     if (format == ".nestgrid") {
         refuse_options(*input.command, {"--read-limit"},
                        "is for files that foreign code reads, not for .nestgrid");
@@ -130,7 +145,9 @@ void check(const Input& input) {
 
 Volume read_volume(Input& input) {
     input.raw.big_endian = input.endian == "big";
-    return read_volume(input.path, input.array, input.raw, input.read_limit);
+    VolumeChoice choice = input.choice;
+    choice.array = input.array;
+    return read_volume(input.path, choice, input.raw, input.read_limit);
 }
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_isosurface) {

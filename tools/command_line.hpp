@@ -56,7 +56,8 @@ CLI::Validator one_of(std::vector<std::string> words,
 struct Input {
     std::filesystem::path path;
     std::string array;
-    std::string by{};  ///< where it names another field of a .nestgrid, that is component 1
+    std::string by{};       ///< where it names another field of a .nestgrid, that is component 1
+    VolumeChoice choice{};  ///< its array aside
     RawFormat raw;
     std::string endian = "little";
     double read_limit = 0;

@@ -154,7 +154,8 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
         const double threshold = request.collapses ? e.threshold / 2 : e.threshold;
         extract_one<dimension>(hierarchy, criterion_at(threshold), indicators.bounds(), executor,
                                request, e);
-        if (e.surface) describe(e.surface, field.length_unit, {{field.name, request.isovalue}});
+        if (e.surface)
+            describe(e.surface, field.length_unit, field.space, {{field.name, request.isovalue}});
         run.surfaces.push_back(std::move(e));
         if (request.drawn) request.drawn(run.surfaces.back());
     };

@@ -49,6 +49,8 @@ InputField read_volumes(Input& input, const Paths& paths, const std::vector<doub
     field.volumes = volumes;
     field.name_in_file = first.name;
     field.length_unit = first.length_unit;
+    field.space = first.space;
+    field.note = first.note;
     if (!first.name.empty()) field.name = first.name;
     return field;
 }

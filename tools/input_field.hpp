@@ -26,6 +26,8 @@ struct InputField : FrameField {
     std::shared_ptr<const std::vector<Volume>> volumes{};    ///< the files; null for others
     std::string name_in_file{};  ///< of the samples of volumes; empty where the file gives none
     std::string length_unit{};   ///< such as mm; empty where it is not known
+    std::string space{};         ///< such as RAS; empty where the file does not say
+    std::string note{};          ///< a sentence on what of the first file is left out; mostly empty
 };
 
 /// Reads one or more files of one layout, whose frames must be as many as there are times. The

@@ -191,6 +191,7 @@ void run_isosurface(IsosurfaceArguments& o, Report& report) {
     }
     progress.reset();
     report_field(field.name, field.length_unit, report);
+    if (!field.note.empty()) report.say(field.note);
     report_surfaces(run, o.value, seconds, contour, report);
     say_what_distances_are(request, field.length_unit, report);
     say_what_was_kept(o.surface, report);

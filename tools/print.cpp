@@ -231,6 +231,10 @@ void report_info(const Volume& volume, Report& report) {
     const nestgrid::LatticeBisection<3> grid(volume.geometry);
     const auto& samples = volume.geometry.samples;
     report_field(volume.name.empty() ? "value" : volume.name, volume.length_unit, report);
+    if (!volume.space.empty()) {
+        const std::string& unit = volume.length_unit;
+        report.add("space", volume.space + (unit.empty() ? "" : " (" + unit + ")"));
+    }
     report.add("samples", std::vector<double>(samples.begin(), samples.end()));
     report.add("type", volume.type);
     report_range(with_samples(volume,
@@ -243,6 +247,7 @@ void report_info(const Volume& volume, Report& report) {
     report.add("nodes", std::uint64_t{volume.sample_count()});
     report.add("leaf_elements", std::uint64_t{leaf_count(grid)});
     report_lattice<3>(grid, volume.geometry, report);
+    if (!volume.note.empty()) report.say(volume.note);
 }
 
 void report_info(const Raster& raster, Report& report) {

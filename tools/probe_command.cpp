@@ -141,8 +141,11 @@ void probe_all(ProbeArguments& o, const std::vector<Point>& points, Report& repo
         }
     });
     if (report.json()) report_field(field.name, field.length_unit, report);
+    const bool prints_values = o.output.empty() && !as_rows;
+    if (!field.note.empty() && !prints_values) report.say(field.note);
     if (as_rows) return;
     if (o.output.empty()) {
+        if (!field.note.empty()) std::fprintf(stderr, "nestgrid: %s\n", field.note.c_str());
         std::fputs(out.str().c_str(), stdout);
     } else {
         write_text(out.str(), o.output);

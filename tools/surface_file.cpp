@@ -77,7 +77,7 @@ fs::path temporary_beside(const fs::path& path) {
 
 }  // namespace
 
-void describe(vtkPolyData* surface, const std::string& unit,
+void describe(vtkPolyData* surface, const std::string& unit, const std::string& space,
               const std::map<std::string, double>& values) {
     for (const auto& [name, value] : values) {
         const vtkNew<vtkDoubleArray> array;
@@ -85,11 +85,13 @@ void describe(vtkPolyData* surface, const std::string& unit,
         array->InsertNextValue(value);
         surface->GetFieldData()->AddArray(array);
     }
-    if (unit.empty()) return;
-    const vtkNew<vtkStringArray> array;
-    array->SetName("length_unit");
-    array->InsertNextValue(unit);
-    surface->GetFieldData()->AddArray(array);
+    for (const auto& [name, text] : {std::pair{"length_unit", unit}, std::pair{"space", space}}) {
+        if (text.empty()) continue;
+        const vtkNew<vtkStringArray> array;
+        array->SetName(name);
+        array->InsertNextValue(text);
+        surface->GetFieldData()->AddArray(array);
+    }
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> contents_of(vtkPolyData* surface) {

@@ -29,8 +29,9 @@ void write_surface(vtkPolyData* surface, const std::filesystem::path& path);
 
 /// Adds what is known of a whole surface, as field data.
 /// \param unit of lengths ("length_unit"); empty where it is unknown
+/// \param space where the axes point to ("space"), like RAS; empty where it is unknown
 /// \param values by their names: that of the field on an isosurface
-void describe(vtkPolyData* surface, const std::string& unit,
+void describe(vtkPolyData* surface, const std::string& unit, const std::string& space,
               const std::map<std::string, double>& values = {});
 
 /// What a surface has: "triangles", "lines", and how many.

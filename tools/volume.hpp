@@ -13,6 +13,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 
+#include "input/chosen_samples.hpp"
 #include "samples.hpp"
 
 /// What a .raw file does not say about itself.
@@ -31,17 +32,20 @@ struct Volume {
     std::string type;         ///< of the samples, like uint8
     std::string name;         ///< of the samples in the file; empty where it gives none
     std::string length_unit;  ///< such as mm; empty where the file gives none
+    std::string space;        ///< such as RAS, where the axes point to; empty where it is not said
+    std::string note;         ///< a sentence on what is left out or moved; mostly empty
 
     std::size_t sample_count() const;
 };
 
 /// Reads .vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz or .raw in a child process. To be called
 /// before there are threads.
-/// \param array name of the point data array of a .vti file; empty for the active scalars
+/// \param choice of the samples where the file has more than one volume
 /// \param seconds that the child may take; 0 for reading_time(path)
 /// \throw nestgrid::IoError for a file that is missing, truncated, damaged or of an unknown format,
 ///        and for samples that are not finite scalars on at least 2 x 2 x 2 places
-Volume read_volume(const std::filesystem::path& path, const std::string& array,
+/// \throw nestgrid::InvalidInput for a choice that the file does not leave
+Volume read_volume(const std::filesystem::path& path, const VolumeChoice& choice,
                    const RawFormat& raw, double seconds);
 
 /// Tetrahedra of the finest grid inside the domain.

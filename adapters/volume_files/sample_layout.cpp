@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include <nestgrid/error.hpp>
@@ -31,29 +32,12 @@ std::string known_type(const TextHeader& header, const std::string& name, const 
     return type->second;
 }
 
-/// Samples along three directions, of which a header may leave out the last.
-std::array<int, 3> sample_counts(const TextHeader& header, const std::string& key) {
-    std::array<int, 3> counts{1, 1, 1};
-    std::vector<double> numbers = header.numbers(key);
-    while (numbers.size() > 3 && std::find(numbers.begin(), numbers.end(), 1) != numbers.end()) {
-        numbers.erase(std::find(numbers.begin(), numbers.end(), 1));
+int whole_number(const TextHeader& header, const std::string& key, double number) {
+    if (number >= 1 && number <= 1048576 && number == std::floor(number)) {
+        return static_cast<int>(number);
     }
-    bool known = !numbers.empty() && numbers.size() <= 3;
-    for (std::size_t d = 0; known && d < numbers.size(); ++d) {
-        known = numbers[d] >= 1 && numbers[d] <= 1048576 && numbers[d] == std::floor(numbers[d]);
-        if (known) counts[d] = static_cast<int>(numbers[d]);
-    }
-    if (!known) {
-        throw IoError(header.path.string() + " has the size '" + header.value(key) +
-                      "', not that of a volume");
-    }
-    return counts;
-}
-
-void set_point(const std::vector<double>& numbers, Point& point) {
-    for (std::size_t d = 0; d < std::min<std::size_t>(3, numbers.size()); ++d) {
-        if (std::isfinite(numbers[d])) point[d] = numbers[d];
-    }
+    throw IoError(header.path.string() + " has the size '" + header.value(key) +
+                  "', not that of a volume");
 }
 
 /// The numbers of the first key that is there.
@@ -71,28 +55,192 @@ bool is_true(const std::string& value) {
     return first == "t" || first == "y" || first == "1";
 }
 
-void set_meta_geometry(const TextHeader& header, nestgrid::LatticeGeometry<3>& geometry) {
-    geometry.samples = sample_counts(header, "dimsize");
-    set_point(first_numbers(header, {"elementspacing", "elementsize"}), geometry.spacing);
-    set_point(first_numbers(header, {"offset", "position", "origin"}), geometry.origin);
-    const auto axes = first_numbers(header, {"transformmatrix", "rotation", "orientation"});
-    if (axes.size() != 9) return;
-    // MetaImage lists the axes one after the other.
-    for (std::size_t i = 0; i < 9; ++i) geometry.direction[i % 3][i / 3] = axes[i];
+/// Number i of a list, which must be finite; `otherwise` where the list is empty.
+double finite(const TextHeader& header, const char* key, const std::vector<double>& numbers,
+              std::size_t i, double otherwise) {
+    if (numbers.empty()) return otherwise;
+    if (std::isfinite(numbers[i])) return numbers[i];
+    throw IoError(header.path.string() + " has " + header.described(key) + ", which is not finite");
 }
 
-void set_nrrd_geometry(const TextHeader& header, nestgrid::LatticeGeometry<3>& geometry) {
-    geometry.samples = sample_counts(header, "sizes");
-    set_point(header.numbers("spacings"), geometry.spacing);
-    set_point(first_numbers(header, {"space origin", "axis mins", "axismins"}), geometry.origin);
-    const auto axes = header.numbers("space directions");
-    if (axes.size() != 9) return;
-    for (std::size_t d = 0; d < 3; ++d) {
-        const Point axis{axes[3 * d], axes[3 * d + 1], axes[3 * d + 2]};
-        geometry.spacing[d] = nestgrid::norm(axis);
-        for (std::size_t r = 0; r < 3; ++r) {
-            geometry.direction[r][d] = axis[r] / geometry.spacing[d];
+/// The first of the keys that is there.
+const char* first_key(const TextHeader& header, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) {
+        if (!header.value(key).empty()) return key;
+    }
+    return *keys.begin();
+}
+
+/// Multiplies a number of samples that are none of space.
+void add_axis(const TextHeader& header, std::size_t count, std::size_t& product) {
+    if (product > std::size_t{PTRDIFF_MAX} / count) {
+        throw IoError(header.path.string() + " asks for more samples than any memory holds");
+    }
+    product *= count;
+}
+
+/// Sets samples, frames and the place. The axes behind the third one are frames.
+void set_meta_geometry(const TextHeader& header, SampleLayout& layout) {
+    const std::vector<double> sizes = header.numbers("dimsize");
+    const auto dimensions = header.numbers("ndims", 1);
+    const std::size_t n =
+        dimensions.empty() ? sizes.size()
+                           : static_cast<std::size_t>(whole_number(header, "ndims", dimensions[0]));
+    if (sizes.empty() || sizes.size() != n || n > 10) {
+        throw IoError(header.path.string() + " has the size '" + header.value("dimsize") + "' of " +
+                      std::to_string(n) + " dimensions, not that of a volume");
+    }
+    auto& geometry = layout.geometry;
+    const char* const spacing = first_key(header, {"elementspacing", "elementsize"});
+    const char* const origin = first_key(header, {"offset", "position", "origin"});
+    const char* const matrix = first_key(header, {"transformmatrix", "rotation", "orientation"});
+    const auto spacings = header.numbers(spacing, n);
+    const auto places = header.numbers(origin, n);
+    const auto axes = header.numbers(matrix, n * n);
+    geometry.samples = {1, 1, 1};
+    for (std::size_t d = 0; d < n; ++d) {
+        const auto count = whole_number(header, "dimsize", sizes[d]);
+        if (d >= 3) {
+            add_axis(header, static_cast<std::size_t>(count), layout.frames);
+            continue;
         }
+        geometry.samples[d] = count;
+        geometry.spacing[d] = finite(header, spacing, spacings, d, 1);
+        geometry.origin[d] = finite(header, origin, places, d, 0);
+        for (std::size_t r = 0; r < std::min<std::size_t>(n, 3); ++r) {
+            // MetaImage lists the axes one after the other.
+            geometry.direction[r][d] = finite(header, matrix, axes, d * n + r, r == d ? 1 : 0);
+        }
+    }
+}
+
+/// The words of a value, of which each may be a list in brackets; `count` of them, or none.
+std::vector<std::string> words_of(const TextHeader& header, const std::string& key,
+                                  std::size_t count) {
+    std::vector<std::string> words;
+    std::istringstream text(header.value(key));
+    for (std::string word; text >> word;) {
+        std::string more;
+        while (word.front() == '(' && word.find(')') == std::string::npos && text >> more) {
+            word += " " + more;
+        }
+        words.push_back(word);
+    }
+    if (words.empty() || words.size() == count) return words;
+    throw IoError(header.path.string() + " has " + header.described(key) +
+                  ", not one for each of its " + std::to_string(count) + " axes");
+}
+
+enum class Role { components, space, frames };
+
+/// An axis of an array in a NRRD file.
+struct NrrdAxis {
+    std::size_t size = 0;
+    Role role = Role::space;
+    std::vector<double> direction{};  ///< empty where there is none
+    std::optional<double> spacing{}, min{}, max{};
+    bool nodes = false;  ///< whether samples are at both ends
+};
+
+Role role_of(const std::string& kind, const NrrdAxis& axis, bool has_space) {
+    const auto& v = axis.direction;
+    const bool along_time = v.size() == 4 && v[0] == 0 && v[1] == 0 && v[2] == 0;
+    if (kind == "time" || kind == "list" || along_time) return Role::frames;
+    if (kind == "domain" || kind == "space") return Role::space;
+    if (!kind.empty() && kind != "???" && kind != "none") return Role::components;
+    // The axes of space have directions where there is a space.
+    return !has_space || !v.empty() ? Role::space : Role::frames;
+}
+
+std::vector<NrrdAxis> nrrd_axes(const TextHeader& header) {
+    const std::vector<double> sizes = header.numbers("sizes");
+    const std::size_t n = sizes.size();
+    std::vector<NrrdAxis> axes(n);
+    const auto kinds = words_of(header, "kinds", n);
+    const auto directions = words_of(header, "space directions", n);
+    const auto centers = words_of(header, first_key(header, {"centers", "centerings"}), n);
+    const auto spacings = header.numbers("spacings", n);
+    const auto mins = header.numbers(first_key(header, {"axis mins", "axismins"}), n);
+    const auto maxs = header.numbers(first_key(header, {"axis maxs", "axismaxs"}), n);
+    const auto known = [](const std::vector<double>& numbers, std::size_t i) {
+        return i < numbers.size() && std::isfinite(numbers[i]) ? std::optional(numbers[i])
+                                                               : std::nullopt;
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+        NrrdAxis& axis = axes[i];
+        axis.size = static_cast<std::size_t>(whole_number(header, "sizes", sizes[i]));
+        if (i < directions.size() && lower(directions[i]) != "none") {
+            TextHeader one{.path = header.path, .field = {{"space directions", directions[i]}}};
+            axis.direction = one.numbers("space directions");
+        }
+        axis.role = role_of(i < kinds.size() ? lower(kinds[i]) : "", axis, !directions.empty());
+        axis.spacing = known(spacings, i);
+        axis.min = known(mins, i);
+        axis.max = known(maxs, i);
+        axis.nodes = i < centers.size() && lower(centers[i]) == "node";
+    }
+    return axes;
+}
+
+/// Leaves three axes of space: those of one sample become none, then the slowest ones frames.
+void limit_space(std::vector<NrrdAxis>& axes) {
+    const auto of_space = [](const NrrdAxis& axis) { return axis.role == Role::space; };
+    while (std::ranges::count_if(axes, of_space) > 3) {
+        auto left_out = std::ranges::find_if(
+            axes, [&](const NrrdAxis& axis) { return of_space(axis) && axis.size == 1; });
+        if (left_out == axes.end()) {
+            left_out = std::find_if(axes.rbegin(), axes.rend(), of_space).base() - 1;
+        }
+        left_out->role = Role::frames;
+    }
+}
+
+/// The vector from one sample to the next along axis d of the volume. Sets the origin where the
+/// axis has a minimum, which is that of the first cell unless samples are at both ends.
+Point step_along(const NrrdAxis& axis, std::size_t d, Point& origin) {
+    Point step{0, 0, 0};
+    if (!axis.direction.empty()) {
+        std::copy_n(axis.direction.begin(), std::min<std::size_t>(3, axis.direction.size()),
+                    step.begin());
+        return step;
+    }
+    step[d] = axis.spacing.value_or(1);
+    const double steps = static_cast<double>(axis.size) - (axis.nodes ? 1 : 0);
+    if (!axis.spacing && axis.min && axis.max && steps > 0) {
+        step[d] = (*axis.max - *axis.min) / steps;
+    }
+    if (axis.min) origin[d] = *axis.min + (axis.nodes ? 0 : step[d] / 2);
+    return step;
+}
+
+void set_nrrd_geometry(const TextHeader& header, SampleLayout& layout) {
+    std::vector<NrrdAxis> axes = nrrd_axes(header);
+    if (axes.empty()) throw IoError(header.path.string() + " has no sizes");
+    limit_space(axes);
+    auto& geometry = layout.geometry;
+    geometry.samples = {1, 1, 1};
+    std::size_t d = 0;
+    Role last = Role::components;
+    for (const NrrdAxis& axis : axes) {
+        if (axis.role != Role::space && axis.size == 1) continue;
+        if (axis.role < last) {
+            throw IoError(header.path.string() +
+                          " has axes of space that are not side by side, which is not read");
+        }
+        last = axis.role;
+        if (axis.role == Role::components) add_axis(header, axis.size, layout.components);
+        if (axis.role == Role::frames) add_axis(header, axis.size, layout.frames);
+        if (axis.role != Role::space) continue;
+        geometry.samples[d] = static_cast<int>(axis.size);
+        const Point step = step_along(axis, d, geometry.origin);
+        geometry.spacing[d] = nestgrid::norm(step);
+        for (std::size_t r = 0; r < 3; ++r)
+            geometry.direction[r][d] = step[r] / geometry.spacing[d];
+        ++d;
+    }
+    const auto origin = header.numbers("space origin");
+    for (std::size_t r = 0; r < std::min<std::size_t>(3, origin.size()); ++r) {
+        if (std::isfinite(origin[r])) geometry.origin[r] = origin[r];
     }
 }
 
@@ -120,7 +268,8 @@ std::intmax_t skipped(const std::vector<double>& numbers, std::intmax_t least) {
 Encoding nrrd_encoding(const TextHeader& header) {
     static const std::map<std::string, Encoding> encodings{
         {"raw", Encoding::raw},  {"gzip", Encoding::deflated}, {"gz", Encoding::deflated},
-        {"txt", Encoding::text}, {"text", Encoding::text},     {"ascii", Encoding::text}};
+        {"txt", Encoding::text}, {"text", Encoding::text},     {"ascii", Encoding::text},
+        {"hex", Encoding::hex}};
     const auto encoding = encodings.find(lower(header.value("encoding")));
     if (encoding == encodings.end()) {
         throw IoError(header.path.string() + " has the encoding '" + header.value("encoding") +
@@ -131,6 +280,17 @@ Encoding nrrd_encoding(const TextHeader& header) {
 
 }  // namespace
 
+// Fields of the header and what becomes of them:
+//   NDims, DimSize                                  samples and frames
+//   ElementType, ElementNumberOfChannels            type and components
+//   ElementSpacing, else ElementSize; Offset, else Position, else Origin; TransformMatrix, else
+//   Rotation, else Orientation                      the place
+//   ElementDataFile, HeaderSize, BinaryData, CompressedData, BinaryDataByteOrderMSB,
+//   ElementByteOrderMSB                             where the samples are and how they are packed
+//   ElementToIntensityFunctionSlope, ...Offset      slope and intercept
+//   AnatomicalOrientation, DistanceUnits, Name      whether axes are LPS; unit; name
+//   CenterOfRotation, Comment, Color, CompressedDataSize, ElementMin, ElementMax, ElementNBits, ID,
+//   Modality, ObjectType, ObjectSubType, ParentID, SequenceID, others           without effect
 SampleLayout meta_layout(const fs::path& path) {
     static const Names types{
         {"MET_CHAR", "int8"},     {"MET_UCHAR", "uint8"},       {"MET_SHORT", "int16"},
@@ -140,16 +300,28 @@ SampleLayout meta_layout(const fs::path& path) {
     const TextHeader header = read_text_header(path, '=', "elementdatafile");
     const std::string names = header.value("elementdatafile");
     if (names.empty()) throw IoError(path.string() + " is no MetaImage: it names no data file");
-    const auto channels = header.numbers("elementnumberofchannels");
-    if (!channels.empty() && channels[0] != 1) {
-        throw IoError(path.string() + " has " + header.value("elementnumberofchannels") +
-                      " numbers per sample, not one");
-    }
     SampleLayout layout{.path = path};
     layout.type = known_type(header, header.value("elementtype"), types);
-    set_meta_geometry(header, layout.geometry);
+    set_meta_geometry(header, layout);
+    const auto channels = header.numbers("elementnumberofchannels", 1);
+    if (!channels.empty()) {
+        layout.components =
+            static_cast<std::size_t>(whole_number(header, "elementnumberofchannels", channels[0]));
+    }
+    for (const auto& [key, factor] :
+         {std::pair{"elementtointensityfunctionslope", &layout.slope},
+          std::pair{"elementtointensityfunctionoffset", &layout.intercept}}) {
+        *factor = finite(header, key, header.numbers(key, 1), 0, *factor);
+    }
+    if (layout.slope == 0) throw IoError(path.string() + " has an intensity function of slope 0");
     layout.name = header.value("name");
     layout.unit = header.value("distanceunits");
+    if (layout.unit == "?") layout.unit.clear();
+    // Who knows where a patient lies writes places as ITK does.
+    const std::string orientation = header.value("anatomicalorientation");
+    if (orientation.size() >= 3 && orientation.find('?') == std::string::npos) {
+        layout.space = "LPS";
+    }
     const bool local = lower(names) == "local";
     layout.files = local ? std::vector{path} : data_files(header, names);
     layout.header_bytes = local ? header.length : 0;
@@ -186,19 +358,18 @@ SampleLayout nrrd_layout(const fs::path& path) {
         return names;
     }();
     const TextHeader header = read_text_header(path, ':', "data file", "LIST");
-    if (!header.ended) {
+    const std::string names = header.value(first_key(header, {"data file", "datafile"}));
+    if (!header.ended && names.empty()) {
         throw IoError(path.string() + " is truncated or no NRRD file: its header does not end");
     }
     SampleLayout layout{.path = path};
     layout.type = known_type(header, lower(header.value("type")), types);
-    set_nrrd_geometry(header, layout.geometry);
+    set_nrrd_geometry(header, layout);
     layout.name = header.value("content");
     layout.unit = common_word(header.value("space units"));
     if (layout.unit.empty()) layout.unit = common_word(header.value("units"));
     layout.encoding = nrrd_encoding(header);
     layout.big_endian = lower(header.value("endian")) == "big";
-    std::string names = header.value("data file");
-    if (names.empty()) names = header.value("datafile");
     layout.files = names.empty() ? std::vector{path} : data_files(header, names);
     layout.header_bytes = names.empty() ? header.length : 0;
     layout.skipped_lines =

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Volumes whose samples stand one after the other, x fastest, in a file or several: MetaImage, NRRD
-// and bare samples. Their headers say where, and how they are packed.
+// and bare samples. Their headers say where, and how they are packed. A sample may have several
+// components, which stand together, and a volume several frames, one behind the other.
 //
 // Invariant: sizes are compared with the files that hold the samples before anything is allocated.
 #pragma once
@@ -15,14 +16,19 @@
 
 #include <nestgrid/adapters/lattice.hpp>
 
-enum class Encoding { raw, deflated, text };
+enum class Encoding { raw, deflated, text, hex };
 
 struct SampleLayout {
     std::filesystem::path path;  ///< of the header
     std::string type{};          ///< of the samples, like uint8
     std::string name{};          ///< of the data; empty where the header has none
     std::string unit{};          ///< of length, like mm; empty where the header has none
+    std::string space{};         ///< like LPS: where the axes point to; empty where it is not said
     nestgrid::LatticeGeometry<3> geometry{};
+    std::size_t components = 1;
+    std::size_t frames = 1;
+    double slope = 1;  ///< a value is slope times sample plus intercept
+    double intercept = 0;
     std::vector<std::filesystem::path> files{};  ///< each holds as many samples as the others
     std::uintmax_t header_bytes = 0;             ///< before everything else in each file
     std::uintmax_t skipped_lines = 0;            ///< behind them
@@ -37,6 +43,7 @@ SampleLayout nrrd_layout(const std::filesystem::path& path);
 
 /// The bytes of all samples in memory.
 /// \throw nestgrid::IoError where the files are too short for them
+/// \throw std::bad_alloc where no memory could hold them
 std::size_t checked_size(const SampleLayout& layout);
 
 /// Reads all samples.

@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -31,6 +32,7 @@ std::uintmax_t least_size(const SampleLayout& layout, std::uintmax_t samples) {
     const std::uintmax_t bytes = samples * bytes_of(layout.type);
     if (layout.encoding == Encoding::deflated) return bytes / most_packed;
     if (layout.encoding == Encoding::text) return 2 * samples - 1;
+    if (layout.encoding == Encoding::hex) return 2 * bytes;
     return bytes;
 }
 
@@ -112,6 +114,22 @@ void read_text(std::istream& file, const SampleLayout& layout, const fs::path& p
                  });
 }
 
+/// Reads two hexadecimal digits for each byte.
+void read_hex(std::istream& file, const fs::path& path, std::span<std::byte> bytes) {
+    const auto digit = [](char c) { return std::isdigit(c) != 0 ? c - '0' : (c | 32) - 'a' + 10; };
+    for (std::byte& byte : bytes) {
+        char high = 0;
+        char low = 0;
+        file >> high >> low;
+        if (std::isxdigit(static_cast<unsigned char>(high)) == 0 ||
+            std::isxdigit(static_cast<unsigned char>(low)) == 0) {
+            throw IoError(path.string() + " is truncated or damaged: only " +
+                          std::to_string(&byte - bytes.data()) + " of its bytes are hexadecimal");
+        }
+        byte = static_cast<std::byte>(16 * digit(high) + digit(low));
+    }
+}
+
 void swap_bytes(std::span<std::byte> samples, std::size_t size) {
     for (std::size_t i = 0; i + size <= samples.size(); i += size) {
         std::reverse(samples.begin() + static_cast<std::ptrdiff_t>(i),
@@ -124,6 +142,10 @@ void swap_bytes(std::span<std::byte> samples, std::size_t size) {
 std::size_t checked_size(const SampleLayout& layout) {
     std::uintmax_t samples = 1;  // at most 2^60
     for (const int n : layout.geometry.samples) samples *= static_cast<std::uintmax_t>(n);
+    for (const std::size_t n : {layout.components, layout.frames}) {
+        if (n == 0 || samples > PTRDIFF_MAX / 8 / n) throw std::bad_alloc();
+        samples *= n;
+    }
     const std::uintmax_t parts = layout.files.size();
     const std::string path = layout.path.string();
     if (samples % parts != 0) {
@@ -141,7 +163,6 @@ std::size_t checked_size(const SampleLayout& layout) {
                           std::to_string(expected));
         }
     }
-    if (samples > PTRDIFF_MAX / 8) throw std::bad_alloc();
     return samples * bytes_of(layout.type);
 }
 
@@ -153,6 +174,7 @@ void read_samples(const SampleLayout& layout, std::span<std::byte> samples) {
         std::ifstream file = open_samples(layout, path, share);
         if (layout.encoding == Encoding::raw) read_raw(file, path, part);
         if (layout.encoding == Encoding::deflated) read_deflated(file, path, part);
+        if (layout.encoding == Encoding::hex) read_hex(file, path, part);
         if (layout.encoding == Encoding::text) read_text(file, layout, path, part);
     }
     if (layout.big_endian && layout.encoding != Encoding::text) {

@@ -74,10 +74,24 @@ std::vector<double> TextHeader::numbers(const std::string& key) const {
     std::istringstream words(text);
     for (std::string word; words >> word;) {
         char* end = nullptr;
-        const double number = std::strtod(word.c_str(), &end);
-        if (*end == '\0') result.push_back(number);
+        result.push_back(std::strtod(word.c_str(), &end));
+        if (*end == '\0') continue;
+        throw IoError(path.string() + " has " + described(key) + ", of which '" + word +
+                      "' is no number");
     }
     return result;
+}
+
+std::vector<double> TextHeader::numbers(const std::string& key, std::size_t count) const {
+    std::vector<double> result = numbers(key);
+    if (result.empty() || result.size() == count) return result;
+    throw IoError(path.string() + " has " + described(key) + ", not " + std::to_string(count) +
+                  (count == 1 ? " number" : " numbers"));
+}
+
+std::string TextHeader::described(const std::string& key) const {
+    const auto spelled = spelling.find(key);
+    return "the " + (spelled == spelling.end() ? key : spelled->second) + " '" + value(key) + "'";
 }
 
 std::string TextHeader::value(const std::string& key) const {
@@ -99,6 +113,7 @@ TextHeader read_text_header(const fs::path& path, char separator, const std::str
         if (at == std::string::npos || line[0] == '#' || line.compare(at, 2, ":=") == 0) continue;
         const std::string key = trimmed(lower(line.substr(0, at)));
         header.field[key] = trimmed(line.substr(at + 1));
+        header.spelling[key] = trimmed(line.substr(0, at));
         header.ended = key == last && header.field[key].starts_with(last_value);
     }
     return header;

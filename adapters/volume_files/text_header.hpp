@@ -15,12 +15,18 @@ std::string lower(std::string text);
 /// Lines "key <separator> value" of a header.
 struct TextHeader {
     std::filesystem::path path;
-    std::map<std::string, std::string> field;  ///< by keys in lower case
-    std::uintmax_t length = 0;                 ///< bytes
-    bool ended = false;                        ///< by a blank line or by the last key
+    std::map<std::string, std::string> field;       ///< by keys in lower case
+    std::map<std::string, std::string> spelling{};  ///< of these keys in the file
+    std::uintmax_t length = 0;                      ///< bytes
+    bool ended = false;                             ///< by a blank line or by the last key
 
-    /// The words of a value that are numbers, brackets and commas aside.
+    /// The words of a value, brackets and commas aside.
+    /// \throw nestgrid::IoError where one of them is no number
     std::vector<double> numbers(const std::string& key) const;
+    /// The same; their number must be `count`, or 0 where there is no such key.
+    std::vector<double> numbers(const std::string& key, std::size_t count) const;
+    /// "the ElementSpacing '1 1 2'", for sentences.
+    std::string described(const std::string& key) const;
     /// Empty where there is no such key.
     std::string value(const std::string& key) const;
 };

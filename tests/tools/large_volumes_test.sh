@@ -41,8 +41,8 @@ nrrd 'encoding: raw' 'endian: big' 'datafile: ./swapped.raw' '' >swapped.nhdr
 nrrd 'encoding: gzip' 'endian: little' 'data file: large.raw.gz' >packed.nhdr && echo >>packed.nhdr
 nrrd 'encoding: raw' 'byte skip: 100' 'data file: behind.raw' '' >skip.nhdr
 nrrd 'encoding: raw' 'byte skip: -1' 'data file: behind.raw' '' >behind.nhdr
-nrrd 'encoding: raw' 'data file: LIST' part0.raw part1.raw part2.raw part3.raw >list.nhdr
-nrrd 'encoding: raw' 'data file: part%01d.raw 0 3 1' '' >pattern.nhdr
+nrrd 'encoding: raw' 'data file: LIST 3' part0.raw part1.raw part2.raw part3.raw >list.nhdr
+nrrd 'encoding: raw' 'data file: part%01d.raw 0 3 1 3' '' >pattern.nhdr
 nrrd 'encoding: ascii' 'data file: large.txt' '' >text.nhdr
 { nrrd 'encoding: raw' 'endian: little' '' && cat large.raw; } >plain.nrrd
 { nrrd 'encoding: gzip' 'endian: little' '' && cat large.raw.gz; } >packed.nrrd
@@ -85,7 +85,7 @@ for file in large_packed.mha large.nii.gz large.nii plain.nrrd packed.nrrd text.
     head -c $(($(stat -c %s $file) * 3 / 4)) $file >cut_$file
 done
 # A header that asks for 64 GB, which a file of this size could hold.
-nrrd 'encoding: gzip' 'data file: bomb.gz' '' | sed 's/256 256 108/1048576 32768 1/' >bomb.nhdr
+nrrd 'encoding: gzip' 'data file: bomb.gz' '' | sed 's/256 256 108/1048576 16384 2/' >bomb.nhdr
 truncate -s 70000000 bomb.gz
 for file in cut.mhd cut_plain.nhdr cut_packed.nhdr cut_large_packed.mha cut_large.nii.gz cut_large.nii \
     cut_plain.nrrd cut_packed.nrrd cut_text.nrrd cut_large.vti bomb.nhdr; do

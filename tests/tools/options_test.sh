@@ -72,6 +72,9 @@ run mesh quad.obj --family red-green --field 'x*y' --refine 3 -o quads.nestgrid
 raw='v.raw --dims 20,24,18 --type uint8'
 for name in a b; do head -c 8000 v.raw | tail -c 7680 >$name.raw; done
 head -c 8640 v.raw | tail -c 7680 >b.raw
+local_samples() { printf '%s\n' 'DimSize = 20 24 9' 'ElementSpacing = 1 1 2' 'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' && cat v.raw; }
+{ echo 'NDims = 4' && local_samples | sed 's/24 9$/24 9 2/; s/1 1 2$/1 1 2 1/'; } >series.mha
+{ printf '%s\n' 'NDims = 3' 'ElementNumberOfChannels = 2' && local_samples; } >vectors.mha
 frames='a.raw b.raw --dims 20,24,16 --type uint8'
 
 declare -A base=([isosurface]='--value 130' [slice]='--axis z --at 9' [isolines]='--axis z --at 9 --count 3'
@@ -87,6 +90,14 @@ for command in isosurface slice isolines boundary probe info; do
     void $command 'is for .raw files' "v.nii.gz $options" --endian big
     void $command 'is for .raw files' "v.nrrd $options" --spacing 1,1,1
     void $command 'is for .vti and .nestgrid' "v.mha $options" --array value
+    void $command 'one frame only' "v.mha $options" --frame 0
+    void $command 'one number per sample' "v.nrrd $options" --component 0
+    void $command 'one number per sample' "v.vti $options" --magnitude
+    void $command 'is for volumes' "two.nestgrid $([ $command = info ] || sed 's/^/--array x /; s/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/' <<<"$options")" --magnitude
+    effect $command "series.mha $options" --frame 1
+    differ $command --component "vectors.mha $options --component 0" "vectors.mha $options --component 1"
+    differ $command --magnitude "vectors.mha $options --component 0" "vectors.mha $options --magnitude"
+    refused 1 'exclude each other' $command vectors.mha $options --component 0 --magnitude
     void $command 'not for .nestgrid' "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
     refused 1 'give --dims' $command v.raw $options && echo "$command --dims" >>covered
     refused 1 'has 8640 bytes' $command v.raw $options --dims 20,24,18 --type int16 && echo "$command --type" >>covered

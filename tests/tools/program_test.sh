@@ -176,7 +176,10 @@ refused 1 '3 numbers per sample' isosurface colours.vti --value 1
     tail -c +51 v.nii
     tail -c +353 v.nii
 } >series.nii
-refused 1 'series.nii has 2 volumes, one after the other' isosurface series.nii --value 1
+run info series.nii
+grep -q '^frame 0 of the 2 in series.nii is read; --frame chooses another, from 0 or 1$' out || fail "series.nii: $(cat out)"
+refused 1 'series.nii has no frame 2: --frame is 0 or 1' info series.nii --frame 2
+cp v.vti V.VTI && run isosurface V.VTI --value 130 -o X.STL && [ -s X.STL ] || fail "endings in capital letters"
 refused 1 "no point data array 'rain'" isosurface v.vti --array rain --value 1
 refused 1 'does not exist' isosurface nothing.vti --value 1
 echo x >what.abc

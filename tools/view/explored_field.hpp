@@ -50,6 +50,7 @@ struct ExploredField : FrameField {
     std::string title = "field";  ///< of the page: the name of a file, say
     std::array<Point, 2> box{};   ///< the least and the greatest coordinates of the domain
     std::string length_unit{};    ///< such as mm; empty where it is not known
+    std::string note{};           ///< a sentence on what of the file is left out; mostly empty
     std::size_t samples = 0;      ///< of a frame; 0 where the field has nodes
     /// Of the values of all frames, where they are known without the nodes beyond the data.
     std::optional<std::array<double, 2>> range{};

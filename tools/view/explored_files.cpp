@@ -50,6 +50,7 @@ ExploredField read_explored(Input& input, const Paths& more, const std::vector<d
                 describe_values(f, read.value_count, read.value);
             }
             f.length_unit = read.length_unit;
+            f.note = read.note;
             f.title = path.filename().string();
             if (!more.empty()) f.title += " … " + more.back().filename().string();
             return f;

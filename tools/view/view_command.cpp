@@ -134,6 +134,11 @@ void run_view(ViewArguments& o, Report& report) {
     std::optional<ProgressLine> progress(std::in_place);
     progress->show("reading");
     ExploredField field = read_explored(o.input, o.more, o.times);
+    if (!field.note.empty()) {
+        progress.reset();
+        std::fprintf(stderr, "nestgrid: %s\n", field.note.c_str());
+        progress.emplace();
+    }
     progress->show("preroll");
 
     // The threads that follow leave these signals to the one that waits for them.

@@ -8,6 +8,8 @@ import json
 import os
 import subprocess
 import sys
+import warnings
+from dataclasses import dataclass
 from typing import IO, Any, Sequence, Union
 
 import numpy as np
@@ -29,6 +31,9 @@ SUFFIXES = [".nestgrid", ".vti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".nii
 @takes(
     path=path_kind,
     array=text,
+    frame=optional(whole(0, 1 << 40)),
+    component=optional(whole(0, 1 << 40)),
+    magnitude=flag,
     dims=optional(sequence(whole(1, 1 << 20), "3 whole numbers")),
     type=optional(sample_type),
     big_endian=flag,
@@ -38,6 +43,9 @@ def load(
     path: str | os.PathLike[str],
     array: str = "",
     *,
+    frame: int | None = None,
+    component: int | None = None,
+    magnitude: bool = False,
     dims: Sequence[int] | None = None,
     type: SampleType | None = None,
     big_endian: bool = False,
@@ -49,6 +57,10 @@ def load(
                 which are volumes: Volume.array[i, j, k] is sample i of row j of slice k. Reading
                 .vti and .nii needs VTK's Python package
     array       the name of the field, for .nestgrid and .vti; "": the only one, or the active one
+    frame       which of several volumes in a file, from 0; None: the first, with a warning that
+                tells how many there are
+    component   which of several numbers per sample, from 0
+    magnitude   or the norm of all of them
     dims        for .raw alone, which does not describe itself: samples along x, y and z
     type        for .raw alone: of the samples, "uint8" to "float64"
     big_endian  for .raw alone: whether the highest byte of a sample comes first
@@ -68,15 +80,82 @@ def load(
         raise InvalidInput(f"load(): {given[0]} is for .raw files: '{path}' describes itself")
     if array and suffix not in (".nestgrid", ".vti"):
         raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
+    choice = Choice(frame, component, magnitude)
+    if suffix in (".nestgrid", ".raw") and choice != Choice():
+        raise InvalidInput(
+            f"load(): frame, component and magnitude choose nothing in '{path}', which has one "
+            "number per sample"
+        )
     if suffix == ".nestgrid":
         return _hierarchy(str(path), array)
     _require_file(str(path))
     if suffix == ".raw":
         return _raw(str(path), dims, type, big_endian, spacing)
     if suffix in (".vti", ".nii", ".nii.gz"):
-        return _with_vtk(str(path), array)
-    place = _nestgrid.volume_file(str(path), suffix in (".mhd", ".mha"))
-    return _volume(str(path), **place)
+        return _with_vtk(str(path), array, choice)
+    place: dict[str, Any] = dict(_nestgrid.volume_file(str(path), suffix in (".mhd", ".mha")))
+    return _volume(str(path), _chosen(str(path), choice, **_split(place)), **place)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Which numbers of a file with several for each place are wanted."""
+
+    frame: int | None = None
+    component: int | None = None
+    magnitude: bool = False
+
+
+def _split(place: dict[str, Any]) -> dict[str, Any]:
+    """Takes the numbers and what they mean away from where they are."""
+    return {each: place.pop(each) for each in ("numbers", "slope", "intercept")}
+
+
+def _numbered(path: str, what: str, number: int, count: int) -> int:
+    if number < count:
+        return number
+    raise InvalidInput(f"{path} has no {what} {number}: {what} is from 0 to {count - 1}")
+
+
+def _chosen(
+    path: str, choice: Choice, numbers: np.ndarray, slope: float, intercept: float
+) -> np.ndarray:
+    """The values of one frame.
+
+    numbers: one index for the component, three for the place, one for the frame
+    """
+    components, frames = numbers.shape[0], numbers.shape[4]
+    if choice.component is not None and choice.magnitude:
+        raise InvalidInput("load(): component and magnitude exclude each other")
+    if frames == 1 and choice.frame is not None:
+        raise InvalidInput(f"load(): frame chooses nothing: {path} has one frame only")
+    if components == 1 and (choice.component is not None or choice.magnitude):
+        given = "magnitude" if choice.magnitude else "component"
+        raise InvalidInput(f"load(): {given} chooses nothing: {path} has one number per sample")
+    if components > 1 and choice.component is None and not choice.magnitude:
+        raise InvalidInput(
+            f"{path} has {components} numbers per sample, not one: choose by component, "
+            f"from 0 to {components - 1}, or by magnitude=True"
+        )
+    if frames > 1 and choice.frame is None:
+        warnings.warn(
+            f"frame 0 of the {frames} in {os.path.basename(path)} is read; frame= chooses "
+            f"another, from 0 to {frames - 1}",
+            stacklevel=4,
+        )
+    values = numbers[..., _numbered(path, "frame", choice.frame or 0, frames)]
+    if choice.component is not None:
+        part = _numbered(path, "component", choice.component, components)
+        values = values[part : part + 1]
+    if slope != 1 or intercept != 0 or choice.magnitude:
+        # Of a type that keeps the digits, as the program's.
+        small = numbers.dtype.itemsize <= 2 and abs(intercept) <= 8e6 * abs(slope)
+        result = np.float32 if small or numbers.dtype == np.float32 else np.float64
+        values = values * np.float64(slope) + np.float64(intercept)
+        if choice.magnitude:
+            values = np.linalg.norm(values, axis=0, keepdims=True)
+        values = values.astype(result)
+    return np.asfortranarray(values[0])
 
 
 class LoadedField(Field):
@@ -196,7 +275,7 @@ def _read_into(stream: IO[bytes], part: memoryview) -> int:
     return len(data)
 
 
-def _with_vtk(path: str, array: str) -> Volume:
+def _with_vtk(path: str, array: str, choice: Choice) -> Volume:
     """Reads in another process: damaged files may crash VTK, and Ctrl-C ends it at once."""
     program = os.path.join(os.path.dirname(__file__), "_read_vtk.py")
     command = [sys.executable or "python3", program, os.path.abspath(path), array]
@@ -226,4 +305,11 @@ def _with_vtk(path: str, array: str) -> Volume:
         raise (InvalidInput if place.get("argument") else IoError)(sentence)
     if not place:
         raise IoError(f"{path} cannot be read: its reader ended with {reader.returncode}")
-    return _volume(path, samples.T, **place)
+    # The components of a frame are side by side, those of the next one behind them.
+    numbers = samples.T
+    numbers = numbers.reshape((-1, place.pop("frames", 1), *numbers.shape[1:]), order="F")
+    numbers = np.moveaxis(numbers, 1, 4)
+    slope, intercept = place.pop("slope", 1), place.pop("intercept", 0)
+    if note := place.pop("note", ""):
+        warnings.warn(note, stacklevel=3)
+    return _volume(path, _chosen(path, choice, numbers, slope, intercept), **place)

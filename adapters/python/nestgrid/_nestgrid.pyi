@@ -45,7 +45,9 @@ class Frames:
     def at(self, t: float, cubic: bool, threads: int) -> Source: ...
 
 class _VolumeFile(TypedDict):
-    array: np.ndarray
+    numbers: np.ndarray
+    slope: float
+    intercept: float
     spacing: list[float]
     origin: list[float]
     direction: list[list[float]]

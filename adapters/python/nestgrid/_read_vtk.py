@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import math
 import os
 import sys
 from typing import Any, Sequence
@@ -77,6 +78,33 @@ def check_size(path: str, reader: Any) -> int:
     return samples
 
 
+def names_of(data: Any) -> list[str]:
+    return [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+
+
+def chosen_array(path: str, name: str, data: Any) -> Any:
+    """The named array; without a name, the active one, else the only one; None: there is none."""
+    if name:
+        return data.GetArray(name)
+    names = names_of(data)
+    if data.GetScalars() is not None or len(names) < 2:
+        return data.GetScalars() or data.GetArray(0)
+    listed = ", ".join(f"'{name}'" for name in names)
+    raise Refused(f"{path} has several arrays, choose one by array: {listed}", True, names)
+
+
+def move_to_centres(path: str, place: dict[str, Any]) -> None:
+    """Values of cells are those at their centres, which is exact where the data are linear."""
+    for d in range(3):
+        if place["shape"][d] < 2:
+            continue
+        place["shape"][d] -= 1
+        for r in range(3):
+            place["origin"][r] += place["direction"][r][d] * place["spacing"][d] / 2
+    name = os.path.basename(path)
+    place["note"] = f"the cell data of {name} are taken at the centres of the cells"
+
+
 def read_vti(path: str, array: str) -> tuple[Any, dict[str, Any]]:
     from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
@@ -94,22 +122,29 @@ def read_vti(path: str, array: str) -> tuple[Any, dict[str, Any]]:
     reader.Update()
     errors.check()
     image = reader.GetOutput()
-    data = image.GetPointData()
-    names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
-    if array and data.SetActiveScalars(array) < 0:
+    points, cells = image.GetPointData(), image.GetCellData()
+    scalars = chosen_array(path, array, points)
+    at_centres = scalars is None
+    if scalars is None:
+        scalars = chosen_array(path, array, cells)
+    if scalars is None and array:
+        names = names_of(points) + names_of(cells)
         raise Refused(f"{path} has no point data array '{array}'", True, names)
-    if data.GetScalars() is None and len(names) == 1:
-        data.SetActiveScalars(names[0])
+    if scalars is None:
+        raise Refused(f"{path} has neither point nor cell data", True)
     extent = image.GetExtent()
     place: dict[str, Any] = {"origin": [0.0, 0.0, 0.0]}
     image.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], place["origin"])
     matrix = image.GetDirectionMatrix()
     place["direction"] = [[matrix.GetElement(r, c) for c in range(3)] for r in range(3)]
-    scalars = data.GetScalars()
-    place["name"] = (scalars.GetName() or "") if scalars is not None else ""
+    place["spacing"] = list(image.GetSpacing())
+    place["shape"] = list(image.GetDimensions())
+    if at_centres:
+        move_to_centres(path, place)
+    place["name"] = scalars.GetName() or ""
     if place["name"] == "ImageScalars":  # VTK's own name for what nobody has named
         place["name"] = ""
-    return image, place | {"unit": ""}
+    return scalars, place | {"unit": ""}
 
 
 def check_nifti_size(path: str, reader: Any, samples: int) -> None:
@@ -143,14 +178,16 @@ def read_nifti(path: str) -> tuple[Any, dict[str, Any]]:
     reader.SetFileName(path)
     samples = check_size(path, reader)
     errors.check()
-    if (volumes := reader.GetTimeDimension()) > 1:
-        raise Refused(
-            f"{path} has {volumes} volumes, one after the other: give each in a file of its own"
-        )
-    check_nifti_size(path, reader, samples)
+    header = reader.GetNIFTIHeader()
+    axes = [max(1, header.GetDim(d)) for d in range(4, 1 + min(7, header.GetDim(0)))]
+    frames, vectors = (axes + [1, 1])[:2]
+    for d, count in enumerate(axes[2:], start=6):
+        if count > 1:
+            raise Refused(f"{path} has {count} samples along its dimension {d}, which is not read")
+    check_nifti_size(path, reader, samples * frames * vectors)
+    reader.TimeAsVectorOn()
     reader.Update()
     errors.check()
-    header = reader.GetNIFTIHeader()
     place: dict[str, Any] = {"origin": [0.0, 0.0, 0.0]}
     place["direction"] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     matrix = reader.GetSFormMatrix() or reader.GetQFormMatrix()
@@ -159,31 +196,31 @@ def read_nifti(path: str) -> tuple[Any, dict[str, Any]]:
         place["origin"] = [matrix.GetElement(r, 3) for r in range(3)]
     place["unit"] = LENGTHS.get(header.GetXYZTUnits() & 7, "")
     place["name"] = header.GetIntentName() or ""
-    return reader.GetOutput(), place
+    place["frames"] = frames
+    slope, intercept = header.GetSclSlope(), header.GetSclInter()
+    if slope != 0 and math.isfinite(slope):  # else the numbers are the values
+        if not math.isfinite(intercept):
+            raise Refused(f"{path} has a scl_inter that is not a finite number")
+        place["slope"], place["intercept"] = slope, intercept
+    image = reader.GetOutput()
+    place["spacing"] = list(image.GetSpacing())
+    place["shape"] = list(image.GetDimensions())
+    scalars = image.GetPointData().GetScalars()
+    if scalars is None:
+        raise Refused(f"{path} holds no samples")
+    return scalars, place
 
 
 def read(path: str, array: str) -> tuple[dict[str, Any], memoryview]:
     is_vti = path.lower().endswith(".vti")
-    image, place = read_vti(path, array) if is_vti else read_nifti(path)
-    data = image.GetPointData()
-    scalars = data.GetScalars()
-    if scalars is None:
-        names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
-        if names:
-            listed = ", ".join(f"'{name}'" for name in names)
-            raise Refused(f"{path} has several arrays, choose one by array: {listed}", True, names)
-        raise Refused(f"{path} has no point data that could be contoured", True)
-    if scalars.GetNumberOfComponents() != 1:
-        raise Refused(
-            f"{path} has {scalars.GetNumberOfComponents()} numbers per sample, not one", True
-        )
+    scalars, place = read_vti(path, array) if is_vti else read_nifti(path)
     kind = TYPES.get(scalars.GetDataTypeAsString())
     if kind is None:
         raise Refused(f"{path} has samples of a type that is not read", True)
-    shape = list(image.GetDimensions())
-    if scalars.GetNumberOfTuples() != shape[0] * shape[1] * shape[2]:
+    if scalars.GetNumberOfTuples() != math.prod(place["shape"]):
         raise Refused(f"{path} holds fewer samples than its header says")
-    place |= {"type": kind, "shape": shape, "spacing": list(image.GetSpacing())}
+    place["shape"].insert(0, scalars.GetNumberOfComponents())
+    place["type"] = kind
     return place, memoryview(scalars)
 
 

@@ -32,24 +32,28 @@ std::shared_ptr<VolumeFile> read_file(const std::filesystem::path& path, bool is
     return file;
 }
 
-/// The samples, first index fastest, and where they are in space.
+/// The samples, with a number for each component in front of the indices and one for each frame
+/// behind them, first index fastest; and what they mean and where they are in space.
 py::dict volume_file(const std::string& path, bool is_meta) {
     using namespace py::literals;
     const auto file =
         interruptible(1, [path, is_meta](const Call&) { return read_file(path, is_meta); });
-    const LatticeGeometry<3>& geometry = file->layout.geometry;
-    const py::dtype type(file->layout.type);
-    const auto& counts = geometry.samples;
-    const std::vector<py::ssize_t> shape(counts.begin(), counts.end());
-    const py::ssize_t size = type.itemsize();
-    const std::vector<py::ssize_t> strides{size, size * shape[0], size * shape[0] * shape[1]};
+    const SampleLayout& layout = file->layout;
+    const LatticeGeometry<3>& geometry = layout.geometry;
+    const py::dtype type(layout.type);
+    std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(layout.components)};
+    shape.insert(shape.end(), geometry.samples.begin(), geometry.samples.end());
+    shape.push_back(static_cast<py::ssize_t>(layout.frames));
+    std::vector<py::ssize_t> strides{type.itemsize()};
+    for (std::size_t i = 0; i < 4; ++i) strides.push_back(strides[i] * shape[i]);
     const py::capsule memory(new std::shared_ptr<VolumeFile>(file), [](void* owner) {
         delete static_cast<std::shared_ptr<VolumeFile>*>(owner);
     });
-    return py::dict("array"_a = py::array(type, shape, strides, file->samples.get(), memory),
+    return py::dict("numbers"_a = py::array(type, shape, strides, file->samples.get(), memory),
+                    "slope"_a = layout.slope, "intercept"_a = layout.intercept,
                     "spacing"_a = geometry.spacing, "origin"_a = geometry.origin,
-                    "direction"_a = geometry.direction, "name"_a = file->layout.name,
-                    "unit"_a = file->layout.unit);
+                    "direction"_a = geometry.direction, "name"_a = layout.name,
+                    "unit"_a = layout.unit);
 }
 
 }  // namespace

@@ -103,15 +103,23 @@ def test_nifti(samples, tmp_path, suffix):
     assert (volume.name, volume.unit) == ("heat", "mm")
 
 
-def test_nifti_of_several_volumes_is_refused(samples, tmp_path):
+def test_nifti_of_several_volumes(samples, tmp_path):
     one = write(vtkNIFTIImageWriter(), image_of(samples), tmp_path / "one.nii")
     data = bytearray(one.read_bytes())
     data[40:42] = (4).to_bytes(2, "little")
     data[48:50] = (2).to_bytes(2, "little")
     series = tmp_path / "series.nii"
-    series.write_bytes(data + data[352:])
-    with pytest.raises(nestgrid.IoError, match="series.nii has 2 volumes, one after the other"):
-        nestgrid.load(series)
+    series.write_bytes(data + bytes(reversed(data[352:])))
+    with pytest.warns(UserWarning, match="frame 0 of the 2 in series.nii is read; frame= chooses another"):
+        first = nestgrid.load(series)
+    np.testing.assert_array_equal(first.array, samples)
+    second = nestgrid.load(series, frame=1).array
+    assert second.shape == samples.shape
+    assert second.tobytes("F") == samples.tobytes("F")[::-1]
+    with pytest.raises(nestgrid.InvalidInput, match="series.nii has no frame 2: frame is from 0 to 1"):
+        nestgrid.load(series, frame=2)
+    with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
+        nestgrid.load(series, frame=1, component=0)
 
 
 def nrrd(samples, encoding):

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// MetaImage (.mha and .mhd). The header is read here, not by the library of MetaImage that VTK and
+// ITK have, which takes words that are no numbers for 0 and gives what is in memory for samples
+// that a file lacks.
+#include "input/file_samples.hpp"
+#include "sample_layout.hpp"
+
+FileSamples read_meta_image(const std::filesystem::path& path, const WantedSamples& /*wanted*/) {
+    return read_layout(meta_layout(path));
+}
