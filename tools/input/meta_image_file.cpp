@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // MetaImage (.mha and .mhd). The header is read here, not by the library of MetaImage that VTK and
-// ITK have, which takes words that are no numbers for 0 and gives what is in memory for samples
-// that a file lacks.
+// ITK have, which takes truncated packed samples, and slabs in several files for garbage, without a
+// word.
 #include "input/file_samples.hpp"
 #include "sample_layout.hpp"
 

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NIfTI-1 and NIfTI-2, read by VTK, which keeps sheared axes and samples that are no numbers. (The
-// library behind ITK refuses the first and NIfTI-2, and turns the second into 0.)
+// NIfTI-1 and NIfTI-2, read by VTK, which keeps sheared axes. (ITK 5.2 refuses these and NIfTI-2.)
 //
 // Fields of the header and what becomes of them:
 //   dim, pixdim, datatype, vox_offset, byte order, qform, sform   by VTK; sform goes before qform
