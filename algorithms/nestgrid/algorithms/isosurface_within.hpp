@@ -52,9 +52,7 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
 
 /// What isosurface() draws with the same arguments, and more detail where it is farther than the
 /// distance from the surface of all data. The result does not depend on the executor.
-/// \param options at_nodes must be that of the surface of all data; the cap, if there is one, is
-/// not
-///        compared
+/// \param options at_nodes must be that of the surface of all data; a cap is not compared
 /// \throw InvalidInput as isosurface(); where the distance is not positive, and where it cannot be
 ///        kept because `nearness.whole` is another surface than that of all data
 /// \throw GridError as isosurface()
