@@ -57,10 +57,19 @@ private:
     engine::BoxTree tree_;
 };
 
+/// Thrown where progress ends the work.
+struct Cancelled {};
+
 /// 1 where elements that are split are larger than points in them allow, else 0.
-template <class Real>
-SweptIndicator fine_indicator(const Hierarchy<Real>& hierarchy, const FinePoints& points) {
+/// \throw Cancelled
+template <class Real, class Progress>
+SweptIndicator fine_indicator(const Hierarchy<Real>& hierarchy, const FinePoints& points,
+                              const Progress& progress) {
+    constexpr std::uint64_t now_and_then = 1U << 14U;
+    TraversalCounts counts;
     return measured_indicator(hierarchy, [&](const MeasuredSplit& split, std::span<double> eta) {
+        const bool tells = ++counts.calls % now_and_then == 0 && progress;
+        if (tells && !progress(counts)) throw Cancelled{};
         const double size = split.diameter();
         // The children of curved elements lie around the new nodes, too.
         Box box = Box::around(split.positions);
@@ -76,7 +85,8 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
                                    const Nearness& nearness, const AlsoFine& criterion,
                                    const Bounds& bounds, const IsosurfaceOptions& options,
                                    const Executor& executor) {
-    const auto& [whole, distance] = nearness;
+    const Surface<3>& whole = nearness.whole;
+    const double distance = nearness.distance;
     if (!(distance > 0 && std::isfinite(distance))) {
         throw InvalidInput("the distance to keep is not a positive number");
     }
@@ -85,35 +95,45 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
     const engine::ClosestPoints to_whole(whole);
     IsosurfaceWithin result;
     FinePoints points;
-    std::size_t triangles = 0;
-    while (true) {
+    std::vector<Point> before;
+    /// Draws once. Returns whether that is the result.
+    const auto draws_within = [&] {
         points.finish();
         const SweptIndicator fine = points.size() > 0
-                                        ? fine_indicator(hierarchy, points)
+                                        ? fine_indicator(hierarchy, points, options.progress)
                                         : SweptIndicator(NodeTable<std::uint16_t>{}, {});
         const auto draw = [&](const IsosurfaceOptions& how) {
             return isosurface<3>(hierarchy, isovalue, *criterion(fine), bounds, how, executor);
         };
-        Isosurface<3> drawn = draw(searched);
+        const Isosurface<3> drawn = draw(searched);
+        if (drawn.cancelled) throw Cancelled{};
         std::vector<Point> far = engine::far_points(drawn.surface, to_whole, distance, executor);
         const std::vector<Point> back =
             engine::far_points(whole, engine::ClosestPoints(drawn.surface), distance, executor);
         far.insert(far.end(), back.begin(), back.end());
-        if (drawn.cancelled || far.empty()) {
-            result.isosurface = drawn.cancelled ? std::move(drawn) : draw(options);
-            return result;
+        if (far.empty()) {
+            result.isosurface = draw(options);
+            return true;
         }
-        if (result.rounds > 1 && drawn.surface.simplices.size() == triangles) {
+        if (result.rounds > 1 && far == before) {
             throw InvalidInput(
                 "the distance cannot be kept: it is from another surface than that of all data");
         }
-        triangles = drawn.surface.simplices.size();
         // In elements as small as the distance, both surfaces are near; or one of them is not
         // there.
         points.add(far, result.rounds == 0 ? distance : 0);
         result.points += far.size();
         ++result.rounds;
+        before = std::move(far);
+        return false;
+    };
+    try {
+        while (!draws_within()) {
+        }
+    } catch (const Cancelled&) {
+        result.isosurface.cancelled = true;
     }
+    return result;
 }
 
 template IsosurfaceWithin isosurface_within<float>(const Hierarchy<float>&, double, const Nearness&,

@@ -80,6 +80,30 @@ TEST(IsosurfacesWithinDistances, LoseNoPeak) {
     EXPECT_GT(kept.rounds, 0);
 }
 
+TEST(IsosurfacesWithinDistances, EndWhereProgressSaysSo) {
+    const LatticeBisection<3> grid({.samples = {33, 33, 33}});
+    std::vector<float> values(grid.node_count());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = i * i % 7 < 3 ? 1 : -1;
+    const LatticeField field(grid, std::span<const float>(values));
+    const HierarchicalIndicator indicator(grid, field);
+    const auto whole = isosurface(grid, field, 0.0, Exact{}, indicator).surface;
+    const Threshold coarse(&indicator, 100);
+    int told = 0;
+    const auto draw = [&](int most) {
+        told = 0;
+        const auto goes_on = [&](const TraversalCounts&) { return ++told < most; };
+        return isosurface_within(grid, field, 0.0, {whole, 0.5}, coarse, indicator,
+                                 {.progress = goes_on});
+    };
+    EXPECT_FALSE(draw(1 << 30).isosurface.cancelled);
+    const int all = told;
+    ASSERT_GT(all, 4);
+    for (int most = 1; most < all; most += std::max(1, all / 9)) {
+        EXPECT_TRUE(draw(most).isosurface.cancelled);
+        EXPECT_EQ(told, most);
+    }
+}
+
 TEST(FarPoints, AreThoseOfBruteForce) {
     Surface<3> plane;  // z = 0, and a triangle that rises from it to z = 1
     plane.vertices = {{-9, -9, 0}, {9, -9, 0}, {0, 18, 0}};
