@@ -23,7 +23,7 @@ struct TextHeader {
     /// The words of a value, brackets and commas aside.
     /// \throw nestgrid::IoError where one of them is no number
     std::vector<double> numbers(const std::string& key) const;
-    /// The same; their number must be `count`, or 0 where there is no such key.
+    /// The numbers of a key, which must be `count`; none where there is no such key.
     std::vector<double> numbers(const std::string& key, std::size_t count) const;
     /// "the ElementSpacing '1 1 2'", for sentences.
     std::string described(const std::string& key) const;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include <distances/closest_points.hpp>
@@ -26,7 +25,7 @@ public:
         for (const Point& x : points) points_.push_back({x, size});
     }
     std::size_t size() const { return points_.size(); }
-    /// Makes the tree; to be called before has_point_in().
+    /// Makes the tree; to be called before is_in().
     void finish() {
         std::vector<Point> x;
         x.reserve(points_.size());

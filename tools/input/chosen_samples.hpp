@@ -20,7 +20,7 @@ struct VolumeChoice {
     bool magnitude = false;                   ///< the norm of each sample instead
 };
 
-/// What precedes the samples in a parcel.
+/// A volume without its samples; in a parcel it stands before them.
 struct VolumeDescription {
     std::array<char, 8> type{};
     std::array<char, 64> name{};

@@ -50,7 +50,7 @@ std::size_t numbers_in_file(const FileSamples& samples);
 /// Strides of numbers without gaps: components of a sample first, then x, y, z and frames.
 void set_dense_strides(FileSamples& samples);
 
-/// What a reader may know of what is wanted.
+/// The part of the choice that spares a reader work.
 struct WantedSamples {
     std::string array;           ///< of a .vti file; empty for the active one
     bool several_frames = true;  ///< false: the first is enough

@@ -33,7 +33,7 @@ using nestgrid::IoError;
 using nestgrid::Point;
 namespace fs = std::filesystem;
 
-/// What the library says of the first cause of a failure.
+/// The sentence of the NRRD library on the first cause of a failure.
 std::string reason_of_failure() {
     char* const message = biffGetDone(NRRD);
     std::string text = message == nullptr ? "" : message;

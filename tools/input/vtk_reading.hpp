@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the formats that VTK reads have in common.
+// Reading a file with VTK: its errors, its header checked before its samples, their geometry.
 #pragma once
 
 #include <filesystem>

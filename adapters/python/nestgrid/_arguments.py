@@ -29,10 +29,8 @@ R = TypeVar("R")
 Cuts = Literal["linear", "finest"]
 #: What a threshold is compared with.
 Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
-#: What that of an isosurface is compared with.
-SurfaceIndicator = Literal[
-    "offset", "deviation", "visual", "numerical", "wavelet", "geometry", "cut", "slope"
-]
+#: What a threshold of an isosurface is compared with: also the errors of that surface alone.
+SurfaceIndicator = Literal[Indicator, "cut", "slope"]
 #: Types of samples, as NumPy calls them.
 SampleType = Literal[
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"

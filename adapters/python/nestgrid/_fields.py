@@ -13,8 +13,8 @@ from . import _html, _nestgrid
 from ._arguments import (
     Cuts,
     Indicator,
-    SurfaceIndicator,
     InvalidType,
+    SurfaceIndicator,
     flag,
     name_of,
     not_negative,
