@@ -4,10 +4,11 @@
 # Sourced by tools/demo.sh and tests/run.sh: the Debian packages they need, and how to get them.
 
 build_packages=(cmake ninja-build g++ pkgconf libboost-graph-dev libvtk9-dev libcli11-dev zlib1g-dev
-    libopenmesh-dev libtbb-dev libtet1.5-dev libmuparser-dev libjsoncpp-dev libinsighttoolkit5-dev)
-test_packages=(libgtest-dev libcgal-dev libdeal.ii-dev libp4est-dev libdune-grid-dev
+    libcgal-dev libtbb-dev libtet1.5-dev libmuparser-dev libjsoncpp-dev libinsighttoolkit5-dev)
+test_packages=(libgtest-dev libopenmesh-dev libdeal.ii-dev libp4est-dev libdune-grid-dev
     libdune-functions-dev libdune-istl-dev libalberta-dev openmpi-bin tetgen libopenvdb-dev libzstd-dev valgrind
-    doxygen python3 mandoc zsh python3-nibabel python3-vtk9 teem-apps)
+    doxygen python3 mandoc zsh python3-nibabel python3-vtk9 teem-apps
+    python3-meshio assimp-utils gmsh admesh python3-pydicom dcmtk libgdcm-tools)
 picture_packages=(xvfb xauth libgl1-mesa-dri fonts-dejavu-core)
 data_packages=(mricron-data)
 python_packages=(zlib1g-dev python3-dev python3-numpy python3-pip python3-venv pybind11-dev)

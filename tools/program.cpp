@@ -8,19 +8,17 @@
 
 #include <vtkObject.h>
 
-#include "command_line.hpp"
+#include "commands/command.hpp"
 #include "help.hpp"
-#include "report.hpp"
+#include "output/report.hpp"
 #include "usage_error.hpp"
 #include "version.hpp"
 
 namespace {
 
-std::vector<Command> add_commands(CLI::App& program, bool& json) {
-    std::vector<Command> commands{
-        add_isosurface(program), add_slice(program),    add_isolines(program), add_height(program),
-        add_surface(program),    add_boundary(program), add_probe(program),    add_info(program),
-        add_mesh(program),       add_pack(program),     add_view(program)};
+/// Adds the options that all commands have.
+std::vector<Command> commands_of(CLI::App& program, bool& json) {
+    std::vector<Command> commands = add_commands(program);
     for (const Command& command : commands) {
         command.options->add_flag("--json", json, "print everything as one JSON document")
             ->group("Further");
@@ -78,7 +76,7 @@ int run_program(int argc, char** argv) {
         "  nestgrid slice head.nii.gz --axis z --at 30 --threshold 2% --image slice.png\n"
         "  nestgrid view head.nii.gz");
     bool json = false;
-    const std::vector<Command> commands = add_commands(app, json);
+    const std::vector<Command> commands = commands_of(app, json);
     Report report(json);
     add_text(app, "manual",
              [](const CLI::App& tree) { return manual_page(tree, NESTGRID_VERSION); });

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "version.hpp"
 
+#include <CGAL/version.h>
 #include <oneapi/tbb/version.h>
 #include <vtkVersion.h>
-#ifdef NESTGRID_HAS_CGAL
-#include <CGAL/version.h>
-#else
-#define CGAL_VERSION_STR "no"
-#endif
 
 std::string version_text() {
     return "nestgrid " NESTGRID_VERSION "\nbuilt with VTK " +

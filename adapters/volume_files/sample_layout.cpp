@@ -102,6 +102,8 @@ void set_meta_geometry(const TextHeader& header, SampleLayout& layout) {
         const auto count = whole_number(header, "dimsize", sizes[d]);
         if (d >= 3) {
             add_axis(header, static_cast<std::size_t>(count), layout.frames);
+            const double step = finite(header, spacing, spacings, d, 1);
+            if (count > 1 && step > 0) layout.time_step = step;
             continue;
         }
         geometry.samples[d] = count;

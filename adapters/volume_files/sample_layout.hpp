@@ -27,6 +27,7 @@ struct SampleLayout {
     nestgrid::LatticeGeometry<3> geometry{};
     std::size_t components = 1;
     std::size_t frames = 1;
+    double time_step = 1;  ///< from a frame to the next
     double slope = 1;  ///< a value is slope times sample plus intercept
     double intercept = 0;
     std::vector<std::filesystem::path> files{};  ///< each holds as many samples as the others

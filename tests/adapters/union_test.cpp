@@ -6,9 +6,9 @@
 
 #include <nestgrid/adapters/union.hpp>
 #include <nestgrid/algorithms/between.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/probe.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/check_grid.hpp>
 

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "expression.hpp"
+#include "expression/expression.hpp"
 
 namespace {
 

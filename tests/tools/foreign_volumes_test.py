@@ -371,7 +371,7 @@ def nrrd_cases():
             fail(f"{name}: component 1")
     flat = colours[:, :, :, 0]
     make("flat.nrrd", flat, "-k", "RGB-color", "domain", "domain", kind="uchar")
-    refused("flat.nrrd", "24 x 22 x 1 samples")
+    refused("flat.nrrd", "3 numbers per sample (RGB-color)")
     vectors = np.stack([plain, 2 * plain, -2 * plain])
     space = ["-spc", "LPS", "-orig", vector(ORIGIN)]
     for kind, name in ("3-vector", "vector.nrrd"), ("vector", "vector.nhdr"):

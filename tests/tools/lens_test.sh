@@ -2,8 +2,7 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Lenses of the program: results, and wrong input. Arguments: the program, the maker of volumes, 1 if
-# the program has CGAL.
+# Lenses of the program: results, and wrong input. Arguments: the program, the maker of volumes.
 . "$(dirname "$0")/functions.sh"
 
 # run_closed ARGUMENTS...: the same, and draws a surface without open edges. Sets `triangles`.
@@ -71,46 +70,42 @@ run_closed height wave.pgm --scale 1 --lens ball:10,10,0,4
 [ "$triangles" -lt "$all" ] || fail "height: $triangles of $all triangles"
 
 # A closed surface, here that of a box, in every format; and the box itself.
-if [ "$3" = 1 ]; then
-    box='2 8 4\n8 8 4\n8 15 4\n2 15 4\n2 8 12\n8 8 12\n8 15 12\n2 15 12\n'
-    faces='4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n'
-    printf "OFF\n8 6 0\n$box${faces}4 0 4 7 3\n" >box.off
-    printf "OFF\n8 5 0\n$box$faces" >open.off
-    printf "OFF\n12 10 0\n${box}5 11 1\n5 11 9\n20 9 5\n5 20 5\n${faces}4 0 4 7 3\n3 8 9 10\n3 8 10 11\n3 8 11 9\n3 9 11 10\n" >crossing.off
-    printf 'OFF\n3 1 0\n1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n' >point.off
-    run mesh box.off --family red-green --field x -o box.nestgrid
-    for format in stl obj ply vtp; do run surface box.nestgrid -o box.$format; done
-    run_closed isosurface v.vti --value 130 --lens box:2,8,8,15,4,12 -o box-lens.vtp && expected=$triangles
-    for format in off stl obj ply vtp; do
-        run_closed isosurface v.vti --value 130 --lens surface:box.$format -o lens.vtp
-        [ "$triangles" = "$expected" ] || fail "surface:box.$format: $triangles triangles, box: $expected"
-        cmp -s lens.vtp box-lens.vtp || fail "surface:box.$format draws another surface than box:"
-    done
-    # Faces that share no points, and are not turned the same way.
-    awk 'BEGIN { split("0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1", u); split("0 3 2 1 4 5 6 7 0 5 4 1 1 2 6 5 2 3 7 6 0 4 7 3", f)
-        f[10] = 1; f[11] = 5; f[12] = 4; print "OFF\n24 6 0"
-        for (i = 1; i <= 24; ++i) print 2 + 6 * u[3 * f[i] + 1], 8 + 7 * u[3 * f[i] + 2], 4 + 8 * u[3 * f[i] + 3]
-        for (i = 0; i < 6; ++i) print 4, 4 * i, 4 * i + (i % 2 ? 1 : 3), 4 * i + 2, 4 * i + (i % 2 ? 3 : 1) }' >apart.off
-    run_closed isosurface v.vti --value 130 --lens surface:apart.off
-    [ "$triangles" = "$expected" ] || fail "surface:apart.off: $triangles triangles, box: $expected"
-    # A surface of the program itself: everything in it is drawn finely.
-    run_closed isosurface v.vti --value 30 --cap -o core.vtp
-    run_closed isosurface v.vti --value 130 --lens surface:core.vtp
-    [ "$triangles" = "$finest" ] || fail "surface:core.vtp: $triangles of $finest triangles"
-    run_closed boundary v.vti --lens surface:box.stl --threshold 20 --blend 1.5
-    run probe v.vti --line 5,11,0,5,11,30 --count 3 --lens surface:box.stl
-    refused 1 "'open.off': the surface of a solid is open" isosurface v.vti --value 130 --lens surface:open.off -o x.vtp
-    refused 1 "crossing.off': .* intersects or touches itself" isosurface v.vti --value 130 --lens surface:crossing.off -o x.vtp
-    refused 1 "point.off': the surface of a solid is empty" isosurface v.vti --value 130 --lens surface:point.off -o x.vtp
-    refused 1 "'none.stl' does not exist" isosurface v.vti --value 130 --lens surface:none.stl -o x.vtp
-    refused 1 "'v.vti' is no .off, .obj, .ply, .stl or .vtp" isosurface v.vti --value 130 --lens surface:v.vti -o x.vtp
-    cp v.vti other.vtp
-    refused 1 "'other.vtp' is no VTK poly data" isosurface v.vti --value 130 --lens surface:other.vtp -o x.vtp
-    head -c 300 box.vtp >cut.vtp
-    refused 1 'cut.vtp' isosurface v.vti --value 130 --lens surface:cut.vtp -o x.vtp
-else
-    refused 1 'built without CGAL' isosurface v.vti --value 130 --lens surface:box.stl -o x.vtp
-fi
+box='2 8 4\n8 8 4\n8 15 4\n2 15 4\n2 8 12\n8 8 12\n8 15 12\n2 15 12\n'
+faces='4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n'
+printf "OFF\n8 6 0\n$box${faces}4 0 4 7 3\n" >box.off
+printf "OFF\n8 5 0\n$box$faces" >open.off
+printf "OFF\n12 10 0\n${box}5 11 1\n5 11 9\n20 9 5\n5 20 5\n${faces}4 0 4 7 3\n3 8 9 10\n3 8 10 11\n3 8 11 9\n3 9 11 10\n" >crossing.off
+printf 'OFF\n3 1 0\n1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n' >point.off
+run mesh box.off --family red-green --field x -o box.nestgrid
+for format in stl obj ply vtp; do run surface box.nestgrid -o box.$format; done
+run_closed isosurface v.vti --value 130 --lens box:2,8,8,15,4,12 -o box-lens.vtp && expected=$triangles
+for format in off stl obj ply vtp; do
+    run_closed isosurface v.vti --value 130 --lens surface:box.$format -o lens.vtp
+    [ "$triangles" = "$expected" ] || fail "surface:box.$format: $triangles triangles, box: $expected"
+    cmp -s lens.vtp box-lens.vtp || fail "surface:box.$format draws another surface than box:"
+done
+# Faces that share no points, and are not turned the same way.
+awk 'BEGIN { split("0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1", u); split("0 3 2 1 4 5 6 7 0 5 4 1 1 2 6 5 2 3 7 6 0 4 7 3", f)
+    f[10] = 1; f[11] = 5; f[12] = 4; print "OFF\n24 6 0"
+    for (i = 1; i <= 24; ++i) print 2 + 6 * u[3 * f[i] + 1], 8 + 7 * u[3 * f[i] + 2], 4 + 8 * u[3 * f[i] + 3]
+    for (i = 0; i < 6; ++i) print 4, 4 * i, 4 * i + (i % 2 ? 1 : 3), 4 * i + 2, 4 * i + (i % 2 ? 3 : 1) }' >apart.off
+run_closed isosurface v.vti --value 130 --lens surface:apart.off
+[ "$triangles" = "$expected" ] || fail "surface:apart.off: $triangles triangles, box: $expected"
+# A surface of the program itself: everything in it is drawn finely.
+run_closed isosurface v.vti --value 30 --cap -o core.vtp
+run_closed isosurface v.vti --value 130 --lens surface:core.vtp
+[ "$triangles" = "$finest" ] || fail "surface:core.vtp: $triangles of $finest triangles"
+run_closed boundary v.vti --lens surface:box.stl --threshold 20 --blend 1.5
+run probe v.vti --line 5,11,0,5,11,30 --count 3 --lens surface:box.stl
+refused 1 "'open.off': the surface of a solid is open" isosurface v.vti --value 130 --lens surface:open.off -o x.vtp
+refused 1 "crossing.off': .* intersects or touches itself" isosurface v.vti --value 130 --lens surface:crossing.off -o x.vtp
+refused 1 "point.off': the surface of a solid is empty" isosurface v.vti --value 130 --lens surface:point.off -o x.vtp
+refused 1 "'none.stl' does not exist" isosurface v.vti --value 130 --lens surface:none.stl -o x.vtp
+refused 1 "'v.vti' is of no format for meshes" isosurface v.vti --value 130 --lens surface:v.vti -o x.vtp
+cp v.vti other.vtp
+refused 1 "'other.vtp' is no VTK poly data" isosurface v.vti --value 130 --lens surface:other.vtp -o x.vtp
+head -c 300 box.vtp >cut.vtp
+refused 1 'cut.vtp' isosurface v.vti --value 130 --lens surface:cut.vtp -o x.vtp
 
 surface() { echo isosurface v.vti --value 130 -o x.vtp; }
 for lens in ball ball: ball:1,2,3 ball:1,2,3,4,5 ball:1,2,3,x ball:1,2,3,nan ring:1,2 :1; do

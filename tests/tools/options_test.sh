@@ -75,6 +75,11 @@ head -c 8640 v.raw | tail -c 7680 >b.raw
 local_samples() { printf '%s\n' 'DimSize = 20 24 9' 'ElementSpacing = 1 1 2' 'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' && cat v.raw; }
 { echo 'NDims = 4' && local_samples | sed 's/24 9$/24 9 2/; s/1 1 2$/1 1 2 1/'; } >series.mha
 { printf '%s\n' 'NDims = 3' 'ElementNumberOfChannels = 2' && local_samples; } >vectors.mha
+{ printf '%s\n' 'NDims = 4' 'DimSize = 20 216 1 2' 'ElementSpacing = 1 1 1 1' 'ElementType = MET_UCHAR' \
+    'ElementDataFile = LOCAL' && cat v.raw; } >plane.mha
+{ printf '%s\n' 'NDims = 2' 'DimSize = 20 216' 'ElementSpacing = 1 1' 'ElementNumberOfChannels = 2' \
+    'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' && cat v.raw; } >pairs.mha
+{ echo 'AnatomicalOrientation = RAI' && echo 'NDims = 3' && local_samples; } >patient.mha
 frames='a.raw b.raw --dims 20,24,16 --type uint8'
 
 declare -A base=([isosurface]='--value 130' [slice]='--axis z --at 9' [isolines]='--axis z --at 9 --count 3'
@@ -93,12 +98,14 @@ for command in isosurface slice isolines boundary probe info; do
     void $command 'one frame only' "v.mha $options" --frame 0
     void $command 'one number per sample' "v.nrrd $options" --component 0
     void $command 'one number per sample' "v.vti $options" --magnitude
-    void $command 'is for volumes' "two.nestgrid $([ $command = info ] || sed 's/^/--array x /; s/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/' <<<"$options")" --magnitude
+    void $command 'is for .mha' "two.nestgrid $([ $command = info ] || sed 's/^/--array x /; s/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/' <<<"$options")" --magnitude
     effect $command "series.mha $options" --frame 1
     differ $command --component "vectors.mha $options --component 0" "vectors.mha $options --component 1"
     differ $command --magnitude "vectors.mha $options --component 0" "vectors.mha $options --magnitude"
+    void $command 'does not say where its axes point' "v.mha $options" --space ras
+    differ $command --space "patient.mha $options --space ras" "patient.mha $options --space lps"
     refused 1 'exclude each other' $command vectors.mha $options --component 0 --magnitude
-    void $command 'not for .nestgrid' "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
+    void $command "not for 'two.nestgrid'" "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
     refused 1 'give --dims' $command v.raw $options && echo "$command --dims" >>covered
     refused 1 'has 8640 bytes' $command v.raw $options --dims 20,24,18 --type int16 && echo "$command --type" >>covered
     # Neither order of the bytes has the greatest value of the other one.
@@ -238,6 +245,15 @@ for command in height surface; do
     differ $command --array "plane.nestgrid $options --array x" "plane.nestgrid $options --array x*y"
     void $command 'is for .vti and .nestgrid' "hills.pgm $options" --array value
     refused 1 'within 1e-06 seconds' $command hills.pgm $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
+    void $command 'does not say where its axes point' "hills.pgm $options" --space ras
+    # Bare samples in a plane, with several frames and components.
+    effect $command "plane.mha $options" --frame 1
+    differ $command --component "pairs.mha $options --component 0" "pairs.mha $options --component 1"
+    differ $command --magnitude "pairs.mha $options --component 0" "pairs.mha $options --magnitude"
+    differ $command --dims "v.raw $options --type uint8 --dims 20,432,1" "v.raw $options --type uint8 --dims 40,216,1"
+    differ $command --type "v.raw $options --dims 20,432,1 --type uint8" "v.raw $options --dims 20,216,1 --type uint16"
+    differ $command --endian "v.raw $options --dims 20,216,1 --type uint16" "v.raw $options --dims 20,216,1 --type uint16 --endian big"
+    effect $command "v.raw $options --dims 20,432,1 --type uint8" --spacing 1,2,3
     effect $command "hills.pgm $options" --threshold 5
     effect $command "hills.pgm $options" --error 5
     effect $command "hills.pgm $options" --max-triangles 900
@@ -293,6 +309,9 @@ effect mesh "$prisms" --direction 0.1,0,1
 [ "$(result mesh $mesh)" != "$(result mesh ${mesh/bisection/red-green})" ] || fail "mesh --family"
 effect mesh "quad.obj --family octree --field (x^2+y^2)^0.1 --tolerance 0.02 -o kept/x.nestgrid" --unbalanced
 for name in layers family output json; do echo "mesh --$name" >>covered; done
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 1e-9\nv 1 1 0\nv 0 1 1e-9\nf 1 2 3\nf 4 5 6\n' >apart.obj
+effect mesh "apart.obj --family bisection -o kept/x.nestgrid" --weld 1e-6
+void mesh 'is negative' "$mesh" --weld -1
 void mesh 'limits --tolerance' "$mesh" --levels 3
 void mesh 'for --family octree' "$mesh" --unbalanced
 void mesh 'for .poly and .smesh' "plane.off --family bisection -o kept/x.nestgrid" --max-volume 1

@@ -166,7 +166,7 @@ refused 1 'has 8640 bytes, but --dims and --type ask for 8820' isosurface v.raw 
 refused 1 'has 8640 bytes' isosurface v.raw --value 1 --dims 20,24,18 --type int16
 refused 1 'give --dims' isosurface v.raw --value 1
 refused 1 'sample at \(5, 7, 3\) is not a number' isosurface nan.vti --value 130 -o x.vtp
-refused 1 '5 x 5 x 1' isosurface flat.vti --value 1
+refused 1 '8640 x 1 x 1' isosurface v.raw --value 1 --dims 8640,1,1 --type uint8
 refused 1 '3 numbers per sample' isosurface colours.vti --value 1
 {
     head -c 40 v.nii

@@ -151,7 +151,7 @@ refused 1 'has 3 frames, from time 0 to 2' probe "${film[@]}" --line 0,0,0,1,1,1
 refused 1 'does not lie between' isosurface "${film[@]}" --value 0.5 --time 3
 refused 1 'times has 2 numbers, but there are 3 frames' isosurface "${film[@]}" --value 0.5 --times 0,1 --time 0.5
 refused 1 'has 3 frames of its own' isosurface "${film[@]}" film.nestgrid --value 0.5 --time 0.5
-refused 1 'need several inputs, or a .nestgrid file' isosurface at0.nestgrid --value 0.5 --time 0
+refused 1 'need several inputs, or one with several frames' isosurface at0.nestgrid --value 0.5 --time 0
 refused 1 'no name of a .nestgrid' pack v.vti -o x.nestgrid
 refused 1 'no name of a .nestgrid' pack film.nestgrid -o x.vtp
 refused 1 'not finite numbers in ascending' pack at0.nestgrid at2.nestgrid --times 1,0 -o x.nestgrid

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "annotations.hpp"
+#include "picture/annotations.hpp"
 
 #include <algorithm>
 #include <cmath>

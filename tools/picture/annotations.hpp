@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "picture.hpp"
-#include "sheet.hpp"
+#include "picture/picture.hpp"
+#include "picture/sheet.hpp"
 
 /// Round numbers (1, 2 or 5 times a power of ten) within a range, and their distance.
 struct Ticks {

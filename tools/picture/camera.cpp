@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "camera.hpp"
+#include "picture/camera.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <nestgrid/error.hpp>
 
-#include "number_list.hpp"
+#include "options/number_list.hpp"
 
 using nestgrid::cross;
 using nestgrid::dot;

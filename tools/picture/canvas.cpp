@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "canvas.hpp"
+#include "picture/canvas.hpp"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 
 #include <vtkImageData.h>
 
-#include "colour_map.hpp"
+#include "picture/colour_map.hpp"
 
 /// The pixels of a picture, upon which rendered parts are laid.
 class Canvas {

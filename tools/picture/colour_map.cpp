@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "colour_map.hpp"
+#include "picture/colour_map.hpp"
 
 #include <algorithm>
 #include <cstdint>

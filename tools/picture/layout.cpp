@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "layout.hpp"
+#include "picture/layout.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <nestgrid/error.hpp>
 
-#include "annotations.hpp"
+#include "picture/annotations.hpp"
 
 using nestgrid::Point;
 

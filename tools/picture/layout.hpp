@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "picture.hpp"
-#include "sheet.hpp"
+#include "picture/picture.hpp"
+#include "picture/sheet.hpp"
 
 struct Layout {
     int width = 0;

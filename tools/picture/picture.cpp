@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "picture.hpp"
+#include "picture/picture.hpp"
 
 #include <cstdint>
 
@@ -10,11 +10,11 @@
 #include <vtkRenderer.h>
 #include <vtkWindowToImageFilter.h>
 
-#include "canvas.hpp"
-#include "layout.hpp"
-#include "scene.hpp"
-#include "surface_file.hpp"
-#include "virtual_display.hpp"
+#include "output/surface_file.hpp"
+#include "picture/canvas.hpp"
+#include "picture/layout.hpp"
+#include "picture/scene.hpp"
+#include "picture/virtual_display.hpp"
 
 namespace {
 

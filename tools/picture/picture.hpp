@@ -12,8 +12,8 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
-#include "camera.hpp"
-#include "colour_map.hpp"
+#include "picture/camera.hpp"
+#include "picture/colour_map.hpp"
 
 /// The values of the first and the last colour of a map.
 struct ColourRange {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "picture_options.hpp"
+#include "picture/picture_options.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -11,8 +11,8 @@
 
 #include <nestgrid/error.hpp>
 
-#include "number_list.hpp"
-#include "surface_file.hpp"
+#include "options/number_list.hpp"
+#include "output/surface_file.hpp"
 
 namespace {
 

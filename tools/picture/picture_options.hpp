@@ -10,7 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "picture.hpp"
+#include "picture/picture.hpp"
 
 /// The options as texts. Each needs --image.
 struct PictureOptions {

@@ -5,7 +5,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
-#include "layout.hpp"
+#include "picture/layout.hpp"
 
 /// The surfaces and lines of a panel, lit, as they are seen by a camera.
 /// \param factor pixels on a side of each pixel of the layout

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sheet.hpp"
+#include "picture/sheet.hpp"
 
 #include <algorithm>
 #include <array>

@@ -12,8 +12,8 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextProperty.h>
 
-#include "camera.hpp"
-#include "colour_map.hpp"
+#include "picture/camera.hpp"
+#include "picture/colour_map.hpp"
 
 enum class Side { low, middle, high };  ///< left or lower, middle, right or upper
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "virtual_display.hpp"
+#include "picture/virtual_display.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "../first_isovalue.hpp"
-#include "../frame_field.hpp"
+#include "drawing/first_isovalue.hpp"
+#include "drawing/frame_field.hpp"
 
 namespace nestgrid::view {
 

@@ -4,8 +4,8 @@
 // Files as fields to explore: volumes or hierarchies, frames where there are several.
 #pragma once
 
-#include "../input_field.hpp"
 #include "explored_field.hpp"
+#include "input/input_field.hpp"
 
 namespace nestgrid::view {
 

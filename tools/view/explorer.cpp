@@ -16,7 +16,7 @@
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
 
-#include "../telling_executor.hpp"
+#include "drawing/telling_executor.hpp"
 #include "frame_reply.hpp"
 #include "surface_arrays.hpp"
 #include "watched_work.hpp"

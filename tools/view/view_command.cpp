@@ -14,9 +14,9 @@
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/error.hpp>
 
-#include "../command_line.hpp"
 #include "explored_files.hpp"
 #include "explorer.hpp"
+#include "options/command_line.hpp"
 #include "page_server.hpp"
 
 namespace {
@@ -168,8 +168,6 @@ void run_view(ViewArguments& o, Report& report) {
     serve(server);
 }
 
-}  // namespace
-
 Command add_view(CLI::App& program) {
     auto o = std::make_shared<ViewArguments>();
     CLI::App* view =
@@ -183,7 +181,7 @@ Command add_view(CLI::App& program) {
     view->add_option("--port", o->port, "of 127.0.0.1 [any that is free]")->type_name("NUMBER");
     view->add_flag("--no-browser", o->no_browser, "print the address and open no browser");
     view->add_option("--times", o->times,
-                     "times of all frames, ascending [those of the .nestgrid, or 0,1,2,...]")
+                     "times of all frames, ascending [those of the file, or 0,1,2,...]")
         ->type_name("T,T,...")
         ->delimiter(',');
     view->add_option("--threads", o->threads, "how many to use [all]")
@@ -192,3 +190,7 @@ Command add_view(CLI::App& program) {
     add_read_options(*view, o->input);
     return {view, [o](Report& report) { run_view(*o, report); }};
 }
+
+const RegisteredCommand view_command(120, add_view);
+
+}  // namespace

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/error.hpp>
 
-#include "../command_line.hpp"
+#include "commands/command.hpp"
+
+namespace {
 
 Command add_view(CLI::App& program) {
     CLI::App* view = program.add_subcommand(
@@ -16,3 +18,7 @@ Command add_view(CLI::App& program) {
                     "this program was built without its page: configure with -DNESTGRID_VIEW=ON");
             }};
 }
+
+const RegisteredCommand view_command(120, add_view);
+
+}  // namespace

@@ -52,5 +52,3 @@ CoarseGrid coarse_from_openmesh(const Mesh& mesh) {
 }
 
 }  // namespace nestgrid
-
-#include <nestgrid/adapters/openmesh_files.hpp>

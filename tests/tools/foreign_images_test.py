@@ -1,0 +1,356 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""DICOM series, planes of all formats, and pictures are read as pydicom, DCMTK, nibabel and VTK mean
+them, and one scan in several formats is one surface in one space.
+
+Samples are those of a ball, 100 - |p - CENTRE|, at the places that the headers mean, in LPS.
+
+Argument: the program.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+try:
+    import nibabel
+    import pydicom
+    from pydicom.dataset import FileDataset, FileMetaDataset
+    from pydicom.uid import ExplicitVRLittleEndian, generate_uid
+except ImportError:
+    print("skipped: nibabel or pydicom is missing")
+    sys.exit(77)
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGWriter, vtkTIFFWriter
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLPolyDataReader
+
+PROGRAM = os.path.abspath(sys.argv[1])
+SHAPE = (24, 22, 20)
+SPACING = np.array([1.5, 2.0, 2.5])
+ORIGIN = np.array([-7.0, 31.0, 12.5])
+FLIP = np.array([-1, -1, 1])  # between LPS and RAS
+failures = 0
+cases = 0
+
+
+def rotation():
+    a, b = 0.4, -0.7
+    x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
+    z = np.array([[np.cos(b), -np.sin(b), 0], [np.sin(b), np.cos(b), 0], [0, 0, 1]])
+    return z @ x
+
+
+STEPS = rotation() * SPACING
+CENTRE = ORIGIN + STEPS @ [11.3, 10.2, 9.6]
+
+
+def fail(text):
+    global failures
+    failures += 1
+    print("FAILED:", text)
+
+
+def ball(steps=STEPS, origin=ORIGIN, centre=CENTRE, shape=SHAPE):
+    places = np.indices(shape).reshape(3, -1)
+    distance = np.linalg.norm(steps @ places + (origin - centre)[:, None], axis=0)
+    return (100 - distance).reshape(shape)
+
+
+def program(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+
+
+def refused(name, words, *options):
+    global cases
+    cases += 1
+    done = program("info", name, *options)
+    lines = done.stderr.strip().split("\n")
+    if done.returncode != 1 or len(lines) != 1 or words not in lines[0] or done.stdout:
+        fail(f"{name} {options}: {done.returncode}, {done.stderr.strip()}, not '{words}'")
+
+
+def points_of(*arguments):
+    done = program(*arguments, "-o", "out.vtp")
+    if done.returncode != 0:
+        fail(f"{arguments}: {done.stderr.strip()}")
+        return None
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName("out.vtp")
+    reader.Update()
+    os.remove("out.vtp")
+    return vtk_to_numpy(reader.GetOutput().GetPoints().GetData()).astype(float)
+
+
+def sphere_of(points):
+    matrix = np.column_stack([2 * points, np.ones(len(points))])
+    solution = np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0]
+    return solution[:3], np.sqrt(solution[3] + solution[:3] @ solution[:3])
+
+
+def good(name, *options, centre=CENTRE, value=88.0, words=""):
+    """The isosurface of 88 is a sphere of radius 12 around the centre."""
+    global cases
+    cases += 1
+    done = program("info", name, *options, "--json")
+    if done.returncode != 0 or done.stderr:
+        return fail(f"info {name} {options}: {done.stderr.strip()}")
+    if words not in done.stdout:
+        fail(f"info {name} {options}: {done.stdout} does not say '{words}'")
+    points = points_of("isosurface", name, *options, "--value", value)
+    if points is None:
+        return
+    middle, radius = sphere_of(points)
+    if np.abs(middle - centre).max() > 0.05 or abs(radius - 12) > 0.12:
+        fail(f"{name} {options}: a sphere of radius {radius:.4g} around {middle}, not {centre}")
+    return json.loads(done.stdout)
+
+
+# DICOM
+
+
+def write_slice(path, samples, place, row, column, series, number, **more):
+    meta = FileMetaDataset()
+    meta.MediaStorageSOPClassUID = "1.2.840.10008.5.1.4.1.1.4"
+    meta.MediaStorageSOPInstanceUID = generate_uid()
+    meta.TransferSyntaxUID = ExplicitVRLittleEndian
+    data = FileDataset(path, {}, file_meta=meta, preamble=b"\0" * 128)
+    data.SOPClassUID = meta.MediaStorageSOPClassUID
+    data.SOPInstanceUID = meta.MediaStorageSOPInstanceUID
+    data.PatientName, data.PatientID = "Ball", "1"
+    data.StudyInstanceUID, data.SeriesInstanceUID = STUDY, series
+    data.FrameOfReferenceUID = STUDY
+    data.StudyID, data.StudyDate, data.StudyTime = "1", "20200101", "120000"
+    data.AccessionNumber, data.Modality = "1", "MR"
+    data.SeriesNumber, data.InstanceNumber = 1, number
+    data.SamplesPerPixel, data.PhotometricInterpretation = 1, "MONOCHROME2"
+    data.Columns, data.Rows = samples.shape
+    data.ImagePositionPatient = [f"{x:.10g}" for x in place]
+    data.ImageOrientationPatient = [f"{x:.12g}" for x in (*row, *column)]
+    data.PixelSpacing = [SPACING[1], SPACING[0]]
+    data.SliceThickness = SPACING[2]
+    data.BitsAllocated = data.BitsStored = 16
+    data.HighBit, data.PixelRepresentation = 15, 1
+    for key, value in more.items():
+        setattr(data, key, value)
+    scaled = (samples - float(data.get("RescaleIntercept", 0))) / float(data.get("RescaleSlope", 1))
+    data.PixelData = np.rint(scaled).astype("<i2").tobytes("F")
+    data.is_little_endian, data.is_implicit_VR = True, False
+    data.save_as(path, write_like_original=False)
+
+
+STUDY = generate_uid()
+
+
+def write_series(folder, samples=None, steps=STEPS, order=None, **more):
+    """A slice in each file, under names that are in no order."""
+    samples = 100 * ball(steps) if samples is None else samples
+    os.makedirs(folder, exist_ok=True)
+    series = generate_uid()
+    axes = steps / np.linalg.norm(steps, axis=0)
+    for k in range(samples.shape[2]):
+        name = f"{folder}/IM{(7 * k) % 101:03d}{len(os.listdir(folder)):04d}"
+        place = ORIGIN + k * steps[:, 2]
+        write_slice(name, samples[:, :, k], place, axes[:, 0], axes[:, 1], series, k + 1, **more)
+
+
+def test_dicom():
+    write_series("plain", SeriesDescription="T1 head")
+    facts = good("plain", value=8800, words='"LPS (mm)"')
+    if facts and facts["field"] != "T1 head":
+        fail(f"plain: field {facts['field']}")
+    any_file = sorted(os.listdir("plain"))[5]
+    good(f"plain/{any_file}", value=8800)
+    write_series("scaled", samples=ball(), RescaleSlope="0.01", RescaleIntercept="-20")
+    good("scaled")
+    steps = STEPS * [1, 1, -1]
+    centre = ORIGIN + steps @ [11.3, 10.2, 9.6]
+    write_series("backwards", samples=100 * ball(steps, centre=centre), steps=steps)
+    good("backwards", centre=centre, value=8800)
+    tilt = STEPS.copy()
+    tilt[:, 2] += 0.5 * STEPS[:, 1]
+    write_series("tilted", steps=tilt)
+    good("tilted", value=8800)
+    # A study of two series and its DICOMDIR.
+    os.makedirs("study")
+    write_series("study/A", SeriesDescription="ball")
+    write_series("study/B", samples=-100 * ball(), SeriesDescription="hole")
+    refused("study", "several series, choose one by --array: 'ball', 'hole'")
+    good("study", "--array", "ball", value=8800)
+    good("study", "--array", "hole", value=-8800)
+    refused("study", "has no series 'bell', only 'ball', 'hole': did you mean 'ball'?", "--array", "bell")
+    os.makedirs("disc")
+    write_series("disc/A")
+    for name in os.listdir("disc/A"):
+        shutil.move(f"disc/A/{name}", f"disc/A/{name[:2] + name[-3:] + name[2:5]}")
+    done = subprocess.run(["dcmmkdir", "+r", "+id", ".", "-Pgp", "-W", "+D", "DICOMDIR"], cwd="disc",
+                          capture_output=True, text=True)
+    if os.path.exists("disc/DICOMDIR"):
+        good("disc/DICOMDIR", value=8800)
+        good("disc", value=8800)
+    else:
+        fail(f"dcmmkdir: {done.stderr}")
+    # Two moments in one place.
+    write_series("moments", samples=100 * ball())
+    series = pydicom.dcmread("moments/" + os.listdir("moments")[0]).SeriesInstanceUID
+    axes = STEPS / SPACING
+    for k in range(SHAPE[2]):
+        write_slice(f"moments/later{k}", -100 * ball()[:, :, k], ORIGIN + k * STEPS[:, 2], axes[:, 0],
+                    axes[:, 1], series, 100 + k)
+    good("moments", value=8800, words="frame 0 of the 2 in moments")
+    good("moments", "--frame", "1", value=-8800)
+    # A slice that is missing, or too many.
+    shutil.copytree("plain", "missing")
+    for name in os.listdir("missing"):
+        if pydicom.dcmread(f"missing/{name}").InstanceNumber == 9:
+            os.remove(f"missing/{name}")
+    refused("missing", "a slice is missing, or they are not even")
+    # Packed files, by another program.
+    os.makedirs("packed")
+    for name in os.listdir("plain"):
+        subprocess.run(["gdcmconv", "--jpegls", f"plain/{name}", f"packed/{name}"], capture_output=True)
+    good("packed", value=8800)
+    os.makedirs("nothing")
+    open("nothing/readme.txt", "w").write("no image")
+    refused("nothing", "folder")
+    with open("cut.dcm", "wb") as file:
+        file.write(open(f"plain/{any_file}", "rb").read()[:700])
+    os.makedirs("damaged")
+    shutil.move("cut.dcm", "damaged/cut.dcm")
+    refused("damaged", "DICOM")
+
+
+# One scan in several formats
+
+
+def test_spaces():
+    global cases
+    samples = np.rint(100 * ball())
+    write_series("scan", samples=samples)
+    matrix = np.eye(4)
+    matrix[:3, :3] = FLIP[:, None] * STEPS
+    matrix[:3, 3] = FLIP * ORIGIN
+    nibabel.save(nibabel.Nifti1Image(samples.astype(np.int16), matrix), "scan.nii.gz")
+    header = "NRRD0004\ntype: int16\ndimension: 3\nsizes: %d %d %d\nspace: %s\n" % (*SHAPE, "LPS")
+    header += "space directions: " + " ".join("(%.12g,%.12g,%.12g)" % tuple(STEPS[:, d]) for d in range(3))
+    header += "\nspace origin: (%.12g,%.12g,%.12g)\nendian: little\nencoding: raw\n\n" % tuple(ORIGIN)
+    with open("scan.nrrd", "wb") as file:
+        file.write(header.encode() + samples.astype("<i2").tobytes("F"))
+    with open("scan.mha", "wb") as file:
+        axes = STEPS / SPACING
+        file.write(("NDims = 3\nDimSize = %d %d %d\nElementType = MET_SHORT\nAnatomicalOrientation = RAI\n"
+                    % SHAPE
+                    + "TransformMatrix = " + " ".join("%.12g" % x for x in axes.T.ravel())
+                    + "\nOffset = %.12g %.12g %.12g\n" % tuple(ORIGIN)
+                    + "ElementSpacing = %.12g %.12g %.12g\nElementDataFile = LOCAL\n" % tuple(SPACING)
+                    ).encode() + samples.astype("<i2").tobytes("F"))
+    for space, flip in ("lps", np.ones(3)), ("ras", FLIP):
+        surfaces = []
+        for name in "scan", "scan.nii.gz", "scan.nrrd", "scan.mha":
+            good(name, "--space", space, centre=flip * CENTRE, value=8800, words=space.upper())
+            points = points_of("isosurface", name, "--space", space, "--value", "8800.5")
+            surfaces.append(points)
+        for other in surfaces[1:]:
+            cases += 1
+            distance = max(np.linalg.norm(surfaces[0] - x, axis=1).min() for x in other[::97])
+            if len(other) != len(surfaces[0]) or distance > 1e-4:
+                fail(f"surfaces in {space} differ by {distance}")
+
+
+# Planes
+
+
+def test_planes():
+    samples = ball().astype(np.float32)
+    for axis in range(3):
+        index = [slice(None)] * 3
+        index[axis] = slice(9, 10)
+        plane = samples[tuple(index)]
+        origin = ORIGIN + STEPS[:, axis] * 9
+        matrix = np.eye(4)
+        matrix[:3, :3] = STEPS
+        matrix[:3, 3] = origin
+        nibabel.save(nibabel.Nifti1Image(plane, matrix), f"plane{axis}.nii")
+        image = vtkImageData()
+        image.SetDimensions(plane.shape)
+        image.SetSpacing(SPACING)
+        image.SetOrigin(origin)
+        image.SetDirectionMatrix(*rotation().ravel())
+        array = numpy_to_vtk(plane.ravel("F"), deep=True)
+        array.SetName("heat")
+        image.GetPointData().SetScalars(array)
+        writer = vtkXMLImageDataWriter()
+        writer.SetInputData(image)
+        writer.SetFileName(f"plane{axis}.vti")
+        writer.Write()
+        normal = np.cross(STEPS[:, (axis + 1) % 3], STEPS[:, (axis + 2) % 3])
+        normal /= np.linalg.norm(normal)
+        for name in f"plane{axis}.nii", f"plane{axis}.vti":
+            global cases
+            cases += 1
+            points = points_of("isolines", name, "--values", "90")
+            if points is None:
+                continue
+            off = np.abs(np.linalg.norm(points - CENTRE, axis=1) - 10).max()
+            flat = np.abs((points - origin) @ normal).max()
+            if off > 0.15 or flat > 1e-4:
+                fail(f"{name}: lines are {off} off the circle, {flat} off the plane")
+            for command in ("height", "--scale", "0.5"), ("surface",):
+                done = program(command[0], name, *command[1:], "-o", "out.vtp")
+                if done.returncode != 0:
+                    fail(f"{command} {name}: {done.stderr}")
+            place = ",".join(map(str, CENTRE - ((CENTRE - origin) @ normal) * normal))
+            with open("places.csv", "w") as file:
+                file.write(place + "\n")
+            done = program("probe", name, "--points", "places.csv")
+            value = done.stdout.strip().split("\n")[-1].split(",")[-1]
+            expected = 100 - abs((CENTRE - origin) @ normal)
+            if axis == 2 and name.endswith("vti") and done.returncode == 0 and value:
+                if abs(float(value) - expected) > 1:
+                    fail(f"probe {name}: {done.stdout} {done.stderr}, not {expected}")
+
+
+def test_pictures():
+    """The pages of a TIFF file are slices; colours are components."""
+    image = vtkImageData()
+    image.SetDimensions(SHAPE)
+    samples = np.rint(100 * ball(np.eye(3) * 2, np.zeros(3), np.array([22.0, 20.0, 19.0])))
+    array = numpy_to_vtk(samples.ravel("F").astype(np.uint16), deep=True)
+    image.GetPointData().SetScalars(array)
+    writer = vtkTIFFWriter()
+    writer.SetInputData(image)
+    writer.SetFileName("stack.tif")
+    writer.Write()
+    global cases
+    cases += 1
+    done = program("info", "stack.tif", "--json")
+    facts = json.loads(done.stdout) if done.returncode == 0 else {}
+    if facts.get("samples") != list(map(float, SHAPE)) or facts["greatest_value"] != samples.max():
+        fail(f"stack.tif: {done.stdout} {done.stderr}")
+    colours = vtkImageData()
+    colours.SetDimensions(30, 20, 1)
+    values = (np.arange(1800) % 251).astype(np.uint8).reshape(-1, 3)
+    colours.GetPointData().SetScalars(numpy_to_vtk(values, deep=True))
+    writer = vtkPNGWriter()
+    writer.SetInputData(colours)
+    writer.SetFileName("colours.png")
+    writer.Write()
+    refused("colours.png", "3 numbers per sample (colour), not one: choose by --component 0 to 2")
+    cases += 1
+    done = program("info", "colours.png", "--component", "1", "--json")
+    facts = json.loads(done.stdout) if done.returncode == 0 else {}
+    if facts.get("greatest_value") != values[:, 1].max():
+        fail(f"colours.png: {done.stdout} {done.stderr}")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    for test in test_dicom, test_spaces, test_planes, test_pictures:
+        test()
+    os.chdir("/")
+print(f"{cases} files and choices, {failures} failures")
+sys.exit(1 if failures else 0)

@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <optional>
+
+#include <nestgrid/algorithms/cut_indicator.hpp>
+#include <nestgrid/error.hpp>
+
+#include "drawing/extract.hpp"
+#include "drawing/first_isovalue.hpp"
+#include "input/input_file.hpp"
+#include "options/command_line.hpp"
+#include "output/collection.hpp"
+#include "output/film.hpp"
+#include "output/print.hpp"
+#include "picture/picture.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct IsosurfaceArguments {
+    Input input;
+    SurfaceOptions surface;
+    TimeOptions time;
+    double value = 0;
+    std::vector<double> box;
+    double box_threshold = 0;
+    LensText lens;
+    bool cap = false;
+    bool flat = false;
+    bool at_nodes = false;
+    bool collapses = false;
+    bool keeps_distances = false;
+    bool measures = false;
+    std::string cuts;
+    bool against_vtk = false;
+};
+
+FineBox fine_box(const IsosurfaceArguments& o) {
+    FineBox box{{}, o.box_threshold};
+    std::copy_n(o.box.begin(), 6, box.bounds.begin());
+    for (std::size_t d = 0; d < 3; ++d) {
+        if (!(box.bounds[2 * d] <= box.bounds[2 * d + 1])) {
+            throw nestgrid::InvalidInput(
+                "--box is empty: its bounds are x,x,y,y,z,z in ascending order");
+        }
+    }
+    if (!(box.threshold >= 0)) {
+        throw nestgrid::InvalidInput("--box-threshold is negative or not a number");
+    }
+    return box;
+}
+
+ExtractionRequest request_of(const IsosurfaceArguments& o) {
+    ExtractionRequest request{
+        .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
+    request.collapses = o.collapses;
+    request.keeps_distances = o.keeps_distances;
+    request.measures = o.measures;
+    const SurfaceOptions& s = o.surface;
+    if (!o.cuts.empty()) {
+        request.cuts = o.cuts == "finest" ? nestgrid::Cuts::finest : nestgrid::Cuts::linear;
+    }
+    request.budgets.assign(s.budgets.begin(), s.budgets.end());
+    request.threads = s.threads;
+    request.projection = s.projection;
+    request.projection.isovalue = o.value;
+    if (!o.box.empty() && s.projection.blend != 1) {
+        throw nestgrid::InvalidInput("--box has two thresholds: leave out --blend");
+    }
+    if (!o.box.empty()) request.box = fine_box(o);
+    request.lens = parse(o.lens);
+    for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
+    if (s.budgets.empty()) set_default_threshold(request.thresholds, request.lens.has_value());
+    if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
+    request.keep_surfaces = !s.output.empty() || !s.picture.image.empty();
+    return request;
+}
+
+/// IsosurfaceArguments that this field or this file leaves without effect.
+void check_for(const IsosurfaceArguments& o, const InputField& field) {
+    const CLI::App& command = *o.surface.command;
+    if (!field.volumes || o.time.in_use()) {
+        refuse_options(command, {"--against-vtk"}, "is for one volume");
+    }
+    const int dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
+                                     field.frames.front());
+    if (dimension == 2) {
+        refuse_options(command,
+                       {"--cap", "--no-normals", "--collapse", "--distance-field", "--measure"},
+                       "is for surfaces, not for isolines");
+    }
+    const std::string format = ending_of(o.surface.output);
+    if (o.surface.picture.image.empty() && (format == ".stl" || format == ".ply")) {
+        refuse_options(command, {"--no-normals"}, "changes no " + format + " file");
+    }
+}
+
+/// Whether errors are those of the surface alone. Between frames the deviations of these serve,
+/// without a preroll of each moment; in shapes other than simplices, cut deviations count the
+/// flatness of triangles several times.
+bool suits_cuts(const InputField& field) {
+    if (field.frames.size() > 1) return false;
+    return std::visit([](const auto& frame) { return nestgrid::cuts_are_errors(frame->facts()); },
+                      field.frames.front());
+}
+
+/// Writes and paints the surfaces that were kept.
+void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progress,
+          Seconds& seconds, Report& report) {
+    std::vector<Panel> panels;
+    std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
+    for (const Extraction& e : run.surfaces) {
+        if (!e.surface) return;
+        surfaces.push_back(e.surface);
+        panels.push_back({.surface = e.surface, .caption = caption(e)});
+        if (run.dimension == 2) panels.back().view = seen_from({0, 0, 1});
+    }
+    if (!s.output.empty()) {
+        progress.show("writing");
+        const double start = now();
+        write_surfaces(surfaces, s.output, report);
+        seconds.write = now() - start;
+    }
+    const fs::path& image = s.picture.image;
+    if (!image.empty()) {
+        progress.show("painting");
+        const double start = now();
+        write_picture(panels, parse(s.picture), image);
+        seconds.draw = now() - start;
+        report.wrote(image, {{"surfaces", panels.size()}});
+    }
+}
+
+void say_what_distances_are(const ExtractionRequest& request, const std::string& unit,
+                            Report& report) {
+    const bool estimates = request.projection.indicator == "slope";
+    if (!estimates && !request.measures) return;
+    std::string text =
+        "distances are in " + (unit.empty() ? "the unit of the grid, which is not known" : unit);
+    if (request.keeps_distances) {
+        text +=
+            "; no point of the surface is farther than the threshold from that of all data, and "
+            "none of that from the surface";
+    } else if (estimates) {
+        text +=
+            "; the threshold is an estimate: where the data are flat, the surface may be "
+            "further off";
+    }
+    report.say(text);
+}
+
+void run_isosurface(IsosurfaceArguments& o, Report& report) {
+    check(o.surface);
+    check(o.time);
+    check_film(o.time, o.surface);
+    refuse_colours(o.surface.picture, "an isosurface has one colour");
+    ExtractionRequest request = request_of(o);
+    Seconds seconds;
+    std::optional<ProgressLine> progress(std::in_place);
+    request.progress = [&](const std::string& text) { progress->show(text); };
+    request.preroll = [&] { progress->show("preroll", 0, 1); };
+    request.part = [&](double share) { progress->part(share); };
+    request.share = [&](std::size_t done, std::size_t total) {
+        progress->show("drawing", done, total);
+    };
+    progress->show("reading");
+    const double start = now();
+    std::optional<Film> film;
+    if (o.time.frames) {
+        film.emplace(o.surface.output);
+        request.drawn = [&film](Extraction& e) {
+            film->add(e.surface, *e.time);
+            e.surface = nullptr;
+        };
+    }
+    const fs::path path = o.input.path;
+    const InputField field = read_field(o.input, o.time.more, o.time.times, o.time.wanted());
+    check_for(o, field);
+    if (o.surface.command->count("--error") > 0 && suits_cuts(field)) {
+        request.projection.indicator = "cut";
+    }
+    seconds.read = now() - start;
+    const ExtractionRun run = extract(field, o.time, path, request);
+    if (film) film->finish(report);
+    keep(run, o.surface, *progress, seconds, report);
+    std::optional<Contour> contour;
+    if (o.against_vtk) {
+        progress->show("contouring with VTK");
+        contour = contour_with_vtk(field.volumes->front(), o.value);
+    }
+    progress.reset();
+    report_field(field.name, field.length_unit, report);
+    if (!field.note.empty()) report.say(field.note);
+    report_surfaces(run, o.value, seconds, contour, report);
+    say_what_distances_are(request, field.length_unit, report);
+    say_what_was_kept(o.surface, report);
+}
+
+/// The range of the data, and a value that shows the thing in them.
+std::string advice(const IsosurfaceArguments& o) {
+    if (o.input.path.empty()) return "";
+    Input input = o.input;
+    const InputField field = read_field(input, o.time.more, o.time.times, o.time.wanted());
+    const ValueSample sample = value_sample_of(field.value_count, field.value);
+    const auto texts = distinct_texts({sample.least, sample.greatest, readable_isovalue(sample)});
+    const std::string name = "'" + o.input.path.string() + "'";
+    if (texts[0] == texts[1]) return ": " + name + " has the value " + texts[0] + " everywhere";
+    return ": the values of " + name + " are from " + texts[0] + " to " + texts[1] +
+           ", try --value " + texts[2];
+}
+
+void add_box_options(CLI::App& command, IsosurfaceArguments& o) {
+    CLI::Option* box =
+        command.add_option("--box", o.box, "a box with a threshold of its own, --box-threshold")
+            ->type_name("X,X,Y,Y,Z,Z")
+            ->group("Detail")
+            ->delimiter(',')
+            ->expected(6);
+    command.add_option("--box-threshold", o.box_threshold, "in units of --threshold [0]")
+        ->type_name("NUMBER")
+        ->group("Detail")
+        ->needs(box);
+}
+
+Command add_isosurface(CLI::App& program) {
+    auto o = std::make_shared<IsosurfaceArguments>();
+    CLI::App* isosurface = program.add_subcommand("isosurface", "draw where the data have a value");
+    isosurface->footer(
+        "Prints:\n"
+        "  error_bound: on no triangle do the data and the value differ by more.\n"
+        "Examples:\n"
+        "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
+        "  nestgrid isosurface head.nii.gz --value 60 --max-triangles 5000 --image h.png\n");
+    add_input(*isosurface, o->input);
+    isosurface->add_option("--value", o->value, "the isovalue, in units of the data")
+        ->type_name("NUMBER")
+        ->required();
+    add_surface_options(*isosurface, o->surface, true);
+    isosurface
+        ->add_option_function<std::vector<std::string>>(
+            "--distance",
+            [o](const std::vector<std::string>& distances) {
+                o->surface.thresholds = distances;
+                o->surface.projection.indicator = "slope";
+            },
+            "or let what is drawn be about this far from the surface of all data at most, in the "
+            "unit of the grid: an estimate")
+        ->type_name("LENGTH")
+        ->take_all()
+        ->excludes("--threshold")
+        ->excludes("--max-triangles")
+        ->excludes("--error")
+        ->excludes("--indicator");
+    isosurface
+        ->add_flag("--distance-field", o->keeps_distances,
+                   "keep the --distance there and back: look where the surfaces are farther from "
+                   "each other, and draw more there")
+        ->needs(isosurface->get_option("--distance"));
+    isosurface
+        ->add_flag("--collapse", o->collapses,
+                   "take edges away while the --error is kept: some times fewer triangles, some "
+                   "times the time")
+        ->needs(isosurface->get_option("--error"));
+    isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume")
+        ->group("Surface");
+    isosurface
+        ->add_flag("--no-normals", o->flat, "leave out the normals, and the time that they take")
+        ->group("Surface");
+    isosurface
+        ->add_flag("--at-nodes", o->at_nodes,
+                   "put vertices at samples that equal the isovalue, instead of slivers around "
+                   "them")
+        ->group("Surface");
+    isosurface
+        ->add_option("--cuts", o->cuts,
+                     "where edges are cut: linear keeps the error, finest lies nearer to the data "
+                     "[finest with --max-triangles and --distance]")
+        ->type_name("KIND")
+        ->check(CLI::IsMember({"linear", "finest"}))
+        ->group("Surface")
+        ->excludes("--at-nodes");
+    for (const char* const other : {"--cap", "--at-nodes"}) {
+        isosurface->get_option("--collapse")->excludes(other);
+    }
+    isosurface
+        ->add_flag("--measure", o->measures,
+                   "measure the error and the distances from the surface of all data, there and "
+                   "back")
+        ->group("Surface")
+        ->excludes("--cap");
+    isosurface
+        ->add_flag("--against-vtk", o->against_vtk,
+                   "compare with VTK's own contour of the same samples")
+        ->group("Surface");
+    add_box_options(*isosurface, *o);
+    add_time_options(*isosurface, o->time);
+    add_lens_options(*isosurface, o->lens);
+    for (const char* const other : {"--lens", "--box"}) {
+        isosurface->get_option("--collapse")->excludes(other);
+        isosurface->get_option("--distance-field")->excludes(other);
+    }
+    isosurface->get_option("--lens")->excludes("--box");
+    add_read_options(*isosurface, o->input);
+    return {isosurface, [o](Report& report) { run_isosurface(*o, report); },
+            [o] { return advice(*o); }};
+}
+
+const RegisteredCommand isosurface_command(10, add_isosurface);
+
+}  // namespace

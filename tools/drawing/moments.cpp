@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drawing/moments.hpp"
+
+#include <utility>
+
+#include "drawing/extract.hpp"
+
+const ChosenIndicator& Moment::indicators() const {
+    if (!indicators_) indicators_.emplace(all_.prerolls(), hierarchy_, weights_);
+    return *indicators_;
+}
+
+Moments::Moments(const InputField& field, const TimeOptions& time,
+                 const std::filesystem::path& path, ProjectionChoice choice,
+                 std::optional<LensRequest> lens, int threads,
+                 const std::function<void(double share)>& tell)
+    : field_{field},
+      time_{time},
+      choice_{std::move(choice)},
+      lens_{std::move(lens)},
+      threads_(threads),
+      executor_(threads_, tell) {
+    require_frames(time, field.times, path);
+}
+
+const FramePrerolls& Moments::prerolls() const {
+    if (!prerolls_) {
+        const double start = now();
+        prerolls_.emplace(field_.frames, choice_, lens_, executor_);
+        preroll_seconds_ = now() - start;
+    }
+    return *prerolls_;
+}
+
+void Moments::for_each(const std::function<void(const Moment&)>& function) const {
+    if (!time_.in_use()) return function(Moment(*this, field_.frames.front(), {}, {}));
+    for (const double t : time_.drawn_times(field_.times)) {
+        const std::vector<float> weights = time_.weights(field_.times, t);
+        function(Moment(*this, field_.between(weights), t, weights));
+    }
+}

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/volume.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+
+#include <nestgrid/error.hpp>
+
+#include "formats.hpp"
+#include "input/child_process.hpp"
+#include "input/input_file.hpp"
+#include "suggestion.hpp"
+
+namespace {
+
+using nestgrid::InvalidInput;
+using nestgrid::IoError;
+namespace fs = std::filesystem;
+
+struct NamedType {
+    const char* name;
+    int vtk;
+};
+constexpr std::array<NamedType, 10> types{{{"uint8", VTK_UNSIGNED_CHAR},
+                                           {"int8", VTK_SIGNED_CHAR},
+                                           {"uint16", VTK_UNSIGNED_SHORT},
+                                           {"int16", VTK_SHORT},
+                                           {"uint32", VTK_UNSIGNED_INT},
+                                           {"int32", VTK_INT},
+                                           {"uint64", VTK_UNSIGNED_LONG},
+                                           {"int64", VTK_LONG},
+                                           {"float32", VTK_FLOAT},
+                                           {"float64", VTK_DOUBLE}}};
+
+/// The volume in a parcel, whose samples stay there.
+/// \param frame of those that were chosen
+Volume open_volume(const std::shared_ptr<const Parcel>& parcel, std::size_t frame) {
+    const VolumeDescription& description = parcel->block<VolumeDescription>(0).front();
+    const std::span<const std::byte> all = parcel->block<std::byte>(1);
+    const std::size_t bytes = all.size() / description.frames;
+    const std::span<const std::byte> samples = all.subspan(frame * bytes, bytes);
+    Volume volume;
+    volume.type = description.type.data();
+    volume.name = description.name.data();
+    volume.length_unit = description.length_unit.data();
+    volume.space = description.space.data();
+    volume.note = description.note.data();
+    volume.geometry = description.geometry;
+    volume.time = description.first_time + static_cast<double>(frame) * description.time_step;
+    volume.time_unit = description.time_unit.data();
+    const auto type = std::find_if(types.begin(), types.end(),
+                                   [&](const NamedType& t) { return volume.type == t.name; });
+    const auto array =
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type->vtk));
+    // VTK takes no const pointer, and does not write to what it borrows.
+    array->SetVoidArray(const_cast<std::byte*>(samples.data()),
+                        static_cast<vtkIdType>(description.sample_count()), 1);
+    volume.image = vtkSmartPointer<vtkImageData>::New();
+    volume.image->SetDimensions(volume.geometry.samples.data());
+    volume.image->SetSpacing(volume.geometry.spacing.data());
+    volume.image->GetPointData()->SetScalars(array);
+    volume.memory = parcel;
+    return volume;
+}
+
+/// The size of a file, or of all files in a folder; where the format reads files beside, of those,
+/// too.
+std::uintmax_t bytes_to_read(const fs::path& path, const Format& format) {
+    std::error_code none;
+    fs::path folder = path;
+    if (!fs::is_directory(path, none)) {
+        if (!format.reads_beside) return fs::file_size(path);
+        folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    }
+    std::uintmax_t bytes = 0;
+    for (fs::recursive_directory_iterator at(folder, none), end; !none && at != end;
+         at.increment(none)) {
+        std::error_code unreadable;
+        const std::uintmax_t size = at->is_regular_file(unreadable) ? at->file_size(unreadable) : 0;
+        if (!unreadable) bytes += size;
+    }
+    return bytes;
+}
+
+/// Says what could be done with a file that holds no samples.
+std::string unknown_format(const fs::path& path) {
+    const Format* const format = format_of(path);
+    if (format != nullptr && format->read_mesh != nullptr) {
+        return " is a mesh without data: 'nestgrid mesh' makes a hierarchy of it";
+    }
+    std::vector<std::string> known = endings_for(&Format::read_samples);
+    known.emplace_back(".nestgrid");
+    return " is of no known format (" + listed(known) + ")" + did_you_mean(ending_of(path), known);
+}
+
+}  // namespace
+
+std::size_t leaf_count(const nestgrid::LatticeGeometry<3>& geometry) {
+    const bool plane = geometry.samples[2] == 1;
+    std::size_t leaves = plane ? 2 : 6;
+    for (std::size_t d = 0; d < (plane ? 2U : 3U); ++d) {
+        leaves *= static_cast<std::size_t>(geometry.samples[d] - 1);
+    }
+    return leaves;
+}
+
+std::size_t Volume::sample_count() const {
+    return static_cast<std::size_t>(geometry.samples[0]) *
+           static_cast<std::size_t>(geometry.samples[1]) *
+           static_cast<std::size_t>(geometry.samples[2]);
+}
+
+std::vector<Volume> read_volumes(const fs::path& path, const VolumeChoice& choice,
+                                 const RawFormat& raw, double seconds) {
+    const Format* const format = format_of(path);
+    if (!fs::is_directory(path) || format == nullptr) require_file(path);
+    if (format == nullptr || format->read_samples == nullptr) {
+        throw IoError(path.string() + unknown_format(path));
+    }
+    if (!(seconds > 0)) seconds = reading_time(bytes_to_read(path, *format));
+    const WantedSamples wanted{choice.array, choice.all_frames || choice.frame.value_or(0) != 0,
+                               raw};
+    const auto parcel = run_apart(path.string(), seconds, [&](Parcel& to) {
+        FileSamples samples = format->read_samples(path, wanted);
+        put_chosen(samples, choice, to);
+    });
+    std::vector<Volume> volumes;
+    const std::size_t frames = parcel->block<VolumeDescription>(0).front().frames;
+    for (std::size_t i = 0; i < frames; ++i) volumes.push_back(open_volume(parcel, i));
+    return volumes;
+}

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// PLY, binary. VTK's writer has points of single precision only, and neither normals of its own nor
+// values.
+#include <bit>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <span>
+
+#include <vtkCellArray.h>
+#include <vtkCellArrayIterator.h>
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+#include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
+
+#include "formats.hpp"
+#include "output/precision.hpp"
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+/// Numbers of a row, one behind the other.
+class RowBuffer {
+public:
+    explicit RowBuffer(std::ofstream& file) : file_{file} {}
+    template <class Number>
+    void put(Number number) {
+        const auto* bytes = reinterpret_cast<const char*>(&number);
+        bytes_.insert(bytes_.end(), bytes, bytes + sizeof number);
+        if (bytes_.size() > 1U << 20U) flush();
+    }
+    void flush() {
+        file_.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+        bytes_.clear();
+    }
+
+private:
+    std::ofstream& file_;
+    std::vector<char> bytes_;
+};
+
+/// What stands at each point beside its place.
+struct PointColumns {
+    vtkDataArray* normals = nullptr;
+    std::vector<vtkDataArray*> values{};
+};
+
+PointColumns columns_of(vtkPolyData* surface) {
+    vtkPointData* const data = surface->GetPointData();
+    PointColumns columns{.normals = data->GetNormals()};
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+        vtkDataArray* const array = data->GetArray(i);
+        if (array == nullptr || array == columns.normals) continue;
+        if (array->GetNumberOfComponents() == 1) columns.values.push_back(array);
+    }
+    return columns;
+}
+
+/// A name of one word, as PLY wants it.
+std::string word_of(const char* name) {
+    std::string word = name == nullptr ? "value" : name;
+    for (char& c : word) {
+        if (std::isspace(static_cast<unsigned char>(c)) != 0) c = '_';
+    }
+    return word.empty() ? "value" : word;
+}
+
+/// The texts of the field data, such as the unit of length, as comments.
+std::string comments_on(vtkPolyData* surface) {
+    std::string comments;
+    vtkFieldData* const data = surface->GetFieldData();
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+        const auto* text = vtkStringArray::SafeDownCast(data->GetAbstractArray(i));
+        if (text == nullptr || text->GetNumberOfValues() == 0) continue;
+        comments += "comment " + word_of(data->GetArrayName(i)) + " " +
+                    const_cast<vtkStringArray*>(text)->GetValue(0) + "\n";
+    }
+    return comments;
+}
+
+std::string header_of(vtkPolyData* surface, const PointColumns& columns, bool single) {
+    std::string header = "ply\nformat binary_little_endian 1.0\ncomment nestgrid\n";
+    header += comments_on(surface);
+    header += "element vertex " + std::to_string(surface->GetNumberOfPoints()) + "\n";
+    for (const char* axis : {"x", "y", "z"}) {
+        header += std::string("property ") + (single ? "float " : "double ") + axis + "\n";
+    }
+    if (columns.normals != nullptr) {
+        header += "property float nx\nproperty float ny\nproperty float nz\n";
+    }
+    for (vtkDataArray* const array : columns.values) {
+        header += "property double " + word_of(array->GetName()) + "\n";
+    }
+    header += "element face " + std::to_string(surface->GetNumberOfPolys()) +
+              "\nproperty list uchar int vertex_indices\n";
+    vtkIdType segments = 0;
+    if (surface->GetNumberOfLines() > 0) {
+        segments = surface->GetLines()->GetNumberOfConnectivityIds() - surface->GetNumberOfLines();
+        header += "element edge " + std::to_string(segments) +
+                  "\nproperty int vertex1\nproperty int vertex2\n";
+    }
+    return header + "end_header\n";
+}
+
+void put_points(vtkPolyData* surface, const PointColumns& columns, bool single, RowBuffer& row) {
+    std::array<double, 3> x{};
+    for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i) {
+        surface->GetPoint(i, x.data());
+        for (const double coordinate : x) {
+            single ? row.put(static_cast<float>(coordinate)) : row.put(coordinate);
+        }
+        if (columns.normals != nullptr) {
+            columns.normals->GetTuple(i, x.data());
+            for (const double coordinate : x) row.put(static_cast<float>(coordinate));
+        }
+        for (vtkDataArray* const array : columns.values) row.put(array->GetComponent(i, 0));
+    }
+}
+
+/// Calls function(corners) for each cell.
+template <class Function>
+void for_each_cell(vtkCellArray* cells, const Function& function) {
+    vtkIdType count = 0;
+    const vtkIdType* corners = nullptr;
+    const auto cell = vtkSmartPointer<vtkCellArrayIterator>::Take(cells->NewIterator());
+    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell()) {
+        cell->GetCurrentCell(count, corners);
+        function(std::span<const vtkIdType>(corners, static_cast<std::size_t>(count)));
+    }
+}
+
+std::string write_ply(vtkPolyData* surface, const std::filesystem::path& path) {
+    std::ofstream file(path, std::ios::binary);
+    const bool single = single_precision(surface).suffices();
+    const PointColumns columns = columns_of(surface);
+    file << header_of(surface, columns, single);
+    RowBuffer row(file);
+    put_points(surface, columns, single, row);
+    for_each_cell(surface->GetPolys(), [&](std::span<const vtkIdType> corners) {
+        row.put(static_cast<std::uint8_t>(corners.size()));
+        for (const vtkIdType corner : corners) row.put(static_cast<std::int32_t>(corner));
+    });
+    for_each_cell(surface->GetLines(), [&](std::span<const vtkIdType> line) {
+        for (std::size_t i = 1; i < line.size(); ++i) {
+            row.put(static_cast<std::int32_t>(line[i - 1]));
+            row.put(static_cast<std::int32_t>(line[i]));
+        }
+    });
+    row.flush();
+    errno = 0;
+    file.close();
+    return file ? "" : std::strerror(errno == 0 ? EIO : errno);
+}
+
+const RegisteredFormat ply({.name = "PLY",
+                            .endings = {".ply"},
+                            .holds = "triangles, lines, normals and values",
+                            .write_surface = write_ply});
+
+}  // namespace

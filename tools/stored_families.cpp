@@ -1,5 +1,0 @@
-// SPDX-FileCopyrightText: the nestgrid authors
-// SPDX-License-Identifier: BSD-3-Clause
-#include "hierarchy.hpp"
-
-NESTGRID_STORED_FAMILIES()
