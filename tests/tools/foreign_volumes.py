@@ -20,6 +20,7 @@ options are those of the program.
 The second argument of the tests is write_with_itk.
 """
 
+import gzip
 import os
 import subprocess
 import sys
@@ -82,7 +83,21 @@ def nifti(name, samples, steps=STEPS, qform=None, sform=1, slope=None, unit=None
     if slope:
         image.header.set_slope_inter(*slope)
     nibabel.save(image, name)
+    return samples_of(name)
+
+
+def samples_of(name):
     return nibabel.load(name).get_fdata()
+
+
+def patch(name, source, at, numbers):
+    """A copy of a file with other numbers in float32 at a byte."""
+    with open(source, "rb") as file:
+        content = bytearray(file.read())
+    numbers = np.array(numbers, np.float32).tobytes()
+    content[at : at + len(numbers)] = numbers
+    with open(name, "wb") as file:
+        file.write(content)
 
 
 def nifti_cases(judge):
@@ -117,6 +132,32 @@ def nifti_cases(judge):
         samples = nifti(name, np.rint(plain).astype(kind), dtype=kind)
         judge.range(name, samples)
 
+    header = nibabel.Nifti2Header(endianness=">")
+    big_second = nifti("big_second.nii.gz", plain, kind=nibabel.Nifti2Image, header=header)
+    judge.good("big_second.nii.gz", big_second, space="RAS")
+    image = nibabel.load("plain.nii")
+    image.header.extensions.append(nibabel.nifti1.Nifti1Extension("comment", b"between header and samples"))
+    nibabel.save(image, "extended.nii")
+    judge.good("extended.nii", plain, space="RAS")
+
+    # Spacings with a sign, without a number, or of 0, which is 1 unless axes say more.
+    for name, source, spacings in [
+        ("negative_s.nii", "plain.nii", (1, -1.5, 2, 2.5)),
+        ("zero_s.nii", "plain.nii", (1, 0, 2, 2.5)),
+        ("qfac_0.nii", "qform.nii", (0, 1.5, 2, 2.5)),
+    ]:
+        patch(name, source, 76, spacings)
+        judge.good(name, plain, space="RAS", python=min(spacings) >= 0)
+    for name, spacings, signs in ("negative_q.nii", (1, 1.5, -2, 2.5), (1, -1, 1)), ("qfac.nii", (-1, 1.5, 2, 2.5), (1, 1, -1)):
+        patch(name, "qform.nii", 76, spacings)
+        judge.good(name, plain, centre=ORIGIN + STEPS * signs @ [11.3, 10.2, 9.6], space="RAS", python=name == "qfac.nii")
+    patch("negative.nii", "no_form.nii", 76, (1, 1.5, -2, 2.5))
+    centre = straight * [1, -1, 1] @ [11.3, 10.2, 9.6]
+    judge.good("negative.nii", samples_of("no_form.nii"), centre=centre, python=False)
+    for source in "plain.nii", "qform.nii", "no_form.nii":
+        patch("no_number.nii", source, 76, (1, np.nan, 2, 2.5))
+        judge.refused("no_number.nii", "cannot be read: spacing, direction or origin of the lattice is flat or not finite")
+
     # Values are slope times number plus intercept.
     for name, kind, slope, intercept in [
         ("slope_i2.nii.gz", "i2", 1 / 64, 0),
@@ -136,15 +177,9 @@ def nifti_cases(judge):
         samples = nifti(name, numbers, slope=(slope, intercept))
         judge.good(name, samples, value=value, space="RAS")
     image = nibabel.load("slope_u1.nii")
-    with open("slope_u1.nii", "rb") as file:
-        content = bytearray(file.read())
-    content[112:116] = np.float32(0).tobytes()
-    with open("slope_zero.nii", "wb") as file:
-        file.write(content)
+    patch("slope_zero.nii", "slope_u1.nii", 112, [0])
     judge.good("slope_zero.nii", np.asarray(image.dataobj.get_unscaled()), value=216, space="RAS")
-    content[112:120] = np.array([2, np.nan], np.float32).tobytes()
-    with open("slope_nan.nii", "wb") as file:
-        file.write(content)
+    patch("slope_nan.nii", "slope_u1.nii", 112, [2, np.nan])
     judge.refused("slope_nan.nii", "scl_inter")
 
     frames = np.stack([plain, plain + 10, 2 * plain], axis=3)
@@ -175,6 +210,17 @@ def nifti_cases(judge):
     nibabel.save(nibabel.Nifti1Image(colours, affine()), "colours.nii")
     judge.refused("colours.nii", "3 numbers per sample")
     judge.good("colours.nii", colours["G"], "--component", 1, value=176, space="RAS")
+    waves = np.ones(SHAPE, np.complex64) * (plain * (0.6 + 0.8j))
+    nibabel.save(nibabel.Nifti1Image(waves.astype(np.complex64), affine()), "waves.nii")
+    judge.refused("waves.nii", "2 numbers per sample")
+    judge.good("waves.nii", plain, "--magnitude", space="RAS")
+    # Slices are reversed where axes are left-handed, also where samples have more than a number.
+    centre = ORIGIN + left @ [11.3, 10.2, 9.6]
+    samples = ball(left, centre=centre)
+    nifti("left_vector.nii", np.stack([samples, 2 * samples], axis=3)[:, :, :, None, :], left)
+    judge.good("left_vector.nii", 2 * samples, "--component", 1, value=176, centre=centre, space="RAS")
+    nifti("left_time.nii.gz", np.stack([samples, samples + 10], axis=3), left, 1, None)
+    judge.good("left_time.nii.gz", samples + 10, "--frame", 1, value=98, centre=centre, space="RAS", note="frame 1 of the 2")
     hole = plain.copy()
     hole[3, 4, 5] = np.nan
     nifti("hole.nii", hole)
@@ -294,6 +340,32 @@ def nrrd_cases(judge):
     make("four.nrrd", np.moveaxis(four, 0, 3), "-sp", *SPACING, 1)
     judge.range("four.nrrd", four[2], "--frame", 2)
 
+    judge.range("four.nrrd", four[0])
+    for kind, count in ("RGBA", 4), ("3D-sym-tensor", 6), ("contravariant-vector", 2):
+        samples = np.stack([plain * (i + 1) for i in range(count)])
+        space = ["-spc", "LPS", *PLACE[:2]]
+        make(f"{kind}.nrrd", samples, "-k", kind, "space", "space", "space", *space, "-dirs", "none " + directions())
+        judge.good(f"{kind}.nrrd", samples[-1], "--component", count - 1, value=88 * count, space="LPS", python=False)
+    # Numbers between those of space.
+    between = np.moveaxis(vectors, 0, 1)
+    make("between.nrrd", between, "-k", "space", "3-vector", "space", "space", *space, "-dirs", f"{vector(STEPS[:, 0])} none {vector(STEPS[:, 1])} {vector(STEPS[:, 2])}")
+    judge.good("between.nrrd", vectors[2], "--component", 2, value=-176, space="LPS", python=False)
+    judge.good("between.nrrd", 3 * plain, "--magnitude", value=264, space="LPS", python=False)
+    # What stands before and behind the samples.
+    for name, skips, before, behind in [
+        ("bytes.nhdr", "byte skip: 3", b"abc", b""),
+        ("end.nhdr", "byte skip: -1", b"abc", b""),
+        ("near_end.nhdr", "byte skip: -3", b"abc", b"de"),
+        ("lines.nhdr", "line skip: 2\nbyte skip: 1", b"a\nb\nc", b""),
+    ]:
+        with open("skipped.raw", "wb") as file:
+            file.write(before + plain.T.tobytes() + behind)
+        with open("raw.nrrd", "rb") as file:
+            header = file.read().split(b"\n\n")[0].decode()
+        with open(name, "w") as file:
+            file.write(f"{header}\n{skips}\ndata file: ./skipped.raw\n")
+        judge.good(name, plain, space="LPS", python=False)
+
     for before, after, reason in [
         (b"(-7,31", b"(x,31", "parsed 0 values, but space dimension is 3"),
         (b"sizes: 24 22 20", b"sizes: 24 22", "parsed 2 values, but dimension is 3"),
@@ -362,6 +434,31 @@ def itk_cases(judge):
         with open("wrong.mha", "wb") as file:
             file.write(content.replace(before, after))
         judge.refused("wrong.mha", reason)
+    # Headers that others write.
+    header = content.split(b"ElementDataFile")[0].decode()
+    samples = plain.T.tobytes()
+    texts = " ".join(map(repr, map(float, plain.T.ravel()))).encode()
+    for name, fields, behind in [
+        ("text.mha", {"BinaryData": "False"}, texts),
+        ("big.mha", {"BinaryDataByteOrderMSB": "True"}, plain.astype(">f4").T.tobytes()),
+        ("gzip.mha", {"CompressedData": "True"}, gzip.compress(samples)),
+        ("mm.mha", {"DistanceUnits": "mm", "AnatomicalOrientation": "RAI"}, samples),
+    ]:
+        lines = [line for line in header.splitlines() if line.split(" =")[0] not in fields]
+        lines += [f"{key} = {value}" for key, value in fields.items()] + ["ElementDataFile = LOCAL", ""]
+        with open(name, "wb") as file:
+            file.write("\n".join(lines).encode() + behind)
+        judge.good(name, plain, space=None, unit=fields.get("DistanceUnits", ""))
+    with open("skipped.raw", "wb") as file:
+        file.write(b"abc" + samples)
+    for name, fields in [
+        ("behind.mhd", "HeaderSize = -1\nElementDataFile = skipped.raw"),
+        ("pattern.mhd", f"ElementDataFile = slice%02d.raw 0 {SHAPE[2] - 1} 1"),
+        ("list.mhd", "ElementDataFile = LIST\nslab0.raw\nslab1.raw"),
+    ]:
+        with open(name, "w") as file:
+            file.write(header + fields + "\n")
+        judge.good(name, plain, space=None)
     slope = b"ElementToIntensityFunctionSlope = 2\nElementToIntensityFunctionOffset = 7\nElementType"
     with open("slope.mha", "wb") as file:
         file.write(content.replace(b"ElementType", slope))
@@ -371,15 +468,16 @@ def itk_cases(judge):
 # VTK's writer
 
 
-def vti(name, cells=(), points=(), shape=SHAPE, active=None):
+def vti(name, cells=(), points=(), shape=SHAPE, active=None, start=(0, 0, 0), mode=vtkXMLImageDataWriter.Appended):
     image = vtkImageData()
-    image.SetDimensions(shape)
+    image.SetExtent([end for first, n in zip(start, shape) for end in (first, first + n - 1)])
     image.SetSpacing(SPACING)
     image.SetOrigin(ORIGIN)
     image.SetDirectionMatrix(*AXES.ravel())
     for data, arrays in (image.GetPointData(), points), (image.GetCellData(), cells):
         for title, samples in arrays:
-            array = numpy_to_vtk(samples.ravel("F") if samples.ndim == 3 else samples.reshape(-1, 3, order="F"), deep=True)
+            flat = samples.ravel("F") if samples.ndim == 3 else samples.reshape(-1, samples.shape[3], order="F")
+            array = numpy_to_vtk(flat, deep=True)
             array.SetName(title)
             data.AddArray(array)
         if active and data.HasArray(active):
@@ -387,6 +485,7 @@ def vti(name, cells=(), points=(), shape=SHAPE, active=None):
     writer = vtkXMLImageDataWriter()
     writer.SetInputData(image)
     writer.SetFileName(name)
+    writer.SetDataMode(mode)
     writer.Write()
 
 
@@ -405,6 +504,18 @@ def vti_cases(judge):
     vti("cells_two.vti", cells=[("heat", centres), ("cold", -centres)], shape=np.array(SHAPE) + 1)
     judge.refused("cells_two.vti", "several arrays, choose one by --array: 'heat', 'cold'")
     judge.good("cells_two.vti", -centres, "--array", "cold", value=-88, note="cell data")
+    # Points go before cells.
+    vti("both.vti", cells=[("cold", -centres)], points=[("heat", ball(shape=np.array(SHAPE) + 1))], shape=np.array(SHAPE) + 1)
+    judge.range("both.vti", ball(shape=np.array(SHAPE) + 1))
+    judge.good("both.vti", -centres, "--array", "cold", value=-88, note="cell data")
+    judge.refused("both.vti", "has no point data array 'mild', only 'heat', 'cold'", "--array", "mild")
+    start = np.array([3, -4, 5])
+    vectors = np.stack([plain, 2 * plain, -2 * plain], axis=3)
+    for name, mode in ("appended.vti", vtkXMLImageDataWriter.Appended), ("binary.vti", vtkXMLImageDataWriter.Binary), ("ascii.vti", vtkXMLImageDataWriter.Ascii):
+        vti(name, points=[("heat", vectors)], start=start, mode=mode)
+        judge.refused(name, "3 numbers per sample")
+        judge.good(name, 2 * plain, "--component", 1, value=176, centre=CENTRE + STEPS @ start)
+        judge.good(name, 3 * plain, "--magnitude", value=264, centre=CENTRE + STEPS @ start)
     vti("none.vti")
     judge.refused("none.vti", "neither point nor cell data")
 

@@ -4,6 +4,12 @@
 // Bytes of a file one after the other, packed or not. Holds one chunk of the file at a time.
 import { FileError } from './volume.js';
 
+/** How bytes are packed that begin as those of gzip do; null where they do not. */
+export async function packingOf(blob) {
+  const [first, second] = new Uint8Array(await blob.slice(0, 2).arrayBuffer());
+  return first === 0x1f && second === 0x8b ? 'gzip' : null;
+}
+
 export class ByteStream {
   #name;
   #reader;

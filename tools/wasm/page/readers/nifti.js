@@ -3,7 +3,7 @@
 //
 // NIfTI-1 and NIfTI-2 in one file, .nii or .nii.gz. Takes headers as VTK's reader and
 // tools/input/nifti_file.cpp do, where all fields are listed.
-import { ByteStream } from './byte_stream.js';
+import { ByteStream, packingOf } from './byte_stream.js';
 import { payloadReader } from './payload.js';
 import {
   FileError,
@@ -143,7 +143,7 @@ const isLeftHanded = ([a, b, c]) =>
 
 /** The place. Axes that would be left-handed have their slices, of which there are nz, reversed. */
 function geometryOf(header, nz) {
-  const spacing = [1, 2, 3].map((i) => header.number('pixdim', i) || 1);
+  const spacing = [1, 2, 3].map((i) => header.number('pixdim', i)).map((x) => (x === 0 ? 1 : x));
   const hasMatrix = header.number('sformCode') > 0;
   const hasQuaternion = header.number('qformCode') > 0;
   if (!hasMatrix && !hasQuaternion) {
@@ -210,8 +210,8 @@ function stridesOf(name, [nx, ny, nz, nt, nv], ofSample, reversed) {
 
 export async function openNifti(file) {
   const { name } = file;
-  const isPacked = name.toLowerCase().endsWith('.gz');
-  const stream = new ByteStream(name, file, isPacked ? 'gzip' : null);
+  const packing = await packingOf(file);
+  const stream = new ByteStream(name, file, packing);
   const header = await readHeader(name, stream).finally(() => stream.close());
   const known = types[header.number('datatype')];
   if (!known)
@@ -233,7 +233,7 @@ export async function openNifti(file) {
     type,
     numbers: countedNumbers(name, ...counts, ofSample),
     parts: [{ name, blob: file }],
-    encoding: isPacked ? 'packed' : 'raw',
+    encoding: packing ? 'packed' : 'raw',
     lineSkip: 0,
     byteSkip: start,
     bigEndian: !header.littleEndian,

@@ -90,33 +90,50 @@ const kindSizes = {
 };
 const kinds = new Map(Object.keys(kindSizes).map((kind) => [kind.toLowerCase(), kind]));
 
-const shortSpaces = {
-  'right-anterior-superior': 'RAS',
-  'left-anterior-superior': 'LAS',
-  'left-posterior-superior': 'LPS',
-};
-/** Names in lower case, as { name, dimension }. */
-const spaces = new Map(
-  [...Object.entries(shortSpaces), ['scanner-xyz', ''], ['3D-right-handed', ''], ['3D-left-handed', '']]
-    .flatMap(([long, short]) => [
-      [long, { name: short || long, dimension: 3 }],
-      [short || long, { name: short || long, dimension: 3 }],
-      [`${long}-time`, { name: short || `${long}-time`, dimension: 4 }],
-      [short ? `${short}T` : `${long}-time`, { name: short || `${long}-time`, dimension: 4 }],
-    ])
-    .map(([key, space]) => [key.toLowerCase(), space]),
-);
+/** The kind that a word means; undefined where it means none. */
+const kindOfWord = (word) =>
+  kinds.get(
+    word
+      .toLowerCase()
+      .replace('contravariant-', '')
+      .replace('-sym-', '-symmetric-')
+      .replace('tensor', 'matrix')
+      .replace(/^(rgba?|hsv)(color)?$/, '$1-color'),
+  );
+
+/** Names in lower case, what the space is called here, and its dimension. */
+const spaces = new Map([
+  ['right-anterior-superior', 'RAS', 3],
+  ['ras', 'RAS', 3],
+  ['left-anterior-superior', 'LAS', 3],
+  ['las', 'LAS', 3],
+  ['left-posterior-superior', 'LPS', 3],
+  ['lps', 'LPS', 3],
+  ['right-anterior-superior-time', 'RAS', 4],
+  ['rast', 'RAS', 4],
+  ['left-anterior-superior-time', 'LAS', 4],
+  ['last', 'LAS', 4],
+  ['left-posterior-superior-time', 'LPS', 4],
+  ['lpst', 'LPS', 4],
+  ['scanner-xyz', 'scanner-xyz', 3],
+  ['scanner-xyz-time', 'scanner-xyz-time', 4],
+  ['3d-right-handed', '3D-right-handed', 3],
+  ['3d-left-handed', '3D-left-handed', 3],
+  ['3d-right-handed-time', '3D-right-handed-time', 4],
+  ['3d-left-handed-time', '3D-left-handed-time', 4],
+].map(([word, name, dimension]) => [word, { name, dimension }]));
 
 const isUnknown = (word) => word === '???' || word === 'none';
 
 async function readHeader(file) {
   const { name } = file;
   let isFirst = true;
+  const seen = new Set();
   const header = await readTextHeader(
     file,
     (line) => {
       if (isFirst) {
-        if (!/^NRRD\d\d\.?\d\d$/.test(line))
+        if (!/^NRRD(00\.01|000[1-5])$/.test(line))
           throw new FileError(`${name} is no NRRD file: it does not begin with NRRD and a version`);
         isFirst = false;
         return null;
@@ -125,6 +142,8 @@ async function readHeader(file) {
       const key = line.slice(0, Math.max(at, 0)).toLowerCase().replace(/ /g, '');
       if (line === '' || line[0] === '#') return null;
       if (fieldNames.has(key)) {
+        if (seen.has(key)) throw new FileError(`${name} has the field ${quoted(key)} twice`);
+        seen.add(key);
         return { key, spelling: line.slice(0, at), value: line.slice(at + 2).trim() };
       }
       // What users add.
@@ -197,7 +216,7 @@ const hasSpacing = ({ spacing, min, max }) => [spacing, min, max].some(Number.is
 
 function kindOf(header, word) {
   if (word === undefined || isUnknown(word)) return '';
-  const kind = kinds.get(word.toLowerCase());
+  const kind = kindOfWord(word);
   if (kind) return kind;
   throw new FileError(`${header.name} has an axis of the kind ${quoted(word)}, which is not known`);
 }
@@ -276,7 +295,7 @@ function axesOfSpace(axes) {
 
 /** The step from one sample to the next along an axis of an array without a space. */
 function scalarSpacing(name, { size, spacing, min, max, nodes }) {
-  if (Number.isFinite(spacing)) return spacing;
+  if (spacing !== undefined && !Number.isNaN(spacing)) return spacing;
   if (!Number.isFinite(min) || !Number.isFinite(max) || (nodes && size < 2)) return 1;
   if (min === max) throw new FileError(`${name} has an axis whose minimum is its maximum`);
   return (max - min) / (nodes ? size - 1 : size);

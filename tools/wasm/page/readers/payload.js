@@ -10,7 +10,7 @@
 //   lineSkip          lines before the numbers of each part
 //   byteSkip          bytes behind these lines, unpacked; -1 - n: the numbers end n bytes before the end
 //   bigEndian
-import { ByteStream } from './byte_stream.js';
+import { ByteStream, packingOf } from './byte_stream.js';
 import { FileError, arrayOfType, bytesOfType, checkFound, swapBytes } from './volume.js';
 
 /** Longer texts are not read. */
@@ -79,12 +79,6 @@ async function behindLines(name, blob, lines) {
   return blob.slice(at);
 }
 
-/** That of gzip, or that of zlib. */
-async function packingOf(blob) {
-  const [first, second] = new Uint8Array(await blob.slice(0, 2).arrayBuffer());
-  return first === 0x1f && second === 0x8b ? 'gzip' : 'deflate';
-}
-
 class Part {
   #layout;
   #name;
@@ -117,7 +111,7 @@ class Part {
   async #unpack(target, from, bytes) {
     const { lineSkip, byteSkip } = this.#layout;
     const blob = await behindLines(this.#name, this.#blob, lineSkip);
-    const stream = new ByteStream(this.#name, blob, await packingOf(blob));
+    const stream = new ByteStream(this.#name, blob, (await packingOf(blob)) ?? 'deflate');
     await stream.skip(byteSkip + from);
     await stream.fill(target);
     // Numbers that are not wanted must be there, too.

@@ -39,10 +39,6 @@ export class TextHeader {
     return this.#fields.get(key)?.value ?? '';
   }
 
-  get keys() {
-    return [...this.#fields.keys()];
-  }
-
   /** The first of the keys that is there. */
   firstKey(...keys) {
     return keys.find((key) => this.value(key) !== '') ?? keys[0];
