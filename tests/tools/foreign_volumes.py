@@ -348,7 +348,9 @@ def nrrd_cases(judge):
         judge.good(f"{kind}.nrrd", samples[-1], "--component", count - 1, value=88 * count, space="LPS", python=False)
     # Numbers between those of space.
     between = np.moveaxis(vectors, 0, 1)
-    make("between.nrrd", between, "-k", "space", "3-vector", "space", "space", *space, "-dirs", f"{vector(STEPS[:, 0])} none {vector(STEPS[:, 1])} {vector(STEPS[:, 2])}")
+    first, *others = directions().split(" ")
+    vectors_between = ["-k", "space", "3-vector", "space", "space", "-dirs", " ".join([first, "none", *others])]
+    make("between.nrrd", between, *space, *vectors_between)
     judge.good("between.nrrd", vectors[2], "--component", 2, value=-176, space="LPS", python=False)
     judge.good("between.nrrd", 3 * plain, "--magnitude", value=264, space="LPS", python=False)
     # What stands before and behind the samples.
@@ -511,8 +513,9 @@ def vti_cases(judge):
     judge.refused("both.vti", "has no point data array 'mild', only 'heat', 'cold'", "--array", "mild")
     start = np.array([3, -4, 5])
     vectors = np.stack([plain, 2 * plain, -2 * plain], axis=3)
-    for name, mode in ("appended.vti", vtkXMLImageDataWriter.Appended), ("binary.vti", vtkXMLImageDataWriter.Binary), ("ascii.vti", vtkXMLImageDataWriter.Ascii):
-        vti(name, points=[("heat", vectors)], start=start, mode=mode)
+    for mode in "Appended", "Binary", "Ascii":
+        name = f"{mode}.vti"
+        vti(name, points=[("heat", vectors)], start=start, mode=getattr(vtkXMLImageDataWriter, mode))
         judge.refused(name, "3 numbers per sample")
         judge.good(name, 2 * plain, "--component", 1, value=176, centre=CENTRE + STEPS @ start)
         judge.good(name, 3 * plain, "--magnitude", value=264, centre=CENTRE + STEPS @ start)

@@ -127,7 +127,8 @@ try {
     await page.evaluate(() => { window.lastShown = window.nestgrid.shown; });
     await set(id, value);
     await page.waitForFunction(
-      () => window.nestgrid.idle && window.nestgrid.shown && window.nestgrid.shown !== window.lastShown, { timeout: 60000 });
+      () => window.nestgrid.idle && window.nestgrid.shown && window.nestgrid.shown !== window.lastShown,
+      { timeout: 60000 });
     return chosen();
   };
   await drop(several[0]);

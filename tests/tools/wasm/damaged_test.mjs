@@ -157,7 +157,9 @@ function damaged(original) {
 
 /** Opens files and draws them, as the page does. */
 async function draw(contents) {
-  const files = contents.map((bytes, i) => new File([bytes], i === 0 ? `v.${format}` : `v.${i - 1}`));
+  const files = contents.map(
+    (bytes, i) => new File([bytes], i === 0 ? `v.${format}` : `v.${i - 1}`),
+  );
   const rawFormat = { samples: [20, 24, 18], type: 'uint8' };
   const volume = await openVolume(files, { rawFormat, firstOfSeveral: true });
   const module = await VolumeModule.make(core);

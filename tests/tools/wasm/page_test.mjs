@@ -169,11 +169,15 @@ try {
   const reader = new Reader(page);
   await page.waitForSelector('#drop:not([hidden])');
   assert.ok(await page.$eval('#panel', (panel) => panel.inert));
-  assert.match(await reader.text('drop-formats'), /\.vti, \.mha, \.mhd, \.nrrd, \.nhdr, \.nii, \.nii\.gz, \.raw/);
+  assert.match(
+    await reader.text('drop-formats'),
+    /\.vti, \.mha, \.mhd, \.nrrd, \.nhdr, \.nii, \.nii\.gz, \.raw/,
+  );
   await page.screenshot({ path: join(pictures, 'explore_empty.png') });
 
   // Readers come when a file needs them.
-  const loaded = () => [...asked].filter((url) => url.includes('/readers/')).map((url) => url.split('/').at(-1));
+  const loaded = () =>
+    [...asked].filter((url) => url.includes('/readers/')).map((url) => url.split('/').at(-1));
   assert.deepEqual(loaded().sort(), ['open_volume.js', 'volume.js']);
 
   // Damaged files before there is a picture, and formats that are none.
@@ -196,7 +200,10 @@ try {
     const own = { 'v.vti': 'vti.js', 'v.nrrd': 'nrrd.js' }[name] ?? 'nifti.js';
     assert.ok(loaded().includes(own), `${own} is not asked for`);
   }
-  assert.ok(!loaded().some((name) => ['raw.js', 'meta_image.js'].includes(name)), `asked for: ${loaded()}`);
+  assert.ok(
+    !loaded().some((name) => ['raw.js', 'meta_image.js'].includes(name)),
+    `asked for: ${loaded()}`,
+  );
   await reader.drop(join(volumes, 'v.raw'));
   await page.waitForSelector('#raw-dialog[open]');
   await page.type('#raw-dialog input[name=samples]', '20 24 17');

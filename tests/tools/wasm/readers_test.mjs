@@ -84,7 +84,13 @@ await refused(fileAt(join(vtis, 'lz4.vti')), /packed by 'vtkLZ4DataCompressor'/)
   const bytes = readFileSync(join(volumes, 'v.nii'));
   bytes.fill(0, 328, 344);
   bytes.write('density', 328);
-  for (const [units, expected] of [[0, ''], [1, 'm'], [2 | 8, 'mm'], [3, 'µm'], [7, '']]) {
+  for (const [units, expected] of [
+    [0, ''],
+    [1, 'm'],
+    [2 | 8, 'mm'],
+    [3, 'µm'],
+    [7, ''],
+  ]) {
     bytes[123] = units;
     const { name, lengthUnit } = await openVolume(new File([bytes], 'named.nii'));
     assert.deepEqual([name, lengthUnit], ['density', expected], `NIfTI with units ${units}`);
@@ -224,7 +230,10 @@ await refused(new File([bytes], 'short.raw'), /has 8640 bytes, but 20 x 24 x 19/
   type: 'uint8',
 });
 await refused(new File([`${header}encoding: bzip2\n\n`], 'v.nrrd'), /encoding 'bzip2'/);
-await refused(new File([`${header}encoding: raw\ndata file: v.raw\n\n`], 'v.nrrd'), /in another file, 'v.raw', which is not here/);
+await refused(
+  new File([`${header}encoding: raw\ndata file: v.raw\n\n`], 'v.nrrd'),
+  /in another file, 'v.raw', which is not here/,
+);
 await refused(new File([bytes], 'v.nii'), /no NIfTI file/);
 await refused(new File([bytes], 'v.vti'), /no VTK file/);
 await refused(new File([bytes], 'v.png'), /no known format/);

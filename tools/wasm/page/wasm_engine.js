@@ -40,7 +40,10 @@ export class WasmEngine {
 
   /** Asks, unless the file is the one that was asked about last, or its name tells. */
   async #rawFormatOf(file, signal) {
-    const { files: [last], choice } = this.#opened ?? { files: [] };
+    const {
+      files: [last],
+      choice,
+    } = this.#opened ?? { files: [] };
     if (last === file) return choice.rawFormat;
     const { rawFormatOfName } = await import('./readers/raw.js');
     const { askRawFormat } = await import('./raw_dialog.js');
@@ -88,7 +91,9 @@ export class WasmEngine {
     const worker = new Worker(new URL('volume_worker.js', import.meta.url), { type: 'module' });
     worker.addEventListener('message', ({ data }) => this.#take(data));
     worker.addEventListener('error', () => {
-      const failed = new Error('The part of this page that reads files has failed; it begins anew.');
+      const failed = new Error(
+        'The part of this page that reads files has failed; it begins anew.',
+      );
       if (worker === this.#worker) this.#restart(failed);
     });
     this.#worker = worker;

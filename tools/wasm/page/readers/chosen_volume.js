@@ -70,13 +70,11 @@ function needDouble({ type, slope, intercept }) {
   return !floating && Math.abs(intercept) > (8388608 - steps) * Math.abs(slope);
 }
 
-/** Calls take(i, number of the first component) for each sample, x fastest. */
-function forEachSample([nx, ny, nz], stride, begin, take) {
-  let i = 0;
+/** Calls take(i, number of the first component) for the first sample of each row along x. */
+function forEachRow([nx, ny, nz], stride, begin, take) {
   for (let z = 0; z < nz; ++z) {
     for (let y = 0; y < ny; ++y) {
-      let at = begin + z * stride[2] + y * stride[1];
-      for (let x = 0; x < nx; ++x, at += stride[0]) take(i++, at);
+      take(nx * (y + ny * z), begin + z * stride[2] + y * stride[1]);
     }
   }
 }
@@ -94,8 +92,10 @@ function checkPlace({ fileName, spacing, origin, direction }) {
 function checkFinite({ fileName, samples: [nx, ny] }, type, target) {
   if (!type.startsWith('float')) return;
   const values = numbersIn(target, type);
-  const i = values.findIndex((x) => !Number.isFinite(x));
-  if (i < 0) return;
+  // findIndex() takes five times as long.
+  let i = 0;
+  while (i < values.length && Number.isFinite(values[i])) ++i;
+  if (i === values.length) return;
   const place = [i % nx, Math.floor(i / nx) % ny, Math.floor(i / nx / ny)].join(', ');
   const what = Number.isNaN(values[i]) ? 'not a number' : 'infinite';
   throw new FileError(`${fileName}: the sample at (${place}) is ${what}`);
@@ -111,24 +111,27 @@ function rangeOf({ samples, stride }, begin, more) {
 /** Fills `to` with samples of `from`, or with what is computed from their components. */
 function gather(file, from, begin, computed, components, to) {
   const { samples, stride, slope, intercept } = file;
-  const step = file.components.stride;
-  if (!computed) {
-    forEachSample(samples, stride, begin, (i, at) => {
-      to[i] = from[at];
-    });
-  } else if (components === 1) {
-    forEachSample(samples, stride, begin, (i, at) => {
-      to[i] = slope * Number(from[at]) + intercept;
-    });
-  } else {
-    forEachSample(samples, stride, begin, (i, at) => {
+  const [nx] = samples;
+  const [step] = stride;
+  const beside = file.components.stride;
+  const stored = (i, at) => {
+    for (let x = 0; x < nx; ++x) to[i + x] = from[at + x * step];
+  };
+  const scaled = (i, at) => {
+    for (let x = 0; x < nx; ++x) to[i + x] = slope * Number(from[at + x * step]) + intercept;
+  };
+  const norms = (i, at) => {
+    for (let x = 0; x < nx; ++x) {
       let norm = 0;
       for (let c = 0; c < components; ++c) {
-        norm = Math.hypot(norm, slope * Number(from[at + c * step]) + intercept);
+        const number = Number(from[at + x * step + c * beside]);
+        norm = Math.hypot(norm, slope * number + intercept);
       }
-      to[i] = norm;
-    });
-  }
+      to[i + x] = norm;
+    }
+  };
+  if (components > 1) forEachRow(samples, stride, begin, norms);
+  else forEachRow(samples, stride, begin, computed ? scaled : stored);
 }
 
 /**

@@ -102,26 +102,28 @@ const kindOfWord = (word) =>
   );
 
 /** Names in lower case, what the space is called here, and its dimension. */
-const spaces = new Map([
-  ['right-anterior-superior', 'RAS', 3],
-  ['ras', 'RAS', 3],
-  ['left-anterior-superior', 'LAS', 3],
-  ['las', 'LAS', 3],
-  ['left-posterior-superior', 'LPS', 3],
-  ['lps', 'LPS', 3],
-  ['right-anterior-superior-time', 'RAS', 4],
-  ['rast', 'RAS', 4],
-  ['left-anterior-superior-time', 'LAS', 4],
-  ['last', 'LAS', 4],
-  ['left-posterior-superior-time', 'LPS', 4],
-  ['lpst', 'LPS', 4],
-  ['scanner-xyz', 'scanner-xyz', 3],
-  ['scanner-xyz-time', 'scanner-xyz-time', 4],
-  ['3d-right-handed', '3D-right-handed', 3],
-  ['3d-left-handed', '3D-left-handed', 3],
-  ['3d-right-handed-time', '3D-right-handed-time', 4],
-  ['3d-left-handed-time', '3D-left-handed-time', 4],
-].map(([word, name, dimension]) => [word, { name, dimension }]));
+const spaces = new Map(
+  [
+    ['right-anterior-superior', 'RAS', 3],
+    ['ras', 'RAS', 3],
+    ['left-anterior-superior', 'LAS', 3],
+    ['las', 'LAS', 3],
+    ['left-posterior-superior', 'LPS', 3],
+    ['lps', 'LPS', 3],
+    ['right-anterior-superior-time', 'RAS', 4],
+    ['rast', 'RAS', 4],
+    ['left-anterior-superior-time', 'LAS', 4],
+    ['last', 'LAS', 4],
+    ['left-posterior-superior-time', 'LPS', 4],
+    ['lpst', 'LPS', 4],
+    ['scanner-xyz', 'scanner-xyz', 3],
+    ['scanner-xyz-time', 'scanner-xyz-time', 4],
+    ['3d-right-handed', '3D-right-handed', 3],
+    ['3d-left-handed', '3D-left-handed', 3],
+    ['3d-right-handed-time', '3D-right-handed-time', 4],
+    ['3d-left-handed-time', '3D-left-handed-time', 4],
+  ].map(([word, name, dimension]) => [word, { name, dimension }]),
+);
 
 const isUnknown = (word) => word === '???' || word === 'none';
 
@@ -161,7 +163,10 @@ async function readHeader(file) {
 
 /** The words of a value, one for each axis, or none. */
 function wordsOf(header, key, count) {
-  const words = header.value(key).split(/\s+/).filter((word) => word !== '');
+  const words = header
+    .value(key)
+    .split(/\s+/)
+    .filter((word) => word !== '');
   if (words.length === 0 || words.length === count) return words;
   throw new FileError(
     `${header.name} has ${header.described(key)}, not one for each of its ${count} axes`,
@@ -208,8 +213,11 @@ function spaceOf(header) {
     throw new FileError(`${header.name} has the space ${quoted(text)}, which is not known`);
   }
   const [dimension = 0] = header.numbers('spacedimension', 1);
-  if (Number.isInteger(dimension) && dimension >= 0 && dimension <= 8) return { name: '', dimension };
-  throw new FileError(`${header.name} has ${header.described('spacedimension')}, which is not read`);
+  if (Number.isInteger(dimension) && dimension >= 0 && dimension <= 8)
+    return { name: '', dimension };
+  throw new FileError(
+    `${header.name} has ${header.described('spacedimension')}, which is not read`,
+  );
 }
 
 const hasSpacing = ({ spacing, min, max }) => [spacing, min, max].some(Number.isFinite);

@@ -132,7 +132,9 @@ export function payloadReader(layout) {
     );
   }
   if (encoding !== 'raw' && byteSkip < 0) {
-    throw new FileError(`${fileName} skips bytes of packed samples from their end, which is not read`);
+    throw new FileError(
+      `${fileName} skips bytes of packed samples from their end, which is not read`,
+    );
   }
   const share = numbers / parts.length;
   const bytes = share * bytesOfType[type];

@@ -52,7 +52,9 @@ export class TextHeader {
 
   /** The words of a value, brackets and commas aside, which must be numbers, and `count`, or none. */
   numbers(key, count = null) {
-    const words = this.value(key).split(/[\s(),]+/).filter((word) => word !== '');
+    const words = this.value(key)
+      .split(/[\s(),]+/)
+      .filter((word) => word !== '');
     const numbers = words.map((word) => {
       const number = numberOf(word);
       if (number !== undefined) return number;
