@@ -7,10 +7,11 @@
 // puppeteer-core, the browser, a folder for pictures.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { gzipSync } from 'node:zlib';
 
 const [folder, volumes, large, puppeteerFolder, browserPath, pictures] = process.argv.slice(2);
 const { default: puppeteer } = await import(
@@ -204,6 +205,18 @@ try {
     !loaded().some((name) => ['raw.js', 'meta_image.js'].includes(name)),
     `asked for: ${loaded()}`,
   );
+  // Members of gzip, and what is behind them, which browsers do not unpack.
+  const whole = readFileSync(join(volumes, 'v.nii'));
+  const members = [0, 100, 3000].map((from, i, all) => gzipSync(whole.subarray(from, all[i + 1])));
+  for (const behind of [[], [0, 0, 0]]) {
+    const name = `members_${behind.length}.nii.gz`;
+    await reader.open(write(name, Buffer.concat([...members, Buffer.from(behind)])));
+    assert.equal(await reader.text('title'), name);
+    assert.match(await reader.text('subtitle'), /values from 10 to 250/);
+  }
+  const damaged = Buffer.concat(members);
+  damaged[members[0].length - 6] ^= 1;
+  await reader.refuse(write('sum.nii.gz', damaged), /sum\.nii\.gz is truncated or damaged/);
   await reader.drop(join(volumes, 'v.raw'));
   await page.waitForSelector('#raw-dialog[open]');
   await page.type('#raw-dialog input[name=samples]', '20 24 17');

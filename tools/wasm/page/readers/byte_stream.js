@@ -12,9 +12,12 @@ export async function packingOf(blob) {
 
 export class ByteStream {
   #name;
+  #packing;
+  /** From the member of gzip on that is being unpacked, of which so many bytes are. */
+  #blob;
+  #unpacked = 0;
   #reader;
   #chunk = new Uint8Array(0);
-  #packed;
 
   /**
    * name: of the file, for messages
@@ -23,11 +26,8 @@ export class ByteStream {
    */
   constructor(name, blob, packing = null) {
     this.#name = name;
-    this.#packed = packing !== null;
-    const bytes = blob.stream();
-    this.#reader = (
-      packing ? bytes.pipeThrough(new DecompressionStream(packing)) : bytes
-    ).getReader();
+    this.#packing = packing;
+    this.#open(blob);
   }
 
   /** The next bytes. */
@@ -74,6 +74,15 @@ export class ByteStream {
     this.#reader.cancel().catch(() => {});
   }
 
+  #open(blob) {
+    this.#blob = blob;
+    this.#unpacked = 0;
+    const bytes = blob.stream();
+    this.#reader = (
+      this.#packing ? bytes.pipeThrough(new DecompressionStream(this.#packing)) : bytes
+    ).getReader();
+  }
+
   /** Makes the chunk not empty; false where there are no more bytes. */
   async #more() {
     while (this.#chunk.length === 0) {
@@ -81,17 +90,35 @@ export class ByteStream {
       try {
         next = await this.#reader.read();
       } catch {
-        throw this.#packed ? this.#damaged(0, 0) : new FileError(`${this.#name} cannot be read`);
+        if (!this.#packing) throw new FileError(`${this.#name} cannot be read`);
+        if (!(await this.#openNextMember())) return false;
+        continue;
       }
       if (next.done) return false;
       this.#chunk = next.value;
+      this.#unpacked += this.#chunk.length;
     }
+    return true;
+  }
+
+  /**
+   * Opens the member of gzip behind the one that was unpacked; false where something else is there.
+   * Throws where the member has no end.
+   */
+  async #openNextMember() {
+    if (this.#packing !== 'gzip') throw this.#damaged(0, 0);
+    const { endOfMember } = await import('./gzip_members.js');
+    const end = await endOfMember(this.#blob, this.#unpacked);
+    if (end === null) throw this.#damaged(0, 0);
+    const behind = this.#blob.slice(end);
+    if ((await packingOf(behind)) !== 'gzip') return false;
+    this.#open(behind);
     return true;
   }
 
   #damaged(found, expected) {
     return new FileError(
-      this.#packed
+      this.#packing
         ? `${this.#name} is truncated or damaged: it cannot be unpacked to its end`
         : `${this.#name} is truncated: it ends after ${found} bytes of ${expected}`,
     );
