@@ -30,13 +30,6 @@ export class ByteStream {
     this.#open(blob);
   }
 
-  /** The next bytes. */
-  async take(count) {
-    const bytes = new Uint8Array(count);
-    await this.fill(bytes);
-    return bytes;
-  }
-
   /** Fills an array with the next bytes. */
   async fill(target) {
     for (let at = 0; at < target.length;) {
