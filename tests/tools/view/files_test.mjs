@@ -159,6 +159,13 @@ try {
   await shows('several.nhdr');
   const again = await chosen();
   check(again.note === norm.note && again.component === 'magnitude', `the address chooses ${again.note}`);
+  // One that does not fit the file is refused once.
+  await page.goto('about:blank');
+  await page.goto(`${opened.address}#frame=9&file=several.nhdr`);
+  await (await page.$('#file')).uploadFile(...several);
+  await browser.awaitSeen('message', /several\.nhdr has no frame 9: it is 0 to 3/);
+  await (await page.$('#file')).uploadFile(...several);
+  await shows('several.nhdr');
   await drop(small);
   await shows('v.nrrd');
   check(!(await page.$eval('#volume-section', (e) => e.checkVisibility())), 'a file of one volume offers a choice');

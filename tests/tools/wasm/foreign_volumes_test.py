@@ -28,8 +28,6 @@ REASONS = {
     "parsed 0 values, but space dimension is 3": "of which 'x' is no number",
     "parsed 2 values, but dimension is 3": "the sizes '24 22', but the dimension 3",
     "axis 2 size is zero": "of which 'two' is no number",
-    "one frame only": "one frame only",
-    "one number per sample": "one number per sample",
     "choose by --component 0 to 2, or by --magnitude": "choose a component, 0 to 2, or the magnitude",
     "choose one by --array": "choose one",
 }

@@ -6,7 +6,7 @@ import { Engine } from './engine.js';
 import { ExploredPage } from './explored_page.js';
 import { Heartbeat } from './heartbeat.js';
 import { PushedPage } from './pushed_page.js';
-import { choiceFromAddress } from './state.js';
+import { addressWithoutChoice, choiceFromAddress } from './state.js';
 import { showMessage } from './status.js';
 import { VolumeControls } from './volume_controls.js';
 import { Work } from './work.js';
@@ -44,7 +44,11 @@ class Files {
       const info = await engine.open(files, choice, opening.signal);
       if (!opening.signal.aborted) this.#show(info, files, changed);
     } catch (error) {
-      if (!opening.signal.aborted) showMessage(error.message);
+      if (!opening.signal.aborted) {
+        showMessage(error.message);
+        // A choice of the address that does not fit the file must not stand in its way again.
+        if (!byId('drop').hidden) history.replaceState(null, '', addressWithoutChoice(location.hash));
+      }
     } finally {
       work.end(job);
       // What is chosen is what the picture shows.

@@ -103,6 +103,12 @@ export function addressOf(state, start = {}) {
   return `#${entries.join('&')}`;
 }
 
+/** An address that chooses nothing of a file. */
+export function addressWithoutChoice(hash) {
+  const entries = hash.replace(/^#/, '').split('&');
+  return `#${entries.filter((entry) => !(entry.split('=')[0] in noChoice)).join('&')}`;
+}
+
 /** The plane of the slice, { point, normal }, or null. */
 export function planeOf({ slice, at, normal }, { box: [low, high] }) {
   if (slice === 'none') return null;

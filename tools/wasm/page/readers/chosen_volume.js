@@ -21,7 +21,7 @@ function chosenFrame(file, { frame }) {
   const { count } = file.frames;
   if (count > 1) return checkedNumber(file, frame ?? 0, count, 'frame');
   if (frame === undefined) return 0;
-  throw new FileError(`${file.fileName} has one frame only, of which none is to be chosen`);
+  throw new FileError(`${file.fileName} has one frame only: there is none to choose`);
 }
 
 /** A number, or 'magnitude'. */
@@ -30,7 +30,7 @@ function chosenComponent(file, { component, firstOfSeveral }) {
   const { count } = file.components;
   if (count === 1) {
     if (component === undefined) return 0;
-    throw new FileError(`${fileName} has one number per sample, of which none is to be chosen`);
+    throw new FileError(`${fileName} has one number per sample: there is none to choose`);
   }
   if (component === 'magnitude') return component;
   if (component === undefined && !firstOfSeveral) {

@@ -53,7 +53,7 @@ export async function openVolume(files, choice = {}) {
   const beside = (name) => files.find((each) => each !== file && each.name === name);
   const samples = await open(file, { ...choice, beside });
   if (choice.array !== undefined && samples.arrays.length === 0)
-    throw new FileError(`${file.name} has no arrays, of which none is to be chosen`);
+    throw new FileError(`${file.name} has no arrays to choose from`);
   const { chooseVolume } = await import('./chosen_volume.js');
   return chooseVolume(samples, choice);
 }
