@@ -1,9 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Volumes that nibabel, teem's unu, ITK and VTK write are read as those programs mean them.
-
-The samples are those of a ball, 100 - |p - CENTRE|, at the places that the header means: the
-isosurface of a value v is a sphere of radius 100 - v around the centre, wherever an axis points.
+"""The program reads the volumes of foreign_volumes.py as the programs that wrote them mean them.
 
 Arguments: the program, write_with_itk, and the folder of the Python package or nothing.
 """
@@ -12,62 +9,20 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 
-try:
-    import nibabel
-except ImportError:
-    print("skipped: nibabel is missing")
-    sys.exit(77)
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
-PROGRAM, ITK_WRITER, PACKAGE = (
-    os.path.abspath(each) if each else "" for each in (*sys.argv[1:4], "")[:3]
-)
-UNU = "teem-unu"
+from foreign_volumes import CENTRE, judge_all
 
-SHAPE = (24, 22, 20)
-SPACING = np.array([1.5, 2.0, 2.5])
-ORIGIN = np.array([-7.0, 31.0, 12.5])
-FLIP = np.array([-1, -1, 1])  # from LPS to RAS
-
-
-def rotation():
-    a, b = 0.4, -0.7
-    x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
-    z = np.array([[np.cos(b), -np.sin(b), 0], [np.sin(b), np.cos(b), 0], [0, 0, 1]])
-    return z @ x
-
-
-AXES = rotation()  # its columns
-STEPS = AXES * SPACING
-CENTRE = ORIGIN + STEPS @ [11.3, 10.2, 9.6]
+PROGRAM, PACKAGE = (os.path.abspath(each) if each else "" for each in (sys.argv[1], (*sys.argv[3:], "")[0]))
 
 failures = 0
-cases = 0
 
 
 def fail(text):
     global failures
     failures += 1
     print("FAILED:", text)
-
-
-def ball(steps=STEPS, origin=ORIGIN, centre=CENTRE, shape=SHAPE):
-    """Samples in float32 of the ball where index (i, j, k) is at origin + steps (i, j, k)."""
-    places = np.indices(shape).reshape(3, -1)
-    distance = np.linalg.norm(steps @ places + (origin - centre)[:, None], axis=0)
-    return (100 - distance).reshape(shape).astype(np.float32)
-
-
-def affine(steps=STEPS, origin=ORIGIN):
-    matrix = np.eye(4)
-    matrix[:3, :3] = steps
-    matrix[:3, 3] = origin
-    return matrix
 
 
 def program(*arguments):
@@ -100,32 +55,47 @@ def near(got, expected, most):
     return np.abs(np.subtract(got, expected)).max() <= most
 
 
-def good(name, samples, *options, centre=CENTRE, value=88, space="", unit="", note="", python=True):
-    """The file is read as these samples, and its sphere is where it is meant to be.
+class Judge:
+    def __init__(self):
+        self.cases = 0
 
-    value: of the isosurface of radius 12; python: whether the package reads the file, too
-    """
-    global cases
-    cases += 1
-    facts = info(name, *options)
-    if facts is None:
-        return
-    samples = np.asarray(samples, float)
-    span = max(1, abs(samples).max())
-    if not near([facts["least_value"], facts["greatest_value"]], [samples.min(), samples.max()], 1e-6 * span):
-        fail(f"{name}: range {facts['least_value']} to {facts['greatest_value']}, not {samples.min()} to {samples.max()}")
-    if facts["samples"] != list(map(float, samples.shape)):
-        fail(f"{name}: samples {facts['samples']}, not {samples.shape}")
-    told = space + (f" ({unit})" if space and unit else "")
-    if facts.get("space", "") != told or facts.get("length_unit", "") != unit:
-        fail(f"{name}: space '{facts.get('space')}', unit '{facts.get('length_unit')}', not '{told}', '{unit}'")
-    if note not in " ".join(facts["notes"]) or (facts["notes"] and not note):
-        fail(f"{name}: says {facts['notes']}, not '{note}'")
-    sphere = sphere_of(name, value, options)
-    if sphere and not (near(sphere[0], centre, 0.05) and near(sphere[1], 12, 0.12)):
-        fail(f"{name}: a sphere of radius {sphere[1]:.4g} around {sphere[0]}, not 12 around {centre}")
-    if PACKAGE and python:
-        good_in_python(name, samples, options, facts)
+    def good(self, name, samples, *options, centre=CENTRE, value=88, space="", unit="", note="", python=True):
+        facts = self.range(name, samples, *options)
+        if facts is None:
+            return
+        told = (space or "") + (f" ({unit})" if space and unit else "")
+        if (space is not None and facts.get("space", "") != told) or facts.get("length_unit", "") != unit:
+            fail(f"{name}: space '{facts.get('space')}', unit '{facts.get('length_unit')}', not '{told}', '{unit}'")
+        if note not in " ".join(facts["notes"]) or (facts["notes"] and not note):
+            fail(f"{name}: says {facts['notes']}, not '{note}'")
+        sphere = sphere_of(name, value, options)
+        if sphere and not (near(sphere[0], centre, 0.05) and near(sphere[1], 12, 0.12)):
+            fail(f"{name}: a sphere of radius {sphere[1]:.4g} around {sphere[0]}, not 12 around {centre}")
+        if space and unit:
+            check_written(name)
+        if PACKAGE and python:
+            good_in_python(name, np.asarray(samples, float), options, facts)
+
+    def range(self, name, samples, *options):
+        self.cases += 1
+        facts = info(name, *options)
+        if facts is None:
+            return None
+        samples = np.asarray(samples, float)
+        span = max(1, abs(samples).max())
+        if not near([facts["least_value"], facts["greatest_value"]], [samples.min(), samples.max()], 1e-6 * span):
+            fail(f"{name}: range {facts['least_value']} to {facts['greatest_value']}, not {samples.min()} to {samples.max()}")
+        if facts["samples"] != list(map(float, samples.shape)):
+            fail(f"{name}: samples {facts['samples']}, not {samples.shape}")
+        return facts
+
+    def refused(self, name, reason, *options):
+        """One sentence, which names the file and has these words."""
+        self.cases += 1
+        done = program("info", name, *options)
+        lines = done.stderr.splitlines()
+        if done.returncode != 1 or len(lines) != 1 or name not in lines[0] or reason not in lines[0]:
+            fail(f"{name}: status {done.returncode}, not refused with '{reason}' but: {done.stderr.strip()}{done.stdout[:80]}")
 
 
 def good_in_python(name, samples, options, facts):
@@ -149,374 +119,13 @@ def good_in_python(name, samples, options, facts):
         fail(f"load('{name}'): another place")
 
 
-def refused(name, reason, *options):
-    """One sentence, which names the file and has these words."""
-    global cases
-    cases += 1
-    done = program("info", name, *options)
-    lines = done.stderr.splitlines()
-    if done.returncode != 1 or len(lines) != 1 or name not in lines[0] or reason not in lines[0]:
-        fail(f"{name}: status {done.returncode}, not refused with '{reason}' but: {done.stderr.strip()}{done.stdout[:80]}")
-
-
-# NIfTI
-
-
-def nifti(name, samples, steps=STEPS, qform=None, sform=1, slope=None, unit=None, kind=nibabel.Nifti1Image, **more):
-    image = kind(samples, affine(steps), **more)
-    image.set_qform(affine(steps) if qform else None, qform or 0)
-    image.set_sform(affine(steps) if sform else None, sform or 0)
-    if unit:
-        image.header.set_xyzt_units(unit, "sec")
-    if slope:
-        image.header.set_slope_inter(*slope)
-    nibabel.save(image, name)
-    return nibabel.load(name).get_fdata()
-
-
-def nifti_cases():
-    plain = ball()
-    good("plain.nii", nifti("plain.nii", plain), space="RAS")
-    good("packed.nii.gz", nifti("packed.nii.gz", plain, unit="mm"), space="RAS", unit="mm")
-    os.rename("packed.nii.gz", "CAPITALS.NII.GZ")
-    good("CAPITALS.NII.GZ", plain, space="RAS", unit="mm")
-    program("isosurface", "CAPITALS.NII.GZ", "--value", 88, "-o", "SURFACE.VTP")
+def check_written(name):
+    """What is drawn of a file with a space and a unit has both."""
+    program("isosurface", name, "--value", 88, "-o", "SURFACE.VTP")
     with open("SURFACE.VTP", "rb") as file:
         content = file.read()
     if b'Name="space"' not in content or b'Name="length_unit"' not in content:
         fail("SURFACE.VTP has no space and no unit")
-    good("metres.nii", nifti("metres.nii", plain, unit="meter"), space="RAS", unit="m")
-    good("microns.nii", nifti("microns.nii", plain, unit="micron"), space="RAS", unit="µm")
-    good("qform.nii", nifti("qform.nii", plain, qform=1, sform=None), space="RAS")
-    good("both.nii", nifti("both.nii", plain, qform=1, sform=2), space="RAS")
-    good("second.nii", nifti("second.nii", plain, kind=nibabel.Nifti2Image), space="RAS")
-    sheared = STEPS @ [[1, 0.3, 0], [0, 1, -0.2], [0, 0, 1]]
-    centre = ORIGIN + sheared @ [11.3, 10.2, 9.6]
-    good("sheared.nii", nifti("sheared.nii", ball(sheared, centre=centre), sheared), centre=centre, space="RAS")
-    left = STEPS * [-1, 1, 1]
-    centre = ORIGIN + left @ [11.3, 10.2, 9.6]
-    for name, codes in ("left_s.nii", (None, 1)), ("left_q.nii", (1, None)):
-        samples = nifti(name, ball(left, centre=centre), left, *codes)
-        good(name, samples, centre=centre, space="RAS")
-    # Neither form: places are indices times spacings.
-    straight = np.diag(SPACING)
-    centre = straight @ [11.3, 10.2, 9.6]
-    samples = nifti("no_form.nii", ball(straight, np.zeros(3), centre), straight, sform=None)
-    good("no_form.nii", samples, centre=centre)
-
-    header = nibabel.Nifti1Header(endianness=">")
-    good("big_endian.nii", nifti("big_endian.nii", plain, header=header), space="RAS")
-    for kind in "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8":
-        name = f"type_{kind}.nii"
-        samples = nifti(name, np.rint(plain).astype(kind), dtype=kind)
-        # Rounding moves the sphere by half a unit at most, and hardly its centre.
-        facts = info(name)
-        if facts and [facts["least_value"], facts["greatest_value"]] != [samples.min(), samples.max()]:
-            fail(f"{name}: range")
-
-    # Values are slope times number plus intercept.
-    for name, kind, slope, intercept in [
-        ("slope_i2.nii.gz", "i2", 1 / 64, 0),
-        ("slope_u1.nii", "u1", 0.5, -20),
-        ("slope_negative.nii", "i2", -1 / 64, 70),
-        ("slope_i4.nii", "i4", 1e-6, 3),
-        ("slope_far.nii", "i2", 1 / 64, 1e7),
-        ("slope_f4.nii", "f4", 2, 50),
-        ("intercept.nii", "f4", 1, -1000),
-    ]:
-        value = 88
-        wanted = plain.astype(float)
-        if name == "slope_far.nii":
-            wanted, value = wanted + 1e7, 1e7 + 88
-        numbers = (wanted - intercept) / slope
-        numbers = numbers.astype(kind) if kind == "f4" else np.rint(numbers).astype(kind)
-        samples = nifti(name, numbers, slope=(slope, intercept))
-        good(name, samples, value=value, space="RAS")
-    image = nibabel.load("slope_u1.nii")
-    with open("slope_u1.nii", "rb") as file:
-        content = bytearray(file.read())
-    content[112:116] = np.float32(0).tobytes()
-    with open("slope_zero.nii", "wb") as file:
-        file.write(content)
-    good("slope_zero.nii", np.asarray(image.dataobj.get_unscaled()), value=216, space="RAS")
-    content[112:120] = np.array([2, np.nan], np.float32).tobytes()
-    with open("slope_nan.nii", "wb") as file:
-        file.write(content)
-    refused("slope_nan.nii", "scl_inter")
-
-    frames = np.stack([plain, plain + 10, 2 * plain], axis=3)
-    for name in "time.nii", "time.nii.gz":
-        nifti(name, frames)
-        good(name, frames[..., 0], space="RAS", note=f"frame 0 of the 3 in {name} is read")
-        good(name, frames[..., 1], "--frame", 1, value=98, space="RAS", note="frame 1 of the 3")
-        good(name, frames[..., 2], "--frame", 2, value=176, space="RAS", note="frame 2 of the 3")
-    refused("time.nii", "no frame 3", "--frame", 3)
-    refused("time.nii", "no frame -1", "--frame", -1)
-    refused("plain.nii", "one frame only", "--frame", 0)
-    refused("plain.nii", "one number per sample", "--magnitude")
-    scaled = nifti("time_slope.nii", np.rint(frames * 50).astype("i2"), slope=(0.02, 0))
-    good("time_slope.nii", scaled[..., 1], "--frame", 1, value=98, space="RAS", note="frame 1 of the 3")
-    one_frame = nifti("one_frame.nii", plain[..., None])
-    good("one_frame.nii", one_frame[..., 0], space="RAS")
-    vectors = np.stack([plain, 2 * plain, -2 * plain], axis=3)[:, :, :, None, :]
-    nifti("vector.nii.gz", vectors)
-    refused("vector.nii.gz", "3 numbers per sample, not one: choose by --component 0 to 2, or by --magnitude")
-    good("vector.nii.gz", vectors[..., 0, 2], "--component", 2, value=-176, space="RAS")
-    good("vector.nii.gz", 3 * plain, "--magnitude", value=264, space="RAS")
-    refused("vector.nii.gz", "no component 3", "--component", 3)
-    both = vectors * np.array([1, 3])[:, None]
-    nifti("vector_time.nii", both.astype("f4"))
-    good("vector_time.nii", both[..., 1, 1], "--component", 1, "--frame", 1, value=528, space="RAS", note="frame 1 of the 2")
-    colours = np.zeros(SHAPE, [("R", "u1"), ("G", "u1"), ("B", "u1")])
-    colours["G"] = np.rint(2 * plain)
-    nibabel.save(nibabel.Nifti1Image(colours, affine()), "colours.nii")
-    refused("colours.nii", "3 numbers per sample")
-    good("colours.nii", colours["G"], "--component", 1, value=176, space="RAS")
-    hole = plain.copy()
-    hole[3, 4, 5] = np.nan
-    nifti("hole.nii", hole)
-    refused("hole.nii", "is not a number")
-
-
-# NRRD
-
-
-def vector(numbers):
-    return "(" + ",".join(repr(float(each)) for each in numbers) + ")"
-
-
-def directions(steps=STEPS):
-    return " ".join(vector(steps[:, d]) for d in range(3))
-
-
-def raw(name, samples):
-    """Samples with the first index fastest."""
-    np.asarray(samples).T.tofile(name)
-
-
-def unu(*arguments):
-    done = subprocess.run([UNU, *map(str, arguments)], capture_output=True, text=True)
-    if done.returncode != 0:
-        fail(f"unu {arguments}: {done.stderr}")
-
-
-def make(name, samples, *options, kind="float", encoding="raw"):
-    raw("samples.raw", samples)
-    unu("make", "-i", "samples.raw", "-t", kind, "-s", *samples.shape, *options, "-o", "made.nrrd")
-    unu("save", "-f", "nrrd", "-e", encoding, "-i", "made.nrrd", "-o", name)
-
-
-PLACE = ["-orig", vector(ORIGIN), "-dirs", directions()]
-LPS = ["-spc", "LPS", *PLACE]
-
-
-def nrrd_cases():
-    plain = ball()
-    for encoding in "raw", "gzip", "ascii", "hex":
-        for ending in "nrrd", "nhdr":
-            name = f"{encoding}.{ending}"
-            make(name, plain, *LPS, encoding=encoding)
-            good(name, plain, space="LPS")
-    make("mm.nhdr", plain, *LPS, "-spu", "mm", "mm", "mm", "-c", "a ball")
-    good("mm.nhdr", plain, space="LPS", unit="mm")
-    for space in "RAS", "LAS", "scanner-xyz":
-        make(f"{space}.nrrd", plain, "-spc", space, *PLACE)
-        good(f"{space}.nrrd", plain, space=space)
-    make("space_3.nrrd", plain, "-spc", 3, *PLACE)
-    good("space_3.nrrd", plain)
-    raw("swapped.raw", plain.astype(">f4"))
-    unu("make", "-h", "-i", "swapped.raw", "-t", "float", "-en", "big", "-s", *SHAPE, *LPS, "-o", "big.nhdr")
-    good("big.nhdr", plain, space="LPS")
-    for kind, name in ("short", "i2"), ("uchar", "u1"), ("uint", "u4"), ("longlong", "i8"), ("double", "f8"):
-        samples = np.rint(plain).astype(name)
-        make(f"{kind}.nrrd", samples, *LPS, kind=kind)
-        facts = info(f"{kind}.nrrd")
-        if facts and [facts["least_value"], facts["greatest_value"]] != [samples.min(), samples.max()]:
-            fail(f"{kind}.nrrd: range")
-    # Slices of a volume in files of their own, and slabs.
-    for k in range(SHAPE[2]):
-        raw(f"slice{k:02}.raw", plain[:, :, k])
-    for k in range(2):
-        raw(f"slab{k}.raw", plain[:, :, 10 * k : 10 * k + 10])
-    unu("make", "-h", "-i", "slice%02d.raw", 0, SHAPE[2] - 1, 1, "-t", "float", "-s", *SHAPE, *LPS, "-o", "slices.nhdr")
-    good("slices.nhdr", plain, space="LPS")
-    unu("make", "-h", "-i", "slab0.raw", "slab1.raw", "-fd", 3, "-t", "float", "-s", *SHAPE, *LPS, "-o", "slabs.nhdr")
-    good("slabs.nhdr", plain, space="LPS")
-
-    # No space: spacings; or minima and maxima, of samples or of cells.
-    straight = np.diag(SPACING)
-    centre = straight @ [11.3, 10.2, 9.6]
-    there = ball(straight, np.zeros(3), centre)
-    make("spacings.nrrd", there, "-sp", *SPACING)
-    good("spacings.nrrd", there, centre=centre)
-    low = np.array([3.0, -4.0, 5.0])
-    for centring, shift, count in ("node", 0, np.array(SHAPE) - 1), ("cell", 0.5, np.array(SHAPE)):
-        high = low + SPACING * count
-        for given in "minmax", "min":
-            name = f"{centring}_{given}.nrrd"
-            make("place.nrrd", there, *(["-sp", *SPACING] if given == "min" else []), "-cn", *[centring] * 3)
-            unu("axinfo", "-i", "place.nrrd", "-a", 0, "-mm", low[0], high[0], "-o", "place.nrrd")
-            unu("axinfo", "-i", "place.nrrd", "-a", 1, "-mm", low[1], high[1], "-o", "place.nrrd")
-            unu("axinfo", "-i", "place.nrrd", "-a", 2, "-mm", low[2], high[2], "-o", name)
-            good(name, there, centre=centre + low + shift * SPACING)
-
-    # Axes that are none of space.
-    colours = np.rint(np.stack([plain, 2 * plain, 0.5 * plain])).astype("u1")
-    for kind in "RGB-color", "3-color", "3-vector", "vector", "covariant-vector":
-        name = f"{kind}.nrrd"
-        make(name, colours, "-k", kind, "domain", "domain", "domain", "-sp", "nan", *SPACING, kind="uchar")
-        refused(name, f"3 numbers per sample ({kind}), not one")
-        facts = info(name, "--component", 1)
-        if facts and facts["greatest_value"] != colours[1].max():
-            fail(f"{name}: component 1")
-    flat = colours[:, :, :, 0]
-    make("flat.nrrd", flat, "-k", "RGB-color", "domain", "domain", kind="uchar")
-    refused("flat.nrrd", "3 numbers per sample (RGB-color)")
-    vectors = np.stack([plain, 2 * plain, -2 * plain])
-    space = ["-spc", "LPS", "-orig", vector(ORIGIN)]
-    for kind, name in ("3-vector", "vector.nrrd"), ("vector", "vector.nhdr"):
-        make(name, vectors, "-k", kind, "space", "space", "space", *space, "-dirs", "none " + directions())
-        good(name, 2 * plain, "--component", 1, value=176, space="LPS")
-        good(name, 3 * plain, "--magnitude", value=264, space="LPS")
-    last = np.moveaxis(vectors, 0, 3)
-    make("last.nrrd", last, "-k", "space", "space", "space", "3-vector", *space, "-dirs", directions() + " none")
-    good("last.nrrd", 2 * plain, "--component", 1, value=176, space="LPS", python=False)
-    four = np.stack([plain, plain + 1, plain + 2, plain + 3])
-    make("4-color.nrrd", four, "-k", "4-color", "space", "space", "space", *space, "-dirs", "none " + directions())
-    refused("4-color.nrrd", "4 numbers per sample (4-color)")
-    good("4-color.nrrd", plain + 2, "--component", 2, value=90, space="LPS")
-    for kind in "list", "time":
-        name = f"{kind}_last.nrrd"
-        make(name, np.moveaxis(four, 0, 3), "-k", "space", "space", "space", kind, *space, "-dirs", directions() + " none")
-        good(name, plain, space="LPS", note=f"frame 0 of the 4 in {name} is read")
-        good(name, plain + 3, "--frame", 3, value=91, space="LPS", note="frame 3 of the 4")
-    make("list_first.nrrd", four, "-k", "list", "space", "space", "space", *space, "-dirs", "none " + directions())
-    good("list_first.nrrd", plain + 1, "--frame", 1, value=89, space="LPS", note="frame 1 of the 4", python=False)
-    good("list_first.nrrd", plain + 1, "--component", 1, value=89, space="LPS", python=False)
-    # Four axes that say nothing: the last one is none of space.
-    make("four.nrrd", np.moveaxis(four, 0, 3), "-sp", *SPACING, 1)
-    facts = info("four.nrrd", "--frame", 2)
-    if facts and facts["samples"] != list(map(float, SHAPE)):
-        fail("four.nrrd")
-
-    for before, after, reason in [
-        (b"(-7,31", b"(x,31", "parsed 0 values, but space dimension is 3"),
-        (b"sizes: 24 22 20", b"sizes: 24 22", "parsed 2 values, but dimension is 3"),
-        (b"sizes: 24 22 20", b"sizes: 24 22 two", "axis 2 size is zero"),
-        (b"encoding: raw", b"encoding: row", "encoding"),
-    ]:
-        with open("raw.nrrd", "rb") as file:
-            content = file.read()
-        if before not in content:
-            fail(f"raw.nrrd has no {before}")
-        with open("wrong.nrrd", "wb") as file:
-            file.write(content.replace(before, after))
-        refused("wrong.nrrd", reason)
-
-
-# ITK's writers
-
-
-def itk(name, samples, packed=False, components=1, axes=AXES, spacing=SPACING, origin=ORIGIN):
-    shape = samples.shape[1:] if components > 1 else samples.shape
-    raw("samples.raw", samples)
-    lists = (shape, spacing, origin, np.asarray(axes).T.ravel())
-    kind = "short" if samples.dtype == np.int16 else "float"
-    how = [components, "packed" if packed else "plain"]
-    texts = [" ".join(repr(float(each)) for each in one) for one in lists]
-    subprocess.run([ITK_WRITER, name, "samples.raw", kind, *map(str, how), *texts], check=True)
-
-
-def itk_cases():
-    plain = ball()
-    for ending, space in ("mha", ""), ("mhd", ""), ("nrrd", "LPS"), ("nhdr", "LPS"):
-        for packed in False, True:
-            name = f"itk_{packed}.{ending}"
-            itk(name, plain, packed)
-            told = info(name).get("space", "")
-            good(name, plain, space=space or told)
-    for name in "itk.nii", "itk.nii.gz":
-        itk(name, plain)
-        good(name, plain, space="RAS", unit="mm", centre=CENTRE * FLIP)
-    axes = np.eye(4)
-    axes[:3, :3] = AXES
-    four = np.stack([plain, plain + 5, plain + 10], axis=3)
-    place = dict(axes=axes, spacing=[*SPACING, 1], origin=[*ORIGIN, 0])
-    for name in "itk_four.mha", "itk_four.mhd":
-        itk(name, four, **place)
-        told = info(name).get("space", "")
-        good(name, plain, space=told, note=f"frame 0 of the 3 in {name} is read")
-        good(name, plain + 10, "--frame", 2, value=98, space=told, note="frame 2 of the 3")
-    itk("itk_one.mha", four[..., :1].copy(), **place)
-    good("itk_one.mha", plain, space=info("itk_one.mha").get("space", ""))
-    vectors = np.stack([plain, 2 * plain, -2 * plain])
-    for name in "itk_vector.mha", "itk_vector.nrrd":
-        itk(name, vectors, components=3, packed=True)
-        refused(name, "3 numbers per sample")
-        told = info(name, "--magnitude").get("space", "")
-        good(name, -2 * plain, "--component", 2, value=-176, space=told)
-        good(name, 3 * plain, "--magnitude", value=264, space=told)
-    with open("itk_False.mha", "rb") as file:
-        content = file.read()
-    for before, after, reason in [
-        (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 two 2.5", "'two' is no number"),
-        (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 2", "not 3 numbers"),
-        (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 nan 2.5", "not finite"),
-        (b"ElementSpacing = 1.5 2 2.5", b"ElementSpacing = 1.5 0 2.5", "flat"),
-        (b"DimSize = 24 22 20", b"DimSize = 24 22", "3 dimensions"),
-        (b"NDims = 3", b"NDims = 4", "4 dimensions"),
-        (b"MET_FLOAT", b"MET_FLOOT", "sample type 'MET_FLOOT'"),
-    ]:
-        if before not in content:
-            fail(f"itk_False.mha has no {before}")
-        with open("wrong.mha", "wb") as file:
-            file.write(content.replace(before, after))
-        refused("wrong.mha", reason)
-    slope = b"ElementToIntensityFunctionSlope = 2\nElementToIntensityFunctionOffset = 7\nElementType"
-    with open("slope.mha", "wb") as file:
-        file.write(content.replace(b"ElementType", slope))
-    good("slope.mha", 2 * plain + 7, value=183, space=info("slope.mha").get("space", ""))
-
-
-# VTK's writer
-
-
-def vti(name, cells=(), points=(), shape=SHAPE, active=None):
-    image = vtkImageData()
-    image.SetDimensions(shape)
-    image.SetSpacing(SPACING)
-    image.SetOrigin(ORIGIN)
-    image.SetDirectionMatrix(*AXES.ravel())
-    for data, arrays in (image.GetPointData(), points), (image.GetCellData(), cells):
-        for title, samples in arrays:
-            array = numpy_to_vtk(samples.ravel("F") if samples.ndim == 3 else samples.reshape(-1, 3, order="F"), deep=True)
-            array.SetName(title)
-            data.AddArray(array)
-        if active and data.HasArray(active):
-            data.SetActiveScalars(active)
-    writer = vtkXMLImageDataWriter()
-    writer.SetInputData(image)
-    writer.SetFileName(name)
-    writer.Write()
-
-
-def vti_cases():
-    plain = ball()
-    vti("one.vti", points=[("heat", plain)])
-    good("one.vti", plain)
-    vti("two.vti", points=[("heat", plain), ("cold", -plain)])
-    refused("two.vti", "several arrays, choose one by --array: 'heat', 'cold'")
-    good("two.vti", -plain, "--array", "cold", value=-88)
-    vti("active.vti", points=[("heat", plain), ("cold", -plain)], active="cold")
-    good("active.vti", -plain, value=-88)
-    centres = ball(origin=ORIGIN + STEPS @ [0.5, 0.5, 0.5])
-    vti("cells.vti", cells=[("heat", centres)], shape=np.array(SHAPE) + 1)
-    good("cells.vti", centres, note="the cell data of cells.vti are taken at the centres of the cells")
-    vti("cells_two.vti", cells=[("heat", centres), ("cold", -centres)], shape=np.array(SHAPE) + 1)
-    refused("cells_two.vti", "several arrays, choose one by --array: 'heat', 'cold'")
-    good("cells_two.vti", -centres, "--array", "cold", value=-88, note="cell data")
-    vti("none.vti")
-    refused("none.vti", "neither point nor cell data")
 
 
 def main():
@@ -527,12 +136,9 @@ def main():
         import warnings
 
         warnings.simplefilter("ignore")
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        for each in nifti_cases, nrrd_cases, itk_cases, vti_cases:
-            each()
-        os.chdir("/")
-    print(f"{cases} files and choices, {failures} failures")
+    judge = Judge()
+    judge_all(judge)
+    print(f"{judge.cases} files and choices, {failures} failures")
     sys.exit(failures > 0)
 
 

@@ -101,6 +101,75 @@ try {
   await shows('v.nrrd');
   check((await page.$eval('#isovalue-number', (e) => e.value)) === start, 'the address of another file counts');
 
+  // A file of several frames and numbers per sample: the first of each, and what is left out, is told.
+  const samples = Buffer.alloc(4 * 8 * 8 * 8 * 3 * 4);
+  for (let i = 0; i < 8 * 8 * 8 * 3 * 4; ++i) {
+    const [component, frame] = [i % 3, Math.floor(i / (512 * 3))];
+    const place = Math.floor(i / 3) % 512;
+    const centre = [place % 8, Math.floor(place / 8) % 8, Math.floor(place / 64)].map((x) => x - 3.5);
+    samples.writeFloatLE((component + 1) * (10 - Math.hypot(...centre)) + 100 * frame, 4 * i);
+  }
+  const header = [
+    'NRRD0005', 'type: float', 'dimension: 5', 'space: RAS', 'sizes: 3 8 8 8 4',
+    'space directions: none (1,0,0) (0,1,0) (0,0,2) none', 'space units: "mm" "mm" "mm"',
+    'kinds: 3-vector space space space time', 'endian: little', 'encoding: raw', 'data file: several.bin', ''];
+  const several = [write('several.nhdr', header.join('\n')), write('several.bin', samples)];
+  const chosen = () => page.evaluate(() => ({
+    note: document.getElementById('volume-note').textContent,
+    subtitle: document.getElementById('subtitle').textContent,
+    hash: location.hash,
+    component: document.getElementById('component').value,
+    frame: document.getElementById('frame-text').textContent,
+    isovalue: document.getElementById('isovalue-number').value,
+    message: document.getElementById('message').textContent,
+  }));
+  const choose = async (id, value) => {
+    await page.evaluate(() => { window.lastShown = window.nestgrid.shown; });
+    await set(id, value);
+    await page.waitForFunction(
+      () => window.nestgrid.idle && window.nestgrid.shown && window.nestgrid.shown !== window.lastShown,
+      { timeout: 60000 });
+    return chosen();
+  };
+  await drop(several[0]);
+  await browser.awaitSeen('message', /several\.nhdr keeps its samples in another file, 'several\.bin'/);
+  await (await page.$('#file')).uploadFile(...several);
+  await shows('several.nhdr');
+  const first = await chosen();
+  check(/^Frame 0 of the 4 in several\.nhdr is read; component 0 of the 3 numbers per sample \(3-vector\) is read\.$/
+    .test(first.note), `the note is ${first.note}`);
+  check(first.subtitle.includes('7 × 7 × 14 mm in RAS'), `the subtitle is ${first.subtitle}`);
+  check(!/frame|component/.test(first.hash), `the address of the first is ${first.hash}`);
+  await browser.picture('several');
+  const doubled = await choose('component', '1');
+  check(doubled.note.includes('component 1 of the 3'), `the note is ${doubled.note}`);
+  check(doubled.hash.includes('component=1'), `the address is ${doubled.hash}`);
+  await set('isovalue-number', '112');
+  await opened.settled();
+  const later = await choose('frame', '1');
+  check(later.note.startsWith('Frame 1 of the 4') && later.frame === 'frame 1', `the note is ${later.note}`);
+  check(later.isovalue === '112' && later.component === '1', `behind a frame, the isovalue is ${later.isovalue}`);
+  const norm = await choose('component', 'magnitude');
+  check(norm.hash.includes('component=magnitude') && norm.hash.includes('frame=1'), `the address is ${norm.hash}`);
+  check(norm.isovalue !== '112', 'the isovalue of a component stays with the magnitude');
+  // The address chooses again.
+  await page.goto('about:blank');
+  await page.goto(`${opened.address}${norm.hash}`);
+  await (await page.$('#file')).uploadFile(...several);
+  await shows('several.nhdr');
+  const again = await chosen();
+  check(again.note === norm.note && again.component === 'magnitude', `the address chooses ${again.note}`);
+  // One that does not fit the file is refused once.
+  await page.goto('about:blank');
+  await page.goto(`${opened.address}#frame=9&file=several.nhdr`);
+  await (await page.$('#file')).uploadFile(...several);
+  await browser.awaitSeen('message', /several\.nhdr has no frame 9: it is 0 to 3/);
+  await (await page.$('#file')).uploadFile(...several);
+  await shows('several.nhdr');
+  await drop(small);
+  await shows('v.nrrd');
+  check(!(await page.$eval('#volume-section', (e) => e.checkVisibility())), 'a file of one volume offers a choice');
+
   // What takes long has a bar, and can be cancelled; the page goes on.
   await drop(large);
   await shows('first.nrrd');

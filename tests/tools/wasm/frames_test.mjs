@@ -34,7 +34,7 @@ assert.equal(names.length, 8);
 let triangles = 0;
 for (const name of names) {
   const module = await VolumeModule.make(core);
-  const info = await module.open(await openVolume(fileAt(join(natives, `${name}.nrrd`))));
+  const info = await module.open(await openVolume([fileAt(join(natives, `${name}.nrrd`))]));
   assert.ok(info.least < info.greatest);
   const requests = readFileSync(join(natives, `${name}.requests`), 'utf8')
     .trim()

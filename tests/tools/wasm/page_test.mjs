@@ -7,10 +7,11 @@
 // puppeteer-core, the browser, a folder for pictures.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { gzipSync } from 'node:zlib';
 
 const [folder, volumes, large, puppeteerFolder, browserPath, pictures] = process.argv.slice(2);
 const { default: puppeteer } = await import(
@@ -169,8 +170,16 @@ try {
   const reader = new Reader(page);
   await page.waitForSelector('#drop:not([hidden])');
   assert.ok(await page.$eval('#panel', (panel) => panel.inert));
-  assert.match(await reader.text('drop-formats'), /\.vti, \.nrrd, \.nii, \.nii\.gz, \.raw/);
+  assert.match(
+    await reader.text('drop-formats'),
+    /\.vti, \.mha, \.mhd, \.nrrd, \.nhdr, \.nii, \.nii\.gz, \.raw/,
+  );
   await page.screenshot({ path: join(pictures, 'explore_empty.png') });
+
+  // Readers come when a file needs them.
+  const loaded = () =>
+    [...asked].filter((url) => url.includes('/readers/')).map((url) => url.split('/').at(-1));
+  assert.deepEqual(loaded().sort(), ['open_volume.js', 'volume.js']);
 
   // Damaged files before there is a picture, and formats that are none.
   const write = (name, bytes) => {
@@ -189,7 +198,25 @@ try {
     assert.equal(await reader.text('title'), name);
     assert.match(await reader.text('subtitle'), /values from 10 to 250/);
     assert.equal(await reader.message(), '');
+    const own = { 'v.vti': 'vti.js', 'v.nrrd': 'nrrd.js' }[name] ?? 'nifti.js';
+    assert.ok(loaded().includes(own), `${own} is not asked for`);
   }
+  assert.ok(
+    !loaded().some((name) => ['raw.js', 'meta_image.js'].includes(name)),
+    `asked for: ${loaded()}`,
+  );
+  // Members of gzip, and what is behind them, which browsers do not unpack.
+  const whole = readFileSync(join(volumes, 'v.nii'));
+  const members = [0, 100, 3000].map((from, i, all) => gzipSync(whole.subarray(from, all[i + 1])));
+  for (const behind of [[], [0, 0, 0]]) {
+    const name = `members_${behind.length}.nii.gz`;
+    await reader.open(write(name, Buffer.concat([...members, Buffer.from(behind)])));
+    assert.equal(await reader.text('title'), name);
+    assert.match(await reader.text('subtitle'), /values from 10 to 250/);
+  }
+  const damaged = Buffer.concat(members);
+  damaged[members[0].length - 6] ^= 1;
+  await reader.refuse(write('sum.nii.gz', damaged), /sum\.nii\.gz is truncated or damaged/);
   await reader.drop(join(volumes, 'v.raw'));
   await page.waitForSelector('#raw-dialog[open]');
   await page.type('#raw-dialog input[name=samples]', '20 24 17');

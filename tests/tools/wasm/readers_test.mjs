@@ -12,12 +12,14 @@ import { gzipSync } from 'node:zlib';
 import { compileCore, fileAt, isSentence, load } from './folder.mjs';
 
 const [folder, vtis, volumes] = process.argv.slice(2);
-const { openVolume } = await load(folder, 'readers/open_volume.js');
+const { openVolume: openFiles } = await load(folder, 'readers/open_volume.js');
 const { rawFormatOfName } = await load(folder, 'readers/raw.js');
 const { ByteStream } = await load(folder, 'readers/byte_stream.js');
 const { FileError } = await load(folder, 'readers/volume.js');
 const { VolumeModule } = await load(folder, 'volume_module.js');
 const core = await compileCore(folder);
+
+const openVolume = (file, rawFormat) => openFiles([file], { rawFormat });
 
 async function samplesOf(volume) {
   const target = new Uint8Array(volume.bytes);
@@ -82,14 +84,23 @@ await refused(fileAt(join(vtis, 'lz4.vti')), /packed by 'vtkLZ4DataCompressor'/)
   const bytes = readFileSync(join(volumes, 'v.nii'));
   bytes.fill(0, 328, 344);
   bytes.write('density', 328);
-  for (const [units, expected] of [[0, undefined], [1, 'm'], [2 | 8, 'mm'], [3, 'µm'], [7, undefined]]) {
+  for (const [units, expected] of [
+    [0, ''],
+    [1, 'm'],
+    [2 | 8, 'mm'],
+    [3, 'µm'],
+    [7, ''],
+  ]) {
     bytes[123] = units;
     const { name, lengthUnit } = await openVolume(new File([bytes], 'named.nii'));
     assert.deepEqual([name, lengthUnit], ['density', expected], `NIfTI with units ${units}`);
   }
   const nrrd = (field) =>
     new File(
-      [`NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n${field}\n\n`, '12345678'],
+      [
+        'NRRD0004\ntype: uint8\ndimension: 3\nspace dimension: 3\nsizes: 2 2 2\nencoding: raw\n',
+        `kinds: space space space\n${field}\n\n12345678`,
+      ],
       'units.nrrd',
     );
   for (const [field, expected] of [
@@ -155,8 +166,8 @@ for (const file of bigEndian) {
   for (let i = 0; i < 27; ++i) assert.equal(samples.readInt16LE(2 * i), i - 13, file.name);
 }
 for (const [place, message] of [
-  [4, /series.nii has 2 volumes, one after the other/],
-  [5, /series.nii has 2 numbers per sample/],
+  [5, /series.nii has 2 numbers per sample, not one/],
+  [6, /series.nii has 2 samples along its dimension 6/],
 ]) {
   const series = Buffer.from(nifti);
   series.writeInt16BE(place, 40);
@@ -208,7 +219,8 @@ const stream = new ByteStream('apart', apart, 'gzip');
 await stream.fill(new Uint8Array(bytes.length));
 await assert.rejects(stream.finish(), /apart is truncated or damaged/);
 await refused(claim('65536 65536 1'), /at least 2 along each direction/);
-await refused(claim('1e300 2 2'), /2\^20/);
+await refused(claim('1e300 2 2'), /which are no counts/);
+await refused(claim('1e9 2 2'), /2\^20/);
 await refused(new File([bytes], 'long.raw'), /has 8640 bytes, but 20 x 24 x 17/, {
   samples: [20, 24, 17],
   type: 'uint8',
@@ -218,8 +230,11 @@ await refused(new File([bytes], 'short.raw'), /has 8640 bytes, but 20 x 24 x 19/
   type: 'uint8',
 });
 await refused(new File([`${header}encoding: bzip2\n\n`], 'v.nrrd'), /encoding 'bzip2'/);
-await refused(new File([`${header}data file: v.raw\n\n`], 'v.nrrd'), /in another file, 'v.raw'/);
-await refused(new File([bytes], 'v.nii'), /no NIfTI-1 file/);
+await refused(
+  new File([`${header}encoding: raw\ndata file: v.raw\n\n`], 'v.nrrd'),
+  /in another file, 'v.raw', which is not here/,
+);
+await refused(new File([bytes], 'v.nii'), /no NIfTI file/);
 await refused(new File([bytes], 'v.vti'), /no VTK file/);
 await refused(new File([bytes], 'v.png'), /no known format/);
 await refused(new File([], 'v.vti'), /is empty/);

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Where surfaces come from. An engine has
-//   takesFiles        whether the reader gives it a file, by open(file, signal)
+//   takesFiles        whether the reader gives it files, by open()
 //   stopsCheaply      whether a frame that is aborted costs the next one nothing
-//   open(file, signal) -> info
+//   open(files, choice, signal) -> info, of files chosen together and of one volume in them: choice
+//                     has frame, component and array, as the choice in the info of the last one
 //   info()            -> what FrameSource::info() tells (frame_source.hpp)
 //   frame(request, signal) -> an ArrayBuffer in the layout of frame_reply.hpp
 //   pulse(signal)     -> what FrameSource::pulse() tells, at once, also while a frame is drawn

@@ -7,17 +7,18 @@ import { readable, readableCount, withUnit } from './colours.js';
 import { FrameLoop } from './frame.js';
 import { drawHistogram } from './legend.js';
 import { Picture } from './picture.js';
-import { addressOf, defaultState, planeOf, requestOf, stateFromAddress } from './state.js';
+import { addressOf, chosenOf, defaultState, planeOf, requestOf, stateFromAddress } from './state.js';
 import { showEmpty, showMessage, showNumbers, tell } from './status.js';
 
 const byId = (id) => document.getElementById(id);
 
 /** What a field is, in one sentence. */
-function describe({ samples, nodes, box: [low, high], length_unit: unit, least, greatest }) {
+function describe({ samples, nodes, box: [low, high], length_unit: unit, space, least, greatest }) {
   const range = greatest - least;
   const count = samples > 0 ? `${readableCount(samples)} samples` : `${readableCount(nodes)} nodes`;
   const size = withUnit(low.map((x, d) => readable(high[d] - x)).join(' × '), unit);
-  return `${count}, ${size}, values from ${readable(least, range)} to ${readable(greatest, range)}`;
+  const place = space ? `${size} in ${space}` : size;
+  return `${count}, ${place}, values from ${readable(least, range)} to ${readable(greatest, range)}`;
 }
 
 /** Why a frame that has settled has not about as many triangles as were asked for; '' where it has. */
@@ -84,8 +85,13 @@ export class ExploredPage {
     });
   }
 
-  /** Shows another field: nothing of the last one stays. */
-  begin(info) {
+  /**
+   * Shows another field: nothing of the last one stays, unless it is of the same file.
+   * changed: what of the choice in a file is another one, 'frame', 'component' or 'array'; null where
+   *   the file is another one
+   */
+  begin(info, changed = null) {
+    const kept = changed && { ...this.#state, camera: this.stage.camera };
     this.#loop.forget();
     clearTimeout(this.#rest);
     showMessage('');
@@ -104,7 +110,15 @@ export class ExploredPage {
     document.querySelectorAll('.field-name').forEach((e) => { e.textContent = `“${info.name}”`; });
     drawHistogram(this.#info);
     this.stage.setBox(info.box);
-    this.#restore();
+    this.#restore(kept && this.#stateBehind(kept, changed));
+    if (changed) this.#remember();
+  }
+
+  /** Values of one frame say something of another one, those of a component or array do not. */
+  #stateBehind(kept, changed) {
+    if (changed === 'frame') return kept;
+    const { isovalue, threshold } = this.#start;
+    return { ...kept, isovalue, threshold, detail: this.#start.detail };
   }
 
   /** Draws what a lost engine has not drawn. */
@@ -128,8 +142,9 @@ export class ExploredPage {
     return defaultState(this.#info);
   }
 
-  #restore() {
-    this.#state = stateFromAddress(location.hash, this.#start);
+  #restore(state = null) {
+    this.#state = state ?? stateFromAddress(location.hash, this.#start);
+    Object.assign(this.#state, chosenOf(this.#info));
     this.#picture.project(this.#state.projection);
     if (this.#namesFiles) this.#state.file = this.#info.title;
     this.stage.look(this.#state.camera);

@@ -6,45 +6,63 @@ import { Engine } from './engine.js';
 import { ExploredPage } from './explored_page.js';
 import { Heartbeat } from './heartbeat.js';
 import { PushedPage } from './pushed_page.js';
+import { addressWithoutChoice, choiceFromAddress } from './state.js';
 import { showMessage } from './status.js';
+import { VolumeControls } from './volume_controls.js';
 import { Work } from './work.js';
 
 const byId = (id) => document.getElementById(id);
 const engine = new Engine();
 const work = new Work();
 
-/** Opens the files that a reader drops or chooses, one at a time. */
+/** Opens the files that a reader drops or chooses, a volume at a time. */
 class Files {
   #page;
   #opening = null;
+  /** Those of the volume in the picture, and its info. */
+  #files = [];
+  #info = null;
+  #controls = new VolumeControls((choice, what) => this.open(this.#files, choice, what));
 
   constructor(page) {
     this.#page = page;
   }
 
-  /** Gives up the file that is being opened, if there is one. */
-  async open(file) {
-    if (!file) return;
+  /**
+   * Gives up what is being opened, if something is.
+   * files: a file, or a header and the files with its samples
+   * changed: what the reader has chosen in the files of the picture, if it is that
+   */
+  async open(files, choice, changed = null) {
+    if (files.length === 0) return;
     this.#opening?.abort();
     const opening = new AbortController();
     this.#opening = opening;
     showMessage('');
-    const job = work.begin(`Reading ${file.name}`, () => opening.abort());
+    const job = work.begin(`Reading ${files[0].name}`, () => opening.abort());
     try {
-      const info = await engine.open(file, opening.signal);
-      if (!opening.signal.aborted) this.#show(info, file);
+      const info = await engine.open(files, choice, opening.signal);
+      if (!opening.signal.aborted) this.#show(info, files, changed);
     } catch (error) {
-      if (!opening.signal.aborted) showMessage(error.message);
+      if (!opening.signal.aborted) {
+        showMessage(error.message);
+        // A choice of the address that does not fit the file must not stand in its way again.
+        if (!byId('drop').hidden) history.replaceState(null, '', addressWithoutChoice(location.hash));
+      }
     } finally {
       work.end(job);
+      // What is chosen is what the picture shows.
+      if (this.#opening === opening && this.#info) this.#controls.show(this.#info);
     }
   }
 
-  #show(info, file) {
+  #show(info, files, changed) {
+    this.#files = files;
+    this.#info = info;
     const drop = byId('drop');
     // The address of another file's picture says nothing about this one.
     const meant = new URLSearchParams(location.hash.slice(1)).get('file');
-    if (drop.hidden || (meant !== null && meant !== file.name)) {
+    if (!changed && (drop.hidden || (meant !== null && meant !== info.title))) {
       history.replaceState(null, '', location.pathname + location.search);
     }
     // What has the focus goes with the place for files.
@@ -53,7 +71,7 @@ class Files {
     byId('panel').inert = false;
     byId('help').hidden = false;
     byId('choose').hidden = false;
-    this.#page.begin(info);
+    this.#page.begin(info, changed);
   }
 }
 
@@ -61,12 +79,17 @@ class Files {
 function takeFiles(page) {
   const drop = byId('drop');
   const files = new Files(page);
+  const open = (list) => {
+    const chosen = [...list];
+    // The address says how to begin.
+    files.open(chosen, drop.hidden ? {} : choiceFromAddress(location.hash, chosen));
+  };
   drop.hidden = false;
   byId('panel').inert = true;
   byId('help').hidden = true;
   byId('drop-formats').textContent = engine.formats ?? '';
   byId('file').addEventListener('change', (event) => {
-    files.open(event.target.files[0]);
+    open(event.target.files);
     // The same file may be chosen again.
     event.target.value = '';
   });
@@ -82,7 +105,7 @@ function takeFiles(page) {
   document.addEventListener('drop', (event) => {
     event.preventDefault();
     drop.classList.remove('over');
-    files.open(event.dataTransfer.files[0]);
+    open(event.dataTransfer.files);
   });
 }
 

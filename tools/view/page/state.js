@@ -7,6 +7,9 @@ export function diagonalOf(box) {
   return Math.hypot(...box[1].map((x, d) => x - box[0][d]));
 }
 
+/** Of what one file may have several of; null where it has one, or the first is in the picture. */
+const noChoice = { array: null, component: null, frame: null };
+
 /** Where the page of a field begins. */
 export function defaultState(info) {
   const [low, high] = info.box;
@@ -28,7 +31,31 @@ export function defaultState(info) {
     projection: 'perspective',
     camera: null,
     file: null,
+    ...noChoice,
   };
+}
+
+/** What is chosen of a file, as a part of the state. */
+export function chosenOf({ offers, choice }) {
+  if (!offers) return noChoice;
+  return {
+    array: offers.arrays.length > 1 ? choice.array : null,
+    component: offers.components > 1 ? choice.component || null : null,
+    frame: offers.frames > 1 ? choice.frame || null : null,
+  };
+}
+
+/** What an address chooses of these files; nothing where it is that of another file. */
+export function choiceFromAddress(hash, files) {
+  const entries = new URLSearchParams(hash.replace(/^#/, ''));
+  const choice = {};
+  if (!files.some(({ name }) => name === entries.get('file'))) return choice;
+  for (const key of Object.keys(noChoice)) {
+    if (!entries.has(key)) continue;
+    const text = entries.get(key);
+    choice[key] = key === 'array' || text === 'magnitude' ? text : Number(text);
+  }
+  return choice;
 }
 
 const choices = {
@@ -74,6 +101,12 @@ export function addressOf(state, start = {}) {
     else entries.push(`${key}=${typeof value === 'number' ? short(value) : encodeURIComponent(value)}`);
   }
   return `#${entries.join('&')}`;
+}
+
+/** An address that chooses nothing of a file. */
+export function addressWithoutChoice(hash) {
+  const entries = hash.replace(/^#/, '').split('&');
+  return `#${entries.filter((entry) => !(entry.split('=')[0] in noChoice)).join('&')}`;
 }
 
 /** The plane of the slice, { point, normal }, or null. */

@@ -3,7 +3,7 @@
 //
 // Reads files and draws frames beside the page. Answers each message {id, call, ...} with
 // {id, result} or {id, failure, hasVolume}, one after the other, and tells meanwhile what it does: {told}.
-import { openVolume } from './readers/open_volume.js';
+import { describingFile, openVolume } from './readers/open_volume.js';
 import { VolumeModule } from './volume_module.js';
 
 const compiled = fetch(new URL('nestgrid.wasm', import.meta.url))
@@ -24,8 +24,10 @@ function tell(told) {
 }
 
 const calls = {
-  async open({ file, rawFormat }) {
-    const volume = await openVolume(file, rawFormat);
+  /** choice: as openVolume() takes it */
+  async open({ files, choice }) {
+    const { file } = describingFile(files);
+    const volume = await openVolume(files, { ...choice, firstOfSeveral: true });
     const next = await VolumeModule.make(await compiled, tell);
     const info = await next.open(volume);
     module = next;
@@ -34,7 +36,11 @@ const calls = {
       ...info,
       title: file.name,
       name: volume.name || stem,
-      length_unit: volume.lengthUnit ?? '',
+      length_unit: volume.lengthUnit,
+      space: volume.space,
+      note: volume.note,
+      offers: volume.offers,
+      choice: volume.choice,
     };
   },
   async pulse() {

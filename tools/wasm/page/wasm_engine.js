@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Opens files and draws their surfaces in a worker of this page. No file leaves the machine.
-import { askRawFormat } from './raw_dialog.js';
-import { formats } from './readers/open_volume.js';
-import { rawFormatOfName } from './readers/raw.js';
+import { describingFile, formats } from './readers/open_volume.js';
 
 const nothing = { doing: '', share: null };
 
@@ -16,13 +14,13 @@ export class WasmEngine {
   takesFiles = true;
   // What is aborted ends with its worker, and the next one reads the file again.
   stopsCheaply = false;
-  formats = `Volumes: ${formats.join(', ')}`;
+  formats = `Volumes: ${formats.join(', ')}; headers together with their data files`;
 
   #worker = null;
   #waiting = new Map();
   #calls = 0;
   #told = nothing;
-  /** The file whose volume the worker has, or had. */
+  /** The files and the choice whose volume the worker has, or had. */
   #opened = null;
   #hasVolume = false;
 
@@ -30,15 +28,26 @@ export class WasmEngine {
     this.#start();
   }
 
-  async open(file, signal) {
-    const isRaw = file.name.toLowerCase().endsWith('.raw');
-    const rawFormat = isRaw
-      ? (rawFormatOfName(file.name) ?? (await askRawFormat(file, signal)))
-      : null;
-    const info = await this.#call({ call: 'open', file, rawFormat }, signal);
-    this.#opened = { file, rawFormat };
+  async open(files, choice, signal) {
+    const { file, format } = describingFile(files);
+    const rawFormat = format === '.raw' ? await this.#rawFormatOf(file, signal) : null;
+    const whole = { ...choice, rawFormat };
+    const info = await this.#call({ call: 'open', files, choice: whole }, signal);
+    this.#opened = { files, choice: whole };
     this.#hasVolume = true;
     return info;
+  }
+
+  /** Asks, unless the file is the one that was asked about last, or its name tells. */
+  async #rawFormatOf(file, signal) {
+    const {
+      files: [last],
+      choice,
+    } = this.#opened ?? { files: [] };
+    if (last === file) return choice.rawFormat;
+    const { rawFormatOfName } = await import('./readers/raw.js');
+    const { askRawFormat } = await import('./raw_dialog.js');
+    return rawFormatOfName(file.name) ?? askRawFormat(file, signal);
   }
 
   async frame(request, signal) {
@@ -82,7 +91,9 @@ export class WasmEngine {
     const worker = new Worker(new URL('volume_worker.js', import.meta.url), { type: 'module' });
     worker.addEventListener('message', ({ data }) => this.#take(data));
     worker.addEventListener('error', () => {
-      const failed = new Error('The part of this page that reads files has failed; it begins anew.');
+      const failed = new Error(
+        'The part of this page that reads files has failed; it begins anew.',
+      );
       if (worker === this.#worker) this.#restart(failed);
     });
     this.#worker = worker;

@@ -3,8 +3,15 @@
 //
 // Bare samples. What a .raw file does not say about itself is asked for, or stands in its name, as
 // in bonsai_256x256x256_uint8.raw.
-import { ByteStream } from './byte_stream.js';
-import { FileError, alongAxes, bytesOfType, checkedBytes, swapBytes } from './volume.js';
+import { payloadReader } from './payload.js';
+import {
+  FileError,
+  alongAxes,
+  bytesOfType,
+  checkedBytes,
+  denseStrides,
+  plainFile,
+} from './volume.js';
 
 /** { samples, type } that a name tells, or null. */
 export function rawFormatOfName(name) {
@@ -16,9 +23,9 @@ export function rawFormatOfName(name) {
   return { samples: counts.slice(1).map(Number), type: synonyms[lower] ?? lower };
 }
 
-/** format: { samples, type, spacing, bigEndian }, the last two by default 1 and false */
-export async function openRaw(file, format) {
-  const { samples, type, spacing = [1, 1, 1], bigEndian = false } = format;
+/** rawFormat: { samples, type, spacing, bigEndian }, the last two by default 1 and false */
+export async function openRaw(file, { rawFormat }) {
+  const { samples, type, spacing = [1, 1, 1], bigEndian = false } = rawFormat;
   const { name } = file;
   if (!Object.hasOwn(bytesOfType, type)) throw new FileError(`${name}: there is no type '${type}'`);
   const bytes = checkedBytes(name, samples, type);
@@ -28,16 +35,25 @@ export async function openRaw(file, format) {
         `need ${bytes}`,
     );
   }
+  const read = payloadReader({
+    fileName: name,
+    type,
+    numbers: bytes / bytesOfType[type],
+    parts: [{ name, blob: file }],
+    encoding: 'raw',
+    lineSkip: 0,
+    byteSkip: 0,
+    bigEndian,
+  });
   return {
+    ...plainFile,
+    fileName: name,
     type,
     samples,
     spacing,
     origin: [0, 0, 0],
     direction: alongAxes,
-    bytes,
-    async read(target) {
-      await new ByteStream(name, file).fill(target);
-      if (bigEndian) swapBytes(target, bytesOfType[type]);
-    },
+    ...denseStrides(samples),
+    read,
   };
 }

@@ -1,10 +1,23 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Image data of VTK, .vti: the active scalars, or else the first array of scalars, of one piece;
-// text, base64 or raw, packed by zlib or not.
+// Image data of VTK, .vti: an array of one piece, chosen as tools/input/vti_file.cpp does; text,
+// base64 or raw, packed by zlib or not.
+import { readText } from './payload.js';
 import { Base64Source, BlobSource, readBlocks } from './vtk_blocks.js';
-import { FileError, bytesOfType, checkFound, checkedBytes, quoted, swapBytes } from './volume.js';
+import {
+  FileError,
+  bytesOfType,
+  checkFound,
+  checkedBytes,
+  countedNumbers,
+  denseStrides,
+  listed,
+  plainFile,
+  printable,
+  quoted,
+  swapBytes,
+} from './volume.js';
 
 /** Longer headers, and samples inside XML beyond this, are not read. */
 const longestHeader = 2 ** 20;
@@ -62,19 +75,54 @@ async function readXml(file) {
   return { text, tags, appendedAt: appended.index + appended[0].length };
 }
 
-function arrayOf(name, tags) {
-  const data = tags.findIndex((tag) => tag.name === 'PointData');
-  const end = tags.findIndex((tag) => tag.name === '/PointData');
-  const arrays = data < 0 ? [] : tags.slice(data, end).filter((tag) => tag.name === 'DataArray');
-  const components = (array) => Number(array.attributes.NumberOfComponents ?? 1);
-  const active = tags[data]?.attributes.Scalars;
-  const found =
-    arrays.find((array) => array.attributes.Name === active) ??
-    arrays.find((array) => components(array) === 1);
-  if (!found) throw new FileError(`${name} has no point data that could be contoured`);
-  if (components(found) !== 1)
-    throw new FileError(`${name} has ${components(found)} numbers per sample, not one`);
-  return found;
+/** The arrays of numbers in a tag, PointData or CellData, and the name of the active one. */
+function arraysIn(tags, tag) {
+  const begin = tags.findIndex((t) => t.name === tag);
+  const end = tags.findIndex((t) => t.name === `/${tag}`);
+  const inside = begin < 0 ? [] : tags.slice(begin, end);
+  const arrays = inside.filter((t) => t.name === 'DataArray' && t.attributes.type !== 'String');
+  return { arrays, active: tags[begin]?.attributes.Scalars };
+}
+
+const nameOf = (array) => array.attributes.Name ?? '';
+
+/** The array of this name; without one, the active scalars, else the only array; or undefined. */
+function chosenArray(name, { arrays, active }, { array, firstOfSeveral }) {
+  const called = (text) => arrays.find((each) => nameOf(each) === text);
+  if (array !== undefined) return called(array);
+  const scalars = active === undefined ? undefined : called(active);
+  if (scalars || arrays.length < 2 || firstOfSeveral) return scalars ?? arrays[0];
+  throw new FileError(`${name} has several arrays, choose one: ${listed(arrays.map(nameOf))}`);
+}
+
+/** { found, ofCells, names }: an array of the points, else of the cells, and the names of all. */
+function arrayOf(name, tags, choice) {
+  const points = arraysIn(tags, 'PointData');
+  const cells = arraysIn(tags, 'CellData');
+  const ofPoints = chosenArray(name, points, choice);
+  const found = ofPoints ?? chosenArray(name, cells, choice);
+  const names = [...points.arrays, ...cells.arrays].map(nameOf);
+  if (found) return { found, ofCells: !ofPoints, names: [...new Set(names)] };
+  if (choice.array === undefined) throw new FileError(`${name} has neither point nor cell data`);
+  throw new FileError(
+    `${name} has no point data array ${quoted(choice.array)}, ` +
+      (names.length > 0 ? `only ${listed(names)}` : 'and no other'),
+  );
+}
+
+/** The grid of the centres of cells. A plane has as many of these as samples across it. */
+function gridOfCentres({ samples, spacing, origin, direction }) {
+  return {
+    samples: samples.map((n) => (n < 2 ? n : n - 1)),
+    spacing,
+    direction,
+    origin: origin.map((x, r) =>
+      [0, 1, 2].reduce(
+        (sum, d) => sum + (samples[d] < 2 ? 0 : (direction[3 * r + d] * spacing[d]) / 2),
+        x,
+      ),
+    ),
+  };
 }
 
 function gridOf(name, tags) {
@@ -112,40 +160,6 @@ function bytesAsIn(name, { attributes }) {
   };
 }
 
-const viewOf = {
-  uint8: Uint8Array,
-  int8: Int8Array,
-  uint16: Uint16Array,
-  int16: Int16Array,
-  uint32: Uint32Array,
-  int32: Int32Array,
-  uint64: BigUint64Array,
-  int64: BigInt64Array,
-  float32: Float32Array,
-  float64: Float64Array,
-};
-
-/** Writes the numbers of a text to bytes. */
-function readText(name, text, type, target) {
-  const to = new viewOf[type](target.length / bytesOfType[type]);
-  const convert = type.endsWith('64') && type !== 'float64' ? (word) => BigInt(word) : Number;
-  let count = 0;
-  try {
-    for (const [word] of text.matchAll(/\S+/g)) {
-      const number = convert(word);
-      if (count === to.length || Number.isNaN(number)) throw new RangeError();
-      to[count++] = number;
-    }
-  } catch {
-    throw new FileError(
-      `${name} is damaged: ${count} numbers, then something else than one of ${to.length} samples`,
-    );
-  }
-  if (count < to.length)
-    throw new FileError(`${name} is truncated: it has ${count} samples of ${to.length}`);
-  target.set(new Uint8Array(to.buffer));
-}
-
 /** What fills a target with the samples of an array. */
 function readerOf(file, xml, array, layout) {
   const { name } = file;
@@ -166,7 +180,7 @@ function readerOf(file, xml, array, layout) {
   }
   const close = text.indexOf('<', array.to);
   if (format === 'ascii')
-    return async (target) => readText(name, text.slice(array.to, close), layout.type, target);
+    return async (target) => readText(name, text.slice(array.to, close), layout.type, 0, target);
   if (format !== 'binary')
     throw new FileError(`${name} has samples of the format ${quoted(format)}, which is not read`);
   const inline = text.slice(array.to, close).trim();
@@ -174,31 +188,48 @@ function readerOf(file, xml, array, layout) {
   return (target) => readBlocks(name, make, true, layout, target);
 }
 
-export async function openVti(file) {
-  const { name } = file;
+export async function openVti(file, choice) {
+  const fileName = file.name;
   const xml = await readXml(file);
   const root = xml.tags[0]?.name === 'VTKFile' ? xml.tags[0] : null;
-  if (!root) throw new FileError(`${name} is no VTK image data file`);
-  const { bigEndian, ...coding } = bytesAsIn(name, root);
-  const grid = gridOf(name, xml.tags);
-  const array = arrayOf(name, xml.tags);
+  if (!root) throw new FileError(`${fileName} is no VTK image data file`);
+  const { bigEndian, ...coding } = bytesAsIn(fileName, root);
+  const ofPoints = gridOf(fileName, xml.tags);
+  const { found: array, ofCells, names } = arrayOf(fileName, xml.tags, choice);
+  const grid = ofCells ? gridOfCentres(ofPoints) : ofPoints;
   const type = (array.attributes.type ?? '').toLowerCase();
   if (!Object.hasOwn(bytesOfType, type))
     throw new FileError(
-      `${name} has samples of the type ${quoted(array.attributes.type)}, which is not read`,
+      `${fileName} has samples of the type ${quoted(array.attributes.type)}, which is not read`,
     );
-  const bytes = checkedBytes(name, grid.samples, type);
+  checkedBytes(fileName, grid.samples, type);
+  const [components] = integers(fileName, array.attributes.NumberOfComponents ?? '1', 1);
+  if (components < 1) throw new FileError(`${fileName} has samples without numbers`);
+  const numbers = countedNumbers(fileName, ...grid.samples, components);
+  const bytes = numbers * bytesOfType[type];
   const isText = array.attributes.format === 'ascii';
-  checkFound(name, file.size, isText ? bytes / bytesOfType[type] : bytes, coding.packed);
+  checkFound(fileName, file.size, isText ? numbers : bytes, coding.packed);
   const fill = readerOf(file, xml, array, { type, bigEndian, ...coding });
+  const name = nameOf(array);
   return {
+    ...plainFile,
+    fileName,
     type,
     ...grid,
-    bytes,
+    ...denseStrides(grid.samples, components),
+    arrays: names,
+    array: name,
     // VTK's own name for what nobody has named.
-    name: array.attributes.Name === 'ImageScalars' ? '' : array.attributes.Name,
-    async read(target) {
-      await fill(target);
+    name: name === 'ImageScalars' ? '' : printable(name),
+    note: ofCells ? `the cell data of ${fileName} are taken at the centres of the cells` : '',
+    /** Blocks are of all numbers. */
+    async read(target, first) {
+      const all = target.length === bytes ? target : new Uint8Array(bytes);
+      await fill(all);
+      if (all !== target) {
+        const from = first * bytesOfType[type];
+        target.set(all.subarray(from, from + target.length));
+      }
       if (bigEndian && !isText) swapBytes(target, bytesOfType[type]);
     },
   };
