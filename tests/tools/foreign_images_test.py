@@ -11,6 +11,7 @@ Argument: the program.
 import json
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -307,7 +308,7 @@ def test_planes():
             with open("places.csv", "w") as file:
                 file.write(place + "\n")
             done = program("probe", name, "--points", "places.csv")
-            value = done.stdout.strip().split("\n")[-1].split(",")[-1]
+            value = done.stdout.strip().split("\n")[-1].split(",")[3]
             expected = 100 - abs((CENTRE - origin) @ normal)
             if axis == 2 and name.endswith("vti") and done.returncode == 0 and value:
                 if abs(float(value) - expected) > 1:
@@ -347,9 +348,99 @@ def test_pictures():
         fail(f"colours.png: {done.stdout} {done.stderr}")
 
 
+def test_frames():
+    """Frames of one file are moments: values fall by 3 from each to the next."""
+    global cases
+    matrix = np.eye(4)
+    matrix[:3, :3] = STEPS
+    matrix[:3, 3] = ORIGIN
+    frames = np.stack([ball() - 3 * t for t in range(4)], axis=3).astype(np.float32)
+    image = nibabel.Nifti1Image(frames, matrix)
+    image.header.set_xyzt_units("mm", "sec")
+    image.header["pixdim"][4], image.header["toffset"] = 2.5, 10
+    nibabel.save(image, "four.nii.gz")
+    good("four.nii.gz", words="frame 0 of the 4 in four.nii.gz")
+    good("four.nii.gz", "--frame", "3", value=79)
+    for time, value in (10, 88), (13.75, 83.5), (17.5, 79):
+        cases += 1
+        points = points_of("isosurface", "four.nii.gz", "--value", value, "--time", time)
+        if points is not None and abs(sphere_of(points)[1] - 12) > 0.12:
+            fail(f"four.nii.gz at {time}: radius {sphere_of(points)[1]}")
+    done = program("isosurface", "four.nii.gz", "--value", "83.5", "--frames", "4", "-o", "film.vtp")
+    if done.returncode != 0 or 'timestep="17.5"' not in open("film.pvd").read():
+        fail(f"film of four.nii.gz: {done.stderr}")
+    refused_time = program("isosurface", "four.nii.gz", "--value", "88", "--time", "9", "-o", "out.vtp")
+    if refused_time.returncode != 1 or "10" not in refused_time.stderr:
+        fail(f"a time before all frames: {refused_time.stderr}")
+    header = "NRRD0004\ntype: float\ndimension: 4\nsizes: %d %d %d 4\nkinds: domain domain domain time\n" % SHAPE
+    header += "spacings: 1 1 1 2.5\naxis mins: NaN NaN NaN 10\nendian: little\nencoding: raw\n\n"
+    with open("four.nrrd", "wb") as file:
+        file.write(header.encode() + frames.astype("<f4").tobytes("F"))
+    cases += 1
+    done = program("probe", "four.nrrd", "--line", "11,10,9,11,10,9.5", "--count", "2", "--time", "13.75")
+    found = done.stdout.strip().split("\n")[1].split(",")
+    if done.returncode != 0 or abs(float(found[3]) - (frames[11, 10, 9, 0] - 4.5)) > 1e-3:
+        fail(f"probe four.nrrd: {done.stdout} {done.stderr}")
+
+
+def test_labels():
+    """A label is a part of its own, whatever its neighbours are."""
+    global cases
+    matrix = np.eye(4)
+    matrix[:3, :3] = STEPS
+    matrix[:3, 3] = ORIGIN
+    distance = 100 - ball()
+    labels = np.where(distance < 6, 7, np.where(distance < 12, 3, 0)).astype(np.int16)
+    nibabel.save(nibabel.Nifti1Image(labels, matrix), "labels.nii.gz")
+    for label in 3, 7:
+        cases += 1
+        done = program("isosurface", "labels.nii.gz", "--label", label, "--value", "0.5", "--json")
+        row = json.loads(done.stdout)["surfaces"][0] if done.returncode == 0 else {}
+        shells = 2 if label == 3 else 1
+        if row.get("components") != shells or row.get("open_edges") != 0:
+            fail(f"label {label}: {row} {done.stderr}")
+
+
+def test_analyze():
+    global cases
+    samples = np.rint(100 * ball(np.eye(3) * 2, np.zeros(3), np.array([22.0, 20.0, 19.0]))).astype(np.int16)
+    for kind, name in (
+        (nibabel.Nifti1Pair, "pair.img"),
+        (nibabel.AnalyzeImage, "analyze.img"),
+        (nibabel.Spm99AnalyzeImage, "spm.img"),
+    ):
+        nibabel.save(kind(samples, np.diag([2.0, 2.0, 2.0, 1.0])), name)
+        for ending in ".img", ".hdr":
+            cases += 1
+            done = program("info", name.replace(".img", ending), "--json")
+            facts = json.loads(done.stdout) if done.returncode == 0 else {}
+            if [facts.get(key) for key in ("samples", "least_value", "greatest_value")] != [
+                list(map(float, SHAPE)), samples.min(), samples.max()
+            ]:
+                fail(f"{name} {ending}: {done.stdout} {done.stderr}")
+    content = open("pair.img", "rb").read()
+    with open("pair.img", "wb") as file:
+        file.write(content[:-1000])
+    refused("pair.hdr", "truncated")
+    os.remove("pair.img")
+    refused("pair.hdr", "does not exist")
+    plain = nibabel.Nifti1Image(samples, np.eye(4))
+    nibabel.save(plain, "plain.nii")
+    content = bytearray(open("plain.nii", "rb").read())
+    for code in 0, 1, 7, 1536, 2048:
+        content[70:72] = struct.pack("<h", code)
+        with open("code.nii", "wb") as file:
+            file.write(content)
+        refused("code.nii", f"samples of the type {code}, which is not read")
+    content[70:72], content[108:112] = struct.pack("<h", 4), struct.pack("<f", 0)
+    with open("start.nii", "wb") as file:
+        file.write(content)
+    refused("start.nii", "inside its header")
+
+
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    for test in test_dicom, test_spaces, test_planes, test_pictures:
+    for test in (test_dicom, test_spaces, test_planes, test_pictures, test_frames, test_labels, test_analyze):
         test()
     os.chdir("/")
 print(f"{cases} files and choices, {failures} failures")

@@ -314,7 +314,7 @@ def nrrd_cases(judge):
         judge.range(name, colours[1], "--component", 1)
     flat = colours[:, :, :, 0]
     make("flat.nrrd", flat, "-k", "RGB-color", "domain", "domain", kind="uchar")
-    judge.refused("flat.nrrd", "3 numbers per sample (RGB-color)")
+    judge.refused("flat.nrrd", "sample")
     vectors = np.stack([plain, 2 * plain, -2 * plain])
     space = ["-spc", "LPS", "-orig", vector(ORIGIN)]
     for kind, name in ("3-vector", "vector.nrrd"), ("vector", "vector.nhdr"):

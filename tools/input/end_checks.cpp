@@ -35,14 +35,21 @@ std::uintmax_t unpacked_size(const fs::path& path) {
     return total;
 }
 
-/// Where the samples of a NIfTI file start.
-std::uintmax_t nifti_offset(const fs::path& path) {
+/// What VTK believes of a NIfTI file without a look at it.
+struct NiftiStart {
+    int type = 0;        ///< of the samples, as datatype codes it
+    double offset = 0;   ///< where they start
+    double header = 0;   ///< bytes of the header, with its extension flag
+    bool single = true;  ///< whether header and samples are in one file
+};
+
+NiftiStart nifti_start(const fs::path& path) {
     std::array<char, 352> header{};
     gzFile file = gzopen(path.c_str(), "rb");
     if (file == nullptr) throw IoError(path.string() + " cannot be opened");
     const int count = gzread(file, header.data(), header.size());
     gzclose(file);
-    if (count < static_cast<int>(header.size())) return header.size();
+    if (count < 348) throw IoError(path.string() + " is truncated in its header");
     const bool swapped = header[0] != 0x5C && header[0] != 0x1C;  // 348 or 540, low byte first
     const auto load = [&]<class Number>(std::size_t at, Number number) {
         std::array<char, sizeof(Number)> bytes{};
@@ -52,9 +59,12 @@ std::uintmax_t nifti_offset(const fs::path& path) {
         return number;
     };
     const bool second = load(0, std::int32_t{}) == 540;
-    const double offset =
-        second ? static_cast<double>(load(168, std::int64_t{})) : load(108, float{});
-    return offset > 0 && offset < 1e12 ? static_cast<std::uintmax_t>(offset) : header.size();
+    NiftiStart start;
+    start.type = load(second ? 12 : 70, std::int16_t{});
+    start.offset = second ? static_cast<double>(load(168, std::int64_t{})) : load(108, float{});
+    start.header = second ? 544 : 352;
+    start.single = header[second ? 5 : 345] == '+';
+    return start;
 }
 
 }  // namespace
@@ -69,8 +79,24 @@ void check_xml_end(const fs::path& path) {
     }
 }
 
+void check_nifti_header(const fs::path& path) {
+    const NiftiStart start = nifti_start(path);
+    // Those of the standard but for bits and for numbers of 128 bits.
+    constexpr std::array known{2, 4, 8, 16, 32, 64, 128, 256, 512, 768, 1024, 1280, 1792, 2304};
+    if (std::ranges::find(known, start.type) == known.end()) {
+        throw IoError(path.string() + " has samples of the type " + std::to_string(start.type) +
+                      ", which is not read");
+    }
+    if (start.single && !(start.offset >= start.header && start.offset < 1e12)) {
+        throw IoError(path.string() + " places its samples inside its header");
+    }
+}
+
 void check_nifti_size(const fs::path& path, std::uintmax_t samples) {
-    const std::uintmax_t expected = samples + nifti_offset(path);
+    const NiftiStart start = nifti_start(path);
+    const bool in_header = start.single || start.offset > 0;
+    const std::uintmax_t expected =
+        samples + (in_header ? static_cast<std::uintmax_t>(start.offset) : 348);
     const std::uintmax_t found = unpacked_size(path);
     if (found < expected) {
         throw IoError(path.string() + " is truncated: " + std::to_string(found) +

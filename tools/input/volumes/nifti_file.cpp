@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NIfTI-1 and NIfTI-2, read by VTK, which keeps sheared axes. (ITK 5.2 refuses these and NIfTI-2.)
+// NIfTI-1 and NIfTI-2, and Analyze, which has no places; read by VTK, which keeps sheared axes.
+// (ITK 5.2 refuses these and NIfTI-2.)
 //
 // Fields of the header and what becomes of them:
 //   dim, pixdim, datatype, vox_offset, byte order, qform, sform   by VTK; sform goes before qform
@@ -24,12 +25,29 @@
 
 #include "formats.hpp"
 #include "input/end_checks.hpp"
+#include "input/input_file.hpp"
 #include "input/volumes/vtk_reading.hpp"
 
 namespace {
 
 using nestgrid::IoError;
 namespace fs = std::filesystem;
+
+/// One file, or a header and its samples beside it.
+struct Files {
+    fs::path header;
+    fs::path samples;
+};
+
+Files files_of(const fs::path& path) {
+    Files files{path, path};
+    const std::string ending = ending_of(path);
+    if (ending == ".img") files.header.replace_extension(".hdr");
+    if (ending == ".hdr") files.samples.replace_extension(".img");
+    require_file(files.header);
+    require_file(files.samples);
+    return files;
+}
 
 /// The unit of length that xyzt_units of a header has.
 std::string length_unit(int units) {
@@ -92,13 +110,15 @@ void set_scale(FileSamples& samples, vtkNIFTIImageHeader* header) {
 }
 
 FileSamples read_nifti(const fs::path& path, const WantedSamples& wanted) {
+    const Files files = files_of(path);
     const vtkNew<vtkNIFTIImageReader> reader;
-    const VtkReading reading(path);
+    const VtkReading reading(files.samples);
     reading.listen(reader);
-    if (reader->CanReadFile(path.c_str()) == 0) {
-        throw IoError(path.string() + " is no NIfTI file, or truncated in its header");
+    if (reader->CanReadFile(files.header.c_str()) == 0) {
+        throw IoError(files.header.string() + " is no NIfTI file, or truncated in its header");
     }
-    reader->SetFileName(path.c_str());
+    check_nifti_header(files.header);
+    reader->SetFileName(files.header.c_str());
     const std::uintmax_t places = reading.read_header(reader);
     vtkNIFTIImageHeader* const header = reader->GetNIFTIHeader();
     const auto [frames, vectors] = axes_beyond_space(path, header);
@@ -106,8 +126,15 @@ FileSamples read_nifti(const fs::path& path, const WantedSamples& wanted) {
         static_cast<double>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
     const double size = static_cast<double>(places) * bytes * static_cast<double>(frames) *
                         static_cast<double>(vectors);
-    if (size < 9e18) check_nifti_size(path, static_cast<std::uintmax_t>(size));
-    check_plausible(path, fs::file_size(path), size);
+    const std::uintmax_t found = fs::file_size(files.samples);
+    check_plausible(files.samples, found, size);
+    if (files.header == files.samples) {
+        check_nifti_size(path, static_cast<std::uintmax_t>(size));
+    } else if (static_cast<double>(found) < size) {
+        throw IoError(files.samples.string() + " is truncated: " + std::to_string(found) +
+                      " bytes, but its header asks for " +
+                      std::to_string(static_cast<std::uintmax_t>(size)));
+    }
     // All frames become components of the samples.
     if (frames > 1 && wanted.several_frames) reader->TimeAsVectorOn();
     const vtkSmartPointer<vtkImageData> image = reading.read_samples(reader);
@@ -130,7 +157,7 @@ FileSamples read_nifti(const fs::path& path, const WantedSamples& wanted) {
 }
 
 const RegisteredFormat nifti({.name = "NIfTI",
-                              .endings = {".nii", ".nii.gz"},
+                              .endings = {".nii.gz", ".nii", ".hdr", ".img"},
                               .holds = "samples in space, several frames",
                               .read_samples = read_nifti});
 
