@@ -82,7 +82,8 @@ Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const Han
       new_positions_{hierarchy.offers(Feature::new_positions)},
       constrained_{hierarchy.offers(Feature::constrained)},
       carries_keys_{needs.keys && !own_keys_},
-      carries_positions_{needs.positions && !own_positions_} {
+      carries_positions_{needs.positions && !own_positions_},
+      carries_placed_{needs.placed && new_positions_} {
     if (!boundary_faces_) boundary_ = coarse_boundary(hierarchy);
     if (hanging != nullptr && hanging->crossing() != nullptr) {
         fixed_ = std::make_unique<FixedNodes<Real>>(hierarchy, *hanging->crossing(), needs.values,
@@ -162,6 +163,7 @@ bool Walk<Real>::make_coarse(std::size_t i, Stack& stack, View& view) const {
     view.value = stack.value.data();
     view.node_key = stack.key.data();
     view.node_position = coarse.corners.data();
+    view.node_placed = coarse.corners.data();
     view.path = detail::mix(static_cast<NodeKey>(i));
     view.closed.any = false;
     view.level = 0;
@@ -298,6 +300,11 @@ void Walk<Real>::project_positions(const View& view, const Split& split, NodeMas
     for (std::size_t n = 0; n < count; ++n) {
         if ((given >> n & 1U) == 0) x[corners + n] = detail::interpolate(rule.new_nodes[n], x);
     }
+    if (!carries_placed_) return;
+    Point* const placed = with_room(frame.placed, corners + count);
+    placed_corners(view, placed);
+    hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(),
+                              {placed + corners, count});
 }
 
 /// Finds the edges and faces of the rule that the split closes.
@@ -403,6 +410,7 @@ auto Walk<Real>::make_child(const View& father, const Rule& rule, const Frame<Re
     child.value = frame.child_value.data();
     child.node_key = frame.key.data();
     child.node_position = frame.position.data();
+    child.node_placed = frame.placed.data();
     child.closed.any = false;
     child.level = father.level + 1;
     child.boundary = 0;

@@ -38,6 +38,7 @@ struct Needs {
     bool keys = true;        ///< keys of new nodes, and of corners by Walk::corners()
     bool positions = false;  ///< positions by Walk::corners()
     bool closed = false;     ///< closed edges and faces; needs the other three
+    bool placed = false;     ///< true positions by Walk::placed_corners(); needs `positions`
 };
 
 /// The nodes of one split, and the children.
@@ -46,6 +47,7 @@ struct Frame {
     std::vector<Real> value;        ///< of the corners, then of the new nodes
     std::vector<NodeKey> key;       ///< likewise
     std::vector<Point> position;    ///< likewise
+    std::vector<Point> placed;      ///< likewise: where the grid has the nodes, S or not
     std::vector<Real> child_value;  ///< at the corners of the child that the walk is at
     Family family;
     std::unique_ptr<ClosingSplit<Real>> closing;
@@ -101,6 +103,11 @@ public:
 
     /// Keys and positions of the corners; each pointer may be null.
     void corners(const View& view, NodeKey* keys, Point* positions) const;
+    /// Positions of the corners where the grid has them, also of those that hang or at which S
+    /// holds, where the walk carries these.
+    void placed_corners(const View& view, Point* out) const;
+    /// Whether placed_corners() and the positions of corners() may differ.
+    bool places_corners() const { return carries_placed_; }
     /// Keys of the corners of a split element and, behind them, of its new nodes.
     /// \param out takes them
     std::span<const NodeKey> split_keys(const View& view, const Split& split, SplitKeys& out) const;
@@ -159,6 +166,7 @@ private:
     bool constrained_;
     bool carries_keys_;
     bool carries_positions_;
+    bool carries_placed_;
     std::unique_ptr<const FixedNodes<Real>> fixed_;  // null where no node crosses
     mutable std::mutex mutex_;
     mutable std::vector<std::unique_ptr<Stack>> idle_;  // whose memory is free to be used

@@ -87,6 +87,13 @@ void Walk<Real>::corners(const View& view, NodeKey* keys, Point* positions) cons
     }
 }
 
+template <class Real>
+void Walk<Real>::placed_corners(const View& view, Point* out) const {
+    for (std::size_t k = 0; k < view.corner_count(); ++k) {
+        out[k] = view.node_placed[view.as == nullptr ? k : std::size_t{view.as->corner[k]}];
+    }
+}
+
 template std::span<const NodeKey> Walk<float>::split_keys(const View&, const Split&,
                                                           SplitKeys&) const;
 template std::span<const NodeKey> Walk<double>::split_keys(const View&, const Split&,
@@ -103,5 +110,7 @@ template void Walk<float>::gradients(const View&, std::span<Point>) const;
 template void Walk<double>::gradients(const View&, std::span<Point>) const;
 template void Walk<float>::corners(const View&, NodeKey*, Point*) const;
 template void Walk<double>::corners(const View&, NodeKey*, Point*) const;
+template void Walk<float>::placed_corners(const View&, Point*) const;
+template void Walk<double>::placed_corners(const View&, Point*) const;
 
 }  // namespace nestgrid::engine
