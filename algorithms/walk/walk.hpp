@@ -7,6 +7,7 @@
 //   - a new node's value is the interpolant where S holds or the node hangs, else U itself, or,
 //     where S is a weight between 0 and 1, S times the interpolant and 1 - S times U; and its
 //     position likewise, where the grid gives one;
+//   - nodes of hidden leaves alone count as hanging ones;
 //   - U is asked for only where it is used, the children only when they are entered;
 //   - what the walk knows of an element lies in the frame of its father's split, one frame a level.
 // Consequences: memory is O(depth), allocated when a level is first reached and never in the loop;
@@ -118,6 +119,8 @@ public:
     /// \param out takes them
     std::span<const Point> split_positions(const View& view, const Split& split,
                                            SplitPositions& out) const;
+    /// The corners that hidden leaves alone have, one bit each.
+    NodeMask unseen_corners(const View& view) const;
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(const View& view) const;
     /// Gradients of component 0 at the corners, where the field offers them.
@@ -127,6 +130,7 @@ private:
     using Stack = WalkStack<Real>;
 
     bool make_coarse(std::size_t i, Stack& stack, View& view) const;
+    void put_coarse_values(View& view) const;
     void visit(const View& view, Visitor<Real>& visitor) const;
     void descend(const View& view, const Split& split, const Decision& decision,
                  Visitor<Real>& visitor) const;

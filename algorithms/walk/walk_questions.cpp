@@ -55,6 +55,14 @@ std::span<const Point> Walk<Real>::split_positions(const View& view, const Split
 }
 
 template <class Real>
+NodeMask Walk<Real>::unseen_corners(const View& view) const {
+    if (hanging_ == nullptr || !hanging_->any_unseen()) return 0;
+    std::array<NodeKey, max_corners> keys;
+    corners(view, keys.data(), nullptr);
+    return hanging_->unseen(std::span(keys).first(view.corner_count()));
+}
+
+template <class Real>
 unsigned Walk<Real>::boundary(const View& view) const {
     if (!boundary_faces_) return view.boundary;
     unsigned faces = 0;
@@ -104,6 +112,8 @@ template std::span<const Point> Walk<float>::split_positions(const View&, const 
                                                              SplitPositions&) const;
 template std::span<const Point> Walk<double>::split_positions(const View&, const Split&,
                                                               SplitPositions&) const;
+template NodeMask Walk<float>::unseen_corners(const View&) const;
+template NodeMask Walk<double>::unseen_corners(const View&) const;
 template unsigned Walk<float>::boundary(const View&) const;
 template unsigned Walk<double>::boundary(const View&) const;
 template void Walk<float>::gradients(const View&, std::span<Point>) const;
