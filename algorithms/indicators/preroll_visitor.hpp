@@ -61,7 +61,8 @@ public:
         facts_.all_divided = facts_.all_divided && rule.divides_all;
         facts_.finest_level = std::max(facts_.finest_level, view.level + 1);
         facts_.longest_chain = std::max(facts_.longest_chain, rule.steps);
-        if ((split.constrained & rule.all()) != 0) compare_hanging(view, split, value);
+        if ((split.constrained & ~split.unseen & rule.all()) != 0)
+            compare_hanging(view, split, value);
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             if ((split.constrained >> n & 1U) != 0) continue;
             facts_.add_value(static_cast<double>(value[(corners + n) * stride]), limit_);
@@ -98,7 +99,9 @@ private:
     }
 
     void add_coarse_values(const View& view) {
+        const NodeMask unseen = walk_->unseen_corners(view);
         for (std::size_t i = 0; i < view.corner_count(); ++i) {
+            if ((unseen >> i & 1U) != 0) continue;
             facts_.add_value(static_cast<double>(view.value[i * walk_->components()]), limit_);
         }
     }
@@ -123,7 +126,7 @@ private:
     void compare_hanging(const View& view, const Split& split, const Real* value) {
         const std::size_t stride = walk_->components();
         const Rule& rule = *split.rule;
-        const NodeMask hanging = split.constrained & rule.all();
+        const NodeMask hanging = split.constrained & ~split.unseen & rule.all();
         const std::size_t corners = view.corner_count() * stride;
         given_.assign(value, value + corners);
         given_.resize(corners + rule.new_nodes.size() * stride);

@@ -96,7 +96,7 @@ double default_tau(const Hierarchy<Real>& hierarchy) {
         });
     } else {
         const HangingNodes hanging = find_hanging_nodes(hierarchy);
-        const Walk<Real> walk(hierarchy, {.keys = false}, &hanging);
+        const Walk<Real> walk(hierarchy, {.keys = !hanging.empty()}, &hanging);
         walk.run(visitor);
     }
     return 0x1p-20 * static_cast<double>(visitor.range());

@@ -53,22 +53,15 @@ namespace {
 
 /// Calls function(number, reference coordinates, face distance) for the points in an element.
 template <class Function>
-void for_each_point_in(const PointBins& bins, const InverseMap& inverse, double margin,
-                       Function&& function) {
+void for_each_point_in(const PointBins& bins, const InverseMap& inverse, Function&& function) {
     const Shape shape = inverse.shape();
     const std::span<const Point> corners = inverse.corners();
-    const double tolerance = std::max(margin, face_tolerance(corners));
+    const double tolerance = face_tolerance(corners);
     const double size = extent(corners);
-    Point low = corners[0];
-    Point high = corners[0];
-    for (const Point& x : corners) {
-        for (std::size_t d = 0; d < 3; ++d) {
-            low[d] = std::min(low[d], x[d] - tolerance * size);
-            high[d] = std::max(high[d], x[d] + tolerance * size);
-        }
-    }
-    const bool on_surface = topology(shape).dimension < 3 && margin == 0;
-    bins.for_each_in(low, high, [&](std::uint32_t p, const Point& x) {
+    PointBox box = PointBox::around(corners);
+    box.widen(tolerance * size);
+    const bool on_surface = topology(shape).dimension < 3;
+    bins.for_each_in(box, [&](std::uint32_t p, const Point& x) {
         Point s;
         if (!inverse(x, s)) return;
         const double distance = face_distance(shape, s);
@@ -76,6 +69,18 @@ void for_each_point_in(const PointBins& bins, const InverseMap& inverse, double 
         if (on_surface && !(norm(x - place_of(shape, corners, s)) <= off_surface * size)) return;
         function(p, s, distance);
     });
+}
+
+/// Calls function(i, coarse) for the coarse elements that are shown, at least in part.
+template <class Real, class Function>
+void for_each_shown(const Hierarchy<Real>& hierarchy, Function&& function) {
+    const std::unique_ptr<Task> task = hierarchy.open();
+    Coarse coarse;
+    Family family;
+    for (std::size_t i = 0; i < hierarchy.coarse_count(); ++i) {
+        hierarchy.coarse(task.get(), i, coarse, family);
+        if (((family.split | family.leaves) & ~family.hidden) != 0) function(i, coarse);
+    }
 }
 
 /// Keeps one element for each point.
@@ -107,37 +112,48 @@ private:
 
 template <class Real>
 CoarseSearch search_coarse(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
-                           std::span<const std::uint32_t> which, double margin) {
+                           std::span<const std::uint32_t> which) {
     CoarseSearch result;
     if (which.empty()) return result;
-    DeepestElements deepest(margin == 0 ? points.size() : 0);
+    DeepestElements deepest(points.size());
     const PointBins bins(points, which);
-    const std::unique_ptr<Task> task = hierarchy.open();
-    Coarse coarse;
-    Family family;
-    for (std::size_t i = 0; i < hierarchy.coarse_count(); ++i) {
-        hierarchy.coarse(task.get(), i, coarse, family);
-        if (((family.split | family.leaves) & ~family.hidden) == 0) continue;
+    for_each_shown(hierarchy, [&](std::size_t i, const Coarse& coarse) {
         const auto corners = std::span(coarse.corners).first(topology(coarse.shape).corners);
         const InverseMap inverse(coarse.shape, corners);
         result.any_deformed = result.any_deformed || !inverse.affine();
-        for_each_point_in(bins, inverse, margin,
-                          [&](std::uint32_t p, const Point& s, double distance) {
-                              const PointInElement in{s, p, static_cast<std::uint32_t>(i)};
-                              if (margin != 0) {
-                                  result.found.push_back(in);
-                              } else {
-                                  deepest.add(in, distance, result.found);
-                              }
-                          });
-    }
+        for_each_point_in(bins, inverse, [&](std::uint32_t p, const Point& s, double distance) {
+            deepest.add({s, p, static_cast<std::uint32_t>(i)}, distance, result.found);
+        });
+    });
     std::ranges::stable_sort(result.found, {}, &PointInElement::element);
     return result;
 }
 
-template CoarseSearch search_coarse(const Hierarchy<float>&, std::span<const Point>,
-                                    std::span<const std::uint32_t>, double);
-template CoarseSearch search_coarse(const Hierarchy<double>&, std::span<const Point>,
-                                    std::span<const std::uint32_t>, double);
+template <class Real>
+std::vector<Candidate> search_coarse_boxes(const Hierarchy<Real>& hierarchy,
+                                           std::span<const Point> points,
+                                           std::span<const std::uint32_t> which,
+                                           const CoarseBox& box_of) {
+    std::vector<Candidate> found;
+    if (which.empty()) return found;
+    const PointBins bins(points, which);
+    for_each_shown(hierarchy, [&](std::size_t i, const Coarse& coarse) {
+        const auto corners = std::span(coarse.corners).first(topology(coarse.shape).corners);
+        bins.for_each_in(box_of(i, corners), [&](std::uint32_t p, const Point&) {
+            found.push_back({p, static_cast<std::uint32_t>(i)});
+        });
+    });
+    return found;
+}
+
+#define NESTGRID_INSTANTIATE(Real)                                                      \
+    template CoarseSearch search_coarse(const Hierarchy<Real>&, std::span<const Point>, \
+                                        std::span<const std::uint32_t>);                \
+    template std::vector<Candidate> search_coarse_boxes(                                \
+        const Hierarchy<Real>&, std::span<const Point>, std::span<const std::uint32_t>, \
+        const CoarseBox&);
+NESTGRID_INSTANTIATE(float)
+NESTGRID_INSTANTIATE(double)
+#undef NESTGRID_INSTANTIATE
 
 }  // namespace nestgrid::engine

@@ -6,9 +6,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <nestgrid/hierarchy.hpp>
+#include <probes/point_box.hpp>
 
 namespace nestgrid::engine {
 
@@ -28,7 +30,8 @@ public:
 
     /// Calls function(number, point) for the points in a box, ends included.
     template <class Function>
-    void for_each_in(const Point& low, const Point& high, Function&& function) const {
+    void for_each_in(const PointBox& box, Function&& function) const {
+        const auto& [low, high] = box;
         for (std::size_t d = 0; d < 3; ++d) {
             if (!(low[d] <= high_[d] && high[d] >= low_[d])) return;
         }
@@ -39,9 +42,7 @@ public:
                 const std::size_t row = (z * cells_[1] + y) * cells_[0];
                 for (std::size_t i = first_[row + from[0]]; i < first_[row + to[0] + 1]; ++i) {
                     const Point& x = points_[sorted_[i]];
-                    bool in = true;
-                    for (std::size_t d = 0; d < 3; ++d) in &= x[d] >= low[d] && x[d] <= high[d];
-                    if (in) function(sorted_[i], x);
+                    if (box.contains(x)) function(sorted_[i], x);
                 }
             }
         }
@@ -64,12 +65,25 @@ struct CoarseSearch {
     bool any_deformed = false;          ///< the map of some coarse element is not affine
 };
 
-/// Finds the coarse elements around points, where one is shown.
-/// \param margin by how much, in reference coordinates, a point may lie outside its element; 0
-///        stands for rounding, and then each point is found in the element that it is deepest in,
-///        else in all
+/// Finds for each point the coarse element that it is deepest in, where one is shown.
 template <class Real>
 CoarseSearch search_coarse(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
-                           std::span<const std::uint32_t> which, double margin);
+                           std::span<const std::uint32_t> which);
+
+/// A point that lies in the box of a coarse element.
+struct Candidate {
+    std::uint32_t point;
+    std::uint32_t element;
+};
+
+/// The box of coarse element i.
+using CoarseBox = std::function<PointBox(std::size_t i, std::span<const Point> corners)>;
+
+/// Finds all coarse elements in whose boxes points lie, where they are shown. \return by element
+template <class Real>
+std::vector<Candidate> search_coarse_boxes(const Hierarchy<Real>& hierarchy,
+                                           std::span<const Point> points,
+                                           std::span<const std::uint32_t> which,
+                                           const CoarseBox& box_of);
 
 }  // namespace nestgrid::engine

@@ -3,15 +3,12 @@
 #include <probes/descent.hpp>
 
 #include <algorithm>
-#include <limits>
 
 #include <nestgrid/detail/shape_functions.hpp>
 
 namespace nestgrid::engine {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Corners = std::array<Point, max_corners>;
 
@@ -23,17 +20,6 @@ std::span<const Point> corners_of(const Walk<Real>& walk, const ElementView<Real
 }
 
 }  // namespace
-
-template <class Real>
-Descent<Real>::Descent(const Walk<Real>& walk, const Criterion& criterion,
-                       std::span<const Point> points, double margin, ProbeResult& result)
-    : walk_{&walk},
-      criterion_{&criterion},
-      points_{points},
-      margin_{margin},
-      curved_{walk.hierarchy().offers(Feature::new_positions)},
-      result_{&result},
-      distance_(points.size(), -infinity) {}
 
 template <class Real>
 void Descent<Real>::run(Group found) {
@@ -50,40 +36,21 @@ void Descent<Real>::run(Group found) {
 
 template <class Real>
 Decision Descent<Real>::inspect(const View& view, const Split& split) {
-    ++result_->counts.calls;
+    ++found_->counts().calls;
     arrive(view);
     if (at_level(view.level).group.empty()) return {Visit::skip};
-    ++result_->counts.visited;
+    ++found_->counts().visited;
     if (split.rule == nullptr) return {Visit::stop};
     return question_.ask(*walk_, *criterion_, view, split);
 }
 
 template <class Real>
 void Descent<Real>::extract(const View& view) {
-    ++result_->counts.extracted;
-    const std::size_t corners = view.corner_count();
-    const std::size_t components = result_->components;
-    Corners x;
-    double least = -infinity;
-    if (margin_ != 0) least = -face_tolerance(corners_of(*walk_, view, x));
+    ++found_->counts().extracted;
+    found_->begin_element();
     for (const PointInElement& in : at_level(view.level).group) {
-        const double distance = face_distance(view.shape, in.at);
-        if (!(distance >= least) || !(distance > distance_[in.point])) continue;
-        if (margin_ != 0) {
-            const Point place = place_of(view.shape, x, in.at);
-            const double size = extent(std::span(x).first(corners));
-            if (!(norm(points_[in.point] - place) <= off_surface * size)) continue;
-        }
-        distance_[in.point] = distance;
-        result_->level[in.point] = view.level;
-        const auto weight = shape_functions(view.shape, in.at);
-        for (std::size_t c = 0; c < components; ++c) {
-            double sum = 0;
-            for (std::size_t k = 0; k < corners; ++k) {
-                sum += weight[k] * static_cast<double>(view.value[k * components + c]);
-            }
-            result_->values[in.point * components + c] = sum;
-        }
+        found_->offer(view, in.point, in.at, shape_functions(view.shape, in.at),
+                      face_distance(view.shape, in.at));
     }
 }
 
@@ -94,13 +61,9 @@ NodeMask Descent<Real>::children(const View& view) {
     if (rule.new_nodes.empty()) arrive(view);  // inspect() was not called
     Level& level = at_level(view.level);
     if (level.maps == nullptr || level.maps->rule != &rule) level.maps = &maps_.of(rule);
-    level.nested = !curved_ && (level.affine || level.maps->nested);
+    level.nested = level.affine || level.maps->nested;
     handed_.clear();
-    if (margin_ != 0) {
-        hand_to_all(*level.maps, level.group, 2 * margin(view.level), handed_);
-    } else if (level.nested) {
-        hand_to_deepest(*level.maps, level.group, handed_);
-    }
+    if (level.nested) hand_to_deepest(*level.maps, level.group, handed_);
     return level.handed.sort(handed_, rule.children.size());
 }
 
@@ -127,21 +90,7 @@ void Descent<Real>::arrive(const View& view) {
         level.group = father.handed.of(view.child);
         const bool affine = father.affine && father.maps->child[view.child].affine();
         level.affine = is_simplex(view.shape) || (father.nested && affine);
-        if (margin_ != 0) refine(view, level.group);
     }
-}
-
-/// Makes reference coordinates those of the element's own map, and drops points that are far away.
-template <class Real>
-void Descent<Real>::refine(const View& view, Group& group) {
-    const bool nested = at_level(view.level - 1).nested;
-    Corners x;
-    const auto corners = nested ? std::span<const Point>{} : corners_of(*walk_, view, x);
-    const auto is_far = [&](PointInElement& in) {
-        const bool converged = nested || invert(view.shape, corners, points_[in.point], in.at);
-        return !converged || !(face_distance(view.shape, in.at) >= -margin(view.level));
-    };
-    group = {group.begin(), std::remove_if(group.begin(), group.end(), is_far)};
 }
 
 template class Descent<float>;

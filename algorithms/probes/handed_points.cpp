@@ -25,18 +25,6 @@ void hand_to_deepest(const ChildMaps& maps, std::span<const PointInElement> grou
     }
 }
 
-void hand_to_all(const ChildMaps& maps, std::span<const PointInElement> group, double margin,
-                 std::vector<PointInElement>& handed) {
-    for (const PointInElement& point : group) {
-        for (std::size_t c = 0; c < maps.child.size(); ++c) {
-            Point s;
-            if (!maps.child[c](point.at, s)) continue;
-            if (!(face_distance(maps.child[c].shape(), s) >= -margin)) continue;
-            handed.push_back({s, point.point, static_cast<std::uint32_t>(c)});
-        }
-    }
-}
-
 NodeMask HandedPoints::sort(std::span<const PointInElement> handed, std::size_t children) {
     NodeMask some = 0;
     std::fill_n(first_.begin(), children + 1, 0U);

@@ -18,11 +18,6 @@ namespace nestgrid::engine {
 void hand_to_deepest(const ChildMaps& maps, std::span<const PointInElement> group,
                      std::vector<PointInElement>& handed);
 
-/// Hands each point to all children that it is in, or beside by at most a margin in reference
-/// coordinates.
-void hand_to_all(const ChildMaps& maps, std::span<const PointInElement> group, double margin,
-                 std::vector<PointInElement>& handed);
-
 /// Points that were handed to children, child by child. Keeps its memory.
 class HandedPoints {
 public:

@@ -43,6 +43,23 @@ Point solve(std::array<Point, 3> a, int dimension, const Point& r) {
     return d;
 }
 
+/// The reference coordinates of a point of the cube: layers of a pyramid and rows of a triangle are
+/// as long as its side.
+Point from_cube(Shape shape, const Point& at) {
+    const auto [x, y, z] = at;
+    switch (shape) {
+        case Shape::triangle:
+        case Shape::prism:
+            return {x * (1 - y), y, z};
+        case Shape::pyramid:
+            return {x * (1 - z), y * (1 - z), z};
+        case Shape::tetrahedron:
+            return {x * (1 - y) * (1 - z), y * (1 - z), z};
+        default:
+            return at;
+    }
+}
+
 }  // namespace
 
 Point reference_middle(Shape shape) {
@@ -107,6 +124,82 @@ bool invert(Shape shape, std::span<const Point> corners, const Point& x, Point& 
         s = s + (length > 1 ? 1 / length : 1) * step;
         if (!(norm(s) < far)) return false;
         if (length < quadratic) return true;
+    }
+    return false;
+}
+
+std::array<double, max_corners> weights_near(Shape shape, std::span<const Point> corners,
+                                             const Point& s, const Point& x) {
+    constexpr double step = 0.25;  // from the middle, inside the element
+    const Topology& t = topology(shape);
+    const Point middle = reference_middle(shape);
+    std::array<std::array<double, max_corners>, 3> change{};  // of the weights along each axis
+    std::array<Point, 3> axis{};
+    for (std::size_t d = 0; d < static_cast<std::size_t>(t.dimension); ++d) {
+        Point to = middle;
+        to[d] += step;
+        const auto there = weights(shape, to);
+        const auto here = weights(shape, middle);
+        for (std::size_t k = 0; k < t.corners; ++k) {
+            change[d][k] = there[k] - here[k];
+            axis[d] = axis[d] + change[d][k] * corners[k];
+        }
+    }
+    const Point by = solve(axis, t.dimension, x - place_of(shape, corners, s));
+    auto result = weights(shape, s);
+    for (std::size_t k = 0; k < t.corners; ++k) {
+        for (std::size_t d = 0; d < 3; ++d) result[k] += by[d] * change[d][k];
+    }
+    return result;
+}
+
+bool InverseMap::find(const Point& x, double tolerance, Point& s) const {
+    if (affine_) return (*this)(x, s) && face_distance(shape_, s) >= -tolerance;
+    return find_in_box(x, tolerance, {0, 0, 0}, 1, s);
+}
+
+/// \param low, side a box of the cube
+bool InverseMap::find_in_box(const Point& x, double tolerance, const Point& low, double side,
+                             Point& s) const {
+    constexpr double least_side = 0x1p-6;
+    const auto dimension = static_cast<std::size_t>(topology(shape_).dimension);
+    const double half = 0.5 * side;
+    const Point middle = from_cube(shape_, low + half * Point{1, 1, 1});
+    if (invert(shape_, corners(), x, s = middle) && face_distance(shape_, s) >= -tolerance) {
+        return true;
+    }
+    // Where the inverse of the derivative takes the box, 0 is what is sought.
+    const Point place = place_of(shape_, corners(), middle);
+    std::array<Point, 3> jacobian{};
+    for (std::size_t d = 0; d < dimension; ++d) {
+        jacobian[d] = derivative(shape_, corners(), middle, place, d);
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Point least{infinity, infinity, infinity};
+    Point greatest{-infinity, -infinity, -infinity};
+    for (unsigned k = 0; k < 1U << dimension; ++k) {
+        const Point at{double(k & 1U), double(k >> 1U & 1U), double(k >> 2U)};
+        const Point image = place_of(shape_, corners(), from_cube(shape_, low + side * at));
+        const Point y = solve(jacobian, static_cast<int>(dimension), image - x);
+        for (std::size_t d = 0; d < dimension; ++d) {
+            if (!std::isfinite(y[d]))
+                return side > least_side && find_in_parts(x, tolerance, low, half, s);
+            least[d] = std::min(least[d], y[d]);
+            greatest[d] = std::max(greatest[d], y[d]);
+        }
+    }
+    for (std::size_t d = 0; d < dimension; ++d) {
+        if (least[d] > tolerance || greatest[d] < -tolerance) return false;
+    }
+    return side > least_side && find_in_parts(x, tolerance, low, half, s);
+}
+
+bool InverseMap::find_in_parts(const Point& x, double tolerance, const Point& low, double side,
+                               Point& s) const {
+    const unsigned parts = 1U << static_cast<unsigned>(topology(shape_).dimension);
+    for (unsigned k = 0; k < parts; ++k) {
+        const Point at{double(k & 1U), double(k >> 1U & 1U), double(k >> 2U)};
+        if (find_in_box(x, tolerance, low + side * at, side, s)) return true;
     }
     return false;
 }

@@ -62,7 +62,17 @@ double face_tolerance(std::span<const Point> corners);
 /// \return whether it converged, within a few diameters of the element
 bool invert(Shape shape, std::span<const Point> corners, const Point& x, Point& s);
 
+/// Weights of corners that add up to 1 and give a point x: those of reference coordinates s, moved
+/// along the axes of the element by what the place of s is off. A linear function has its value.
+std::array<double, max_corners> weights_near(Shape shape, std::span<const Point> corners,
+                                             const Point& s, const Point& x);
+
 /// The inverse of the map of an element: a matrix where that is affine, else Newton's method.
+///
+/// Newton's method from the middle may end nowhere, or at a second solution outside the element.
+/// find() therefore divides the element until each part is known to hold no solution or gives one:
+/// the map is linear in each coordinate of a cube (a pyramid and a prism are cubes with edges
+/// shrunk to points), so that the image of a box lies in the convex hull of those of its corners.
 class InverseMap {
 public:
     InverseMap(Shape shape, std::span<const Point> corners);
@@ -78,7 +88,16 @@ public:
         return true;
     }
 
+    /// Finds reference coordinates inside the element, or beside it by at most a tolerance.
+    /// \return whether there are any
+    bool find(const Point& x, double tolerance, Point& s) const;
+
 private:
+    bool find_in_box(const Point& x, double tolerance, const Point& low, double side,
+                     Point& s) const;
+    bool find_in_parts(const Point& x, double tolerance, const Point& low, double side,
+                       Point& s) const;
+
     Shape shape_;
     bool affine_;
     std::array<Point, max_corners> corner_{};

@@ -9,6 +9,8 @@
 #include <string>
 
 #include <levels/draw.hpp>
+#include <nestgrid/detail/shape_functions.hpp>
+#include <probes/box_descent.hpp>
 #include <probes/descent.hpp>
 #include <walk/hanging_nodes.hpp>
 
@@ -38,48 +40,72 @@ struct Question {
     const Criterion& criterion;
     const HangingNodes* hanging;
     bool needs_keys;
+    bool finest;  ///< the criterion stops at leaves alone
+
+    /// Whether elements lie in the convex hulls of the corners of those above them.
+    bool bounded() const {
+        return !hierarchy.offers(Feature::new_positions) &&
+               (hanging == nullptr || hanging->crossing() == nullptr);
+    }
 };
 
-template <class Real>
-void descend(const Question<Real>& question, std::span<engine::PointInElement> found, double margin,
-             ProbeResult& result) {
-    const engine::Needs needs{
-        .values = true,
-        .keys = question.needs_keys,
-        .positions = margin != 0 || question.criterion.wants_positions(),
-    };
-    const engine::Walk<Real> walk(question.hierarchy, needs, question.hanging);
-    engine::Descent<Real> descent(walk, question.criterion, question.points, margin, result);
-    for (std::size_t i = 0; i < found.size(); i += most_together) {
-        descent.run(found.subspan(i, std::min(most_together, found.size() - i)));
+/// Calls take(points) for the points in parts.
+template <class T, class Take>
+void in_parts(std::span<T> points, const Take& take) {
+    for (std::size_t i = 0; i < points.size(); i += most_together) {
+        take(points.subspan(i, std::min(most_together, points.size() - i)));
     }
 }
 
-/// Descends nested; and then wide, with the points that the nested descent may have missed.
+/// Descends in reference coordinates, where nothing is curved.
+/// \return whether it may have missed a point of an element
+template <class Real>
+bool descend_nested(const Question<Real>& question, std::span<const std::uint32_t> which,
+                    engine::FoundPoints<Real>& found) {
+    auto coarse = engine::search_coarse(question.hierarchy, question.points, which);
+    const engine::Needs needs{.values = true,
+                              .keys = question.needs_keys,
+                              .positions = question.criterion.wants_positions()};
+    const engine::Walk<Real> walk(question.hierarchy, needs, question.hanging);
+    engine::Descent<Real> descent(walk, question.criterion, found);
+    in_parts(std::span(coarse.found), [&](auto some) { descent.run(some); });
+    return coarse.any_deformed || !std::ranges::all_of(coarse.found, [&](const auto& in) {
+               return found.found(in.point);
+           });
+}
+
+/// Descends through boxes.
+template <class Real>
+void descend_in_boxes(const Question<Real>& question, std::span<const std::uint32_t> which,
+                      engine::FoundPoints<Real>& found) {
+    engine::Needs needs{.values = true, .keys = question.needs_keys, .positions = true};
+    needs.placed = question.finest;
+    const engine::Walk<Real> walk(question.hierarchy, needs, question.hanging);
+    engine::Reach reach;
+    if (!question.bounded()) {
+        needs.values = false;
+        const engine::Walk<Real> whole(question.hierarchy, needs, question.hanging);
+        reach = engine::Reach(whole, question.criterion);
+    }
+    engine::BoxDescent<Real> descent(walk, question.criterion, question.points, reach, found);
+    in_parts(which, [&](auto some) { descent.run(some); });
+}
+
 template <class Real>
 ProbeResult answer(const Question<Real>& question) {
-    const Hierarchy<Real>& hierarchy = question.hierarchy;
-    ProbeResult result;
     const std::size_t count = question.points.size();
-    result.components = static_cast<std::size_t>(hierarchy.facts().components);
-    result.values.assign(count * result.components, std::numeric_limits<double>::quiet_NaN());
-    result.level.assign(count, -1);
+    engine::FoundPoints<Real> found(question.hierarchy, count);
     std::vector<std::uint32_t> left(count);
     std::iota(left.begin(), left.end(), 0U);
-    const bool curved = hierarchy.offers(Feature::new_positions);
-    bool missed = curved;
-    if (!curved) {
-        auto coarse = engine::search_coarse(hierarchy, question.points, left, 0);
-        descend(question, std::span(coarse.found), 0, result);
-        std::erase_if(left, [&](std::uint32_t p) { return result.found(p); });
-        missed = coarse.any_deformed || coarse.found.size() > count - left.size();
+    bool missed = true;
+    if (question.bounded()) {
+        missed = descend_nested(question, left, found);
+        std::erase_if(left, [&](std::uint32_t p) { return found.found(p); });
     }
     if (missed && !left.empty()) {
-        const double margin = curved ? engine::curved_margin : engine::wide_margin;
-        auto coarse = engine::search_coarse(hierarchy, question.points, left, margin);
-        descend(question, std::span(coarse.found), margin, result);
+        descend_in_boxes(question, std::span<const std::uint32_t>(left), found);
     }
-    return result;
+    return found.take();
 }
 
 }  // namespace
@@ -90,7 +116,7 @@ ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> point
     engine::require_same_epoch(hierarchy, bounds);
     engine::require_saturated(criterion, bounds, hierarchy.facts().decodes);
     require_points(points);
-    return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true});
+    return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true, false});
 }
 
 template <class Real>
@@ -98,7 +124,7 @@ ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> point
     require_points(points);
     const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
     const bool any = !hanging.empty();
-    return answer<Real>({hierarchy, points, Exact{}, any ? &hanging : nullptr, any});
+    return answer<Real>({hierarchy, points, Exact{}, any ? &hanging : nullptr, any, true});
 }
 
 LineProbe make_line(const Point& from, const Point& to, std::size_t count) {
@@ -127,3 +153,38 @@ template ProbeResult probe(const Hierarchy<float>&, std::span<const Point>);
 template ProbeResult probe(const Hierarchy<double>&, std::span<const Point>);
 
 }  // namespace nestgrid::detail
+
+namespace nestgrid {
+
+ProbeResult probe(const DiscontinuousData& data, std::span<const Point> points) {
+    ProbeResult result = detail::probe(data.grid(), points);
+    const auto components = static_cast<std::size_t>(data.components());
+    result.components = components;
+    result.values.assign(points.size() * components, std::numeric_limits<double>::quiet_NaN());
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::erase_if(order, [&](std::size_t i) { return !result.found(i); });
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return result.element_of[i]; });
+    std::vector<double> at_corners;
+    std::uint32_t element = ProbeResult::no_element;  // whose values are at hand
+    for (const std::size_t i : order) {
+        const Shape shape = result.shape_of[result.element_of[i]];
+        const std::size_t corners = topology(shape).corners;
+        if (element != result.element_of[i]) {
+            element = result.element_of[i];
+            at_corners.assign(corners * components, 0.0);
+            data.leaf_values(result.elements.handle(element), at_corners);
+        }
+        const auto weight = shape_functions(shape, result.reference[i]);
+        for (std::size_t c = 0; c < components; ++c) {
+            double sum = 0;
+            for (std::size_t k = 0; k < corners; ++k) {
+                sum += weight[k] * at_corners[k * components + c];
+            }
+            result.values[i * components + c] = sum;
+        }
+    }
+    return result;
+}
+
+}  // namespace nestgrid

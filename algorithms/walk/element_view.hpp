@@ -25,6 +25,7 @@ struct ElementView {
     const Real* value;
     const NodeKey* node_key;     ///< keys of the father's nodes, where the walk carries keys
     const Point* node_position;  ///< their positions, where it carries positions
+    const Point* node_placed;    ///< where the grid has these nodes, where the walk carries this
     NodeKey path;                ///< a hash of the way down
     ClosedParts<Real> closed;    ///< edges and faces around the element that are closed
     int level;                   ///< 0 for coarse elements

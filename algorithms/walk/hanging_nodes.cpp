@@ -99,8 +99,30 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
     return hanging;
 }
 
+template <class Real>
+void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes) {
+    const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
+    struct Seen {};
+    KeyTable<NodeKey, Seen> seen;
+    const auto for_each_corner = [&](bool hidden, const auto& function) {
+        for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
+            const bool is_hidden = view.member->hidden == Hidden::wholly;
+            if (split.rule != nullptr || is_hidden != hidden) return;
+            std::array<NodeKey, max_corners> keys;
+            walk.corners(view, keys.data(), nullptr);
+            std::ranges::for_each(std::span(keys).first(view.corner_count()), function);
+        });
+    };
+    for_each_corner(false, [&](NodeKey key) { seen.insert(key, {}); });
+    for_each_corner(true, [&](NodeKey key) {
+        if (seen.find(key) == nullptr) nodes.insert_unseen(key);
+    });
+}
+
 template HangingNodes derive_hanging_nodes(const Hierarchy<float>&);
 template HangingNodes derive_hanging_nodes(const Hierarchy<double>&);
+template void find_unseen_nodes(const Hierarchy<float>&, HangingNodes&);
+template void find_unseen_nodes(const Hierarchy<double>&, HangingNodes&);
 
 }  // namespace engine
 

@@ -23,11 +23,19 @@ bool hanging_nodes_unknown(const Hierarchy<Real>& hierarchy) {
            !hierarchy.facts().conforming;
 }
 
-/// The hanging nodes that a walk must be told: those derived where they are unknown, else none.
+/// Adds the nodes of hidden leaves alone. Walks the hierarchy twice.
+template <class Real>
+void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes);
+
+/// The hanging nodes that a walk must be told: those derived where they are unknown, else none; and
+/// the nodes of hidden leaves alone.
 /// \throw GridError as derive_hanging_nodes()
 template <class Real>
 HangingNodes find_hanging_nodes(const Hierarchy<Real>& hierarchy) {
-    return hanging_nodes_unknown(hierarchy) ? derive_hanging_nodes(hierarchy) : HangingNodes();
+    HangingNodes nodes;
+    if (hanging_nodes_unknown(hierarchy)) nodes = derive_hanging_nodes(hierarchy);
+    if (hierarchy.offers(Feature::hidden)) find_unseen_nodes(hierarchy, nodes);
+    return nodes;
 }
 
 }  // namespace nestgrid::engine

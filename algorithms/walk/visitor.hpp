@@ -24,7 +24,8 @@ struct Decision {
 /// The refinement of an element; `rule` is null on a leaf.
 struct Split {
     const Rule* rule = nullptr;
-    NodeMask constrained = 0;       ///< new nodes that hang
+    NodeMask constrained = 0;       ///< new nodes that hang, and those of hidden leaves alone
+    NodeMask unseen = 0;            ///< new nodes of hidden leaves alone
     NodeMask outside = 0;           ///< see the operation `outside`
     NodeMask crossing = 0;          ///< new nodes that no stencil of the rule gives a value
     std::span<const NodeKey> keys;  ///< of the new nodes, where the walk needs keys

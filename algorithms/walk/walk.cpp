@@ -82,7 +82,8 @@ Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const Han
       new_positions_{hierarchy.offers(Feature::new_positions)},
       constrained_{hierarchy.offers(Feature::constrained)},
       carries_keys_{needs.keys && !own_keys_},
-      carries_positions_{needs.positions && !own_positions_} {
+      carries_positions_{needs.positions && !own_positions_},
+      carries_placed_{needs.placed && new_positions_} {
     if (!boundary_faces_) boundary_ = coarse_boundary(hierarchy);
     if (hanging != nullptr && hanging->crossing() != nullptr) {
         fixed_ = std::make_unique<FixedNodes<Real>>(hierarchy, *hanging->crossing(), needs.values,
@@ -141,14 +142,6 @@ bool Walk<Real>::make_coarse(std::size_t i, Stack& stack, View& view) const {
     const Member& member = stack.family.members[0];
     if ((stack.family.split | stack.family.leaves) == 0) return false;  // masked
     const std::size_t corners = topology(coarse.shape).corners;
-    if (needs_.values) {
-        Real* const value = with_room(stack.value, corners * components_);
-        const NodeMask missing = hierarchy_->coarse_values(stack.task.get(), i, corners, value);
-        if (missing != 0) throw_missing(missing, i);
-        for (std::size_t k = 0; functions_ != nullptr && k < corners; ++k) {
-            functions_->put(coarse.corners[k], value + k * components_);
-        }
-    }
     if (carries_keys_) {
         for (std::size_t k = 0; k < corners; ++k) stack.key[k] = coarse_key(coarse.ids[k]);
     }
@@ -162,6 +155,7 @@ bool Walk<Real>::make_coarse(std::size_t i, Stack& stack, View& view) const {
     view.value = stack.value.data();
     view.node_key = stack.key.data();
     view.node_position = coarse.corners.data();
+    view.node_placed = coarse.corners.data();
     view.path = detail::mix(static_cast<NodeKey>(i));
     view.closed.any = false;
     view.level = 0;
@@ -170,7 +164,27 @@ bool Walk<Real>::make_coarse(std::size_t i, Stack& stack, View& view) const {
     view.child = 0;
     view.boundary = boundary_.empty() ? std::uint8_t{0} : boundary_[i];
     view.interpolated = 0;
+    if (needs_.values) put_coarse_values(view);
     return true;
+}
+
+/// Puts the values at the corners of a coarse element into the stack.
+template <class Real>
+void Walk<Real>::put_coarse_values(View& view) const {
+    const std::size_t corners = view.corner_count();
+    Stack& stack = *view.stack;
+    Real* const value = with_room(stack.value, corners * components_);
+    const NodeMask missing =
+        hierarchy_->coarse_values(stack.task.get(), view.coarse, corners, value);
+    const NodeMask unseen = unseen_corners(view);
+    if ((missing & ~unseen) != 0) throw_missing(missing & ~unseen, view.coarse);
+    for (std::size_t k = 0; k < corners; ++k) {
+        if ((unseen >> k & 1U) != 0) std::fill_n(value + k * components_, components_, Real{0});
+        if (functions_ != nullptr) {
+            functions_->put(stack.coarse.corners[k], value + k * components_);
+        }
+    }
+    view.value = value;
 }
 
 template <class Real>
@@ -199,6 +213,8 @@ void Walk<Real>::visit(const View& view, Visitor<Real>& visitor) const {
         split.keys = view.family->new_keys(member);
     }
     if (!constrained_ && hanging_ != nullptr) split.constrained = hanging_->mask(split.keys);
+    if (hanging_ != nullptr) split.unseen = hanging_->unseen(split.keys);
+    split.constrained |= split.unseen;
     if (fixed_ != nullptr) mark_crossing(view, split);
     Decision decision;
     if (count > 0) decision = visitor.inspect(view, split);
@@ -298,6 +314,11 @@ void Walk<Real>::project_positions(const View& view, const Split& split, NodeMas
     for (std::size_t n = 0; n < count; ++n) {
         if ((given >> n & 1U) == 0) x[corners + n] = detail::interpolate(rule.new_nodes[n], x);
     }
+    if (!carries_placed_) return;
+    Point* const placed = with_room(frame.placed, corners + count);
+    placed_corners(view, placed);
+    hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(),
+                              {placed + corners, count});
 }
 
 /// Finds the edges and faces of the rule that the split closes.
@@ -403,6 +424,7 @@ auto Walk<Real>::make_child(const View& father, const Rule& rule, const Frame<Re
     child.value = frame.child_value.data();
     child.node_key = frame.key.data();
     child.node_position = frame.position.data();
+    child.node_placed = frame.placed.data();
     child.closed.any = false;
     child.level = father.level + 1;
     child.boundary = 0;

@@ -7,6 +7,7 @@
 //   - a new node's value is the interpolant where S holds or the node hangs, else U itself, or,
 //     where S is a weight between 0 and 1, S times the interpolant and 1 - S times U; and its
 //     position likewise, where the grid gives one;
+//   - nodes of hidden leaves alone count as hanging ones;
 //   - U is asked for only where it is used, the children only when they are entered;
 //   - what the walk knows of an element lies in the frame of its father's split, one frame a level.
 // Consequences: memory is O(depth), allocated when a level is first reached and never in the loop;
@@ -38,6 +39,7 @@ struct Needs {
     bool keys = true;        ///< keys of new nodes, and of corners by Walk::corners()
     bool positions = false;  ///< positions by Walk::corners()
     bool closed = false;     ///< closed edges and faces; needs the other three
+    bool placed = false;     ///< true positions by Walk::placed_corners(); needs `positions`
 };
 
 /// The nodes of one split, and the children.
@@ -46,6 +48,7 @@ struct Frame {
     std::vector<Real> value;        ///< of the corners, then of the new nodes
     std::vector<NodeKey> key;       ///< likewise
     std::vector<Point> position;    ///< likewise
+    std::vector<Point> placed;      ///< likewise: where the grid has the nodes, S or not
     std::vector<Real> child_value;  ///< at the corners of the child that the walk is at
     Family family;
     std::unique_ptr<ClosingSplit<Real>> closing;
@@ -101,6 +104,11 @@ public:
 
     /// Keys and positions of the corners; each pointer may be null.
     void corners(const View& view, NodeKey* keys, Point* positions) const;
+    /// Positions of the corners where the grid has them, also of those that hang or at which S
+    /// holds, where the walk carries these.
+    void placed_corners(const View& view, Point* out) const;
+    /// Whether placed_corners() and the positions of corners() may differ.
+    bool places_corners() const { return carries_placed_; }
     /// Keys of the corners of a split element and, behind them, of its new nodes.
     /// \param out takes them
     std::span<const NodeKey> split_keys(const View& view, const Split& split, SplitKeys& out) const;
@@ -111,6 +119,8 @@ public:
     /// \param out takes them
     std::span<const Point> split_positions(const View& view, const Split& split,
                                            SplitPositions& out) const;
+    /// The corners that hidden leaves alone have, one bit each.
+    NodeMask unseen_corners(const View& view) const;
     /// Faces on the boundary of the domain, one bit each.
     unsigned boundary(const View& view) const;
     /// Gradients of component 0 at the corners, where the field offers them.
@@ -120,6 +130,7 @@ private:
     using Stack = WalkStack<Real>;
 
     bool make_coarse(std::size_t i, Stack& stack, View& view) const;
+    void put_coarse_values(View& view) const;
     void visit(const View& view, Visitor<Real>& visitor) const;
     void descend(const View& view, const Split& split, const Decision& decision,
                  Visitor<Real>& visitor) const;
@@ -159,6 +170,7 @@ private:
     bool constrained_;
     bool carries_keys_;
     bool carries_positions_;
+    bool carries_placed_;
     std::unique_ptr<const FixedNodes<Real>> fixed_;  // null where no node crosses
     mutable std::mutex mutex_;
     mutable std::vector<std::unique_ptr<Stack>> idle_;  // whose memory is free to be used

@@ -55,6 +55,14 @@ std::span<const Point> Walk<Real>::split_positions(const View& view, const Split
 }
 
 template <class Real>
+NodeMask Walk<Real>::unseen_corners(const View& view) const {
+    if (hanging_ == nullptr || !hanging_->any_unseen()) return 0;
+    std::array<NodeKey, max_corners> keys;
+    corners(view, keys.data(), nullptr);
+    return hanging_->unseen(std::span(keys).first(view.corner_count()));
+}
+
+template <class Real>
 unsigned Walk<Real>::boundary(const View& view) const {
     if (!boundary_faces_) return view.boundary;
     unsigned faces = 0;
@@ -87,6 +95,13 @@ void Walk<Real>::corners(const View& view, NodeKey* keys, Point* positions) cons
     }
 }
 
+template <class Real>
+void Walk<Real>::placed_corners(const View& view, Point* out) const {
+    for (std::size_t k = 0; k < view.corner_count(); ++k) {
+        out[k] = view.node_placed[view.as == nullptr ? k : std::size_t{view.as->corner[k]}];
+    }
+}
+
 template std::span<const NodeKey> Walk<float>::split_keys(const View&, const Split&,
                                                           SplitKeys&) const;
 template std::span<const NodeKey> Walk<double>::split_keys(const View&, const Split&,
@@ -97,11 +112,15 @@ template std::span<const Point> Walk<float>::split_positions(const View&, const 
                                                              SplitPositions&) const;
 template std::span<const Point> Walk<double>::split_positions(const View&, const Split&,
                                                               SplitPositions&) const;
+template NodeMask Walk<float>::unseen_corners(const View&) const;
+template NodeMask Walk<double>::unseen_corners(const View&) const;
 template unsigned Walk<float>::boundary(const View&) const;
 template unsigned Walk<double>::boundary(const View&) const;
 template void Walk<float>::gradients(const View&, std::span<Point>) const;
 template void Walk<double>::gradients(const View&, std::span<Point>) const;
 template void Walk<float>::corners(const View&, NodeKey*, Point*) const;
 template void Walk<double>::corners(const View&, NodeKey*, Point*) const;
+template void Walk<float>::placed_corners(const View&, Point*) const;
+template void Walk<double>::placed_corners(const View&, Point*) const;
 
 }  // namespace nestgrid::engine

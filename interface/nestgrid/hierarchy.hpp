@@ -144,7 +144,7 @@ public:
     /// An empty list for elements of the grid.
     virtual Elements make_elements() const = 0;
 
-    /// A task's state; null where the grid needs none.
+    /// A task's state; null where the grid needs none. \throw GridError where the grid has changed
     virtual std::unique_ptr<Task> open() const = 0;
 
     /// Coarse element i, alone in its family.

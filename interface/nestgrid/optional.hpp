@@ -25,9 +25,9 @@
 //     bool masked(e)
 //         e lies outside the domain: skipped with everything below it
 //     Hidden hidden(e)
-//         whether e and what lies below it is shown: nothing is drawn where it is hidden, but what
-//         is drawn beside is what would be drawn if it were not. No element that is hidden in part
-//         stops, and hidden leaves constrain no node
+//         whether e and what lies below it is shown. Nothing depends on values at nodes of hidden
+//         leaves alone: they are interpolated, on the coarse grid 0. No element that is hidden in
+//         part stops, and hidden leaves constrain no node
 //     NodeMask outside(e)
 //         new nodes at which no element may stop because only deeper elements end at the boundary
 //         of the domain; saturated like an infinite indicator

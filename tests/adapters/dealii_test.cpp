@@ -327,12 +327,21 @@ TEST(Dealii, FollowsTheTriangulation) {
         p.set(values);
     };
     set();
-    const HierarchicalIndicator before(grid, DealiiField(grid, *p.dofs, p.values));
+    const DealiiField field_before(grid, *p.dofs, p.values);
+    const HierarchicalIndicator before(grid, field_before);
     refine(*p.triangulation, 1, 9);
     p.distribute(FE_Q<3>(1));
     set();
     const DealiiField field(grid, *p.dofs, p.values);
     EXPECT_THROW(isosurface(grid, field, 0.5, before, {}), GridError);
+    EXPECT_EQ(refusal<GridError>([&] { isosurface(grid, field_before, 0.5); }),
+              "the grid has changed since the field was made for it: make another one");
+    p.values.reinit(p.values.size() + 1);
+    EXPECT_EQ(refusal<GridError>([&] { isosurface(grid, field, 0.5); }),
+              "the vector or the degrees of freedom have changed since the field was made for "
+              "them: make another one");
+    p.values.reinit(p.values.size() - 1);
+    set();
     expect_sound_grid(grid, field);
     expect_closed_levels(grid, field, 0.5, 0.1);
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "p4est_laws.hpp"
+#include "probe_laws.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -212,6 +213,28 @@ std::string sentence_of_grid(typename P4estTypes<dim>::Connectivity* connectivit
 
 void expect_part(const std::string& got, const std::string& part) {
     EXPECT_NE(got.find(part), std::string::npos) << got;
+}
+
+TEST(P4estGrid, ProbesLoseNoPoint) {
+    for_each_forest([](const std::string& name, const auto& forest, const auto& map) {
+        const P4estGrid grid(forest.get(), map);
+        using Grid = std::decay_t<decltype(grid)>;
+        if constexpr (Grid::curved) {
+            expect_no_point_lost(grid, 100'000, 1);
+        } else if (name != "moebius") {  // a surface in space
+            const NodePlaces nodes(grid);
+            std::vector<double> values(nodes.places.size());
+            for_each_leaf(grid, [&](const auto& view, const auto& walk) {
+                std::array<NodeKey, max_corners> keys;
+                std::array<Point, max_corners> x;
+                walk.corners(view, keys.data(), x.data());
+                for (std::size_t k = 0; k < view.corner_count(); ++k) {
+                    values[*nodes.number.find(keys[k])] = LinearField<Grid>::at(x[k]);
+                }
+            });
+            expect_no_point_lost(grid, KeyedField(grid, nodes, values), 100'000, 1);
+        }
+    });
 }
 
 TEST(P4estGrid, RefusesWhatItCannotRead) {

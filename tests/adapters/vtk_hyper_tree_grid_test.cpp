@@ -5,6 +5,9 @@
 #include <map>
 
 #include <vtkBitArray.h>
+#include <vtkCellData.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <nestgrid/adapters/vtk_hyper_tree_grid.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
@@ -237,6 +240,35 @@ TEST(HyperTreeGrid, HidesWhatIsMasked) {
     expect_laws_beside_a_mask<3>(*random_trees({5, 5, 5}, 4, 1), 1);
     expect_laws_beside_a_mask<3>(*random_trees({5, 4, 4}, 4, 2, true), 2);
     expect_laws_beside_a_mask<2>(*random_trees({9, 8, 1}, 6, 2), 3);
+}
+
+/// Cells that another process has are hidden as masked ones are.
+TEST(HyperTreeGrid, HidesGhostCells) {
+    const vtkNew<vtkHyperTreeGrid> trees = random_trees({5, 5, 5}, 4, 1);
+    std::mt19937 random(1);
+    const vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (vtkIdType i = 0; i < trees->GetNumberOfVertices(); ++i) {
+        ghosts->InsertNextValue(random() % 9 == 0 ? vtkDataSetAttributes::DUPLICATECELL : 0);
+    }
+    trees->GetCellData()->AddArray(ghosts);
+    const HyperTreeGrid<3> grid(*trees);
+    std::size_t hidden = 0;
+    const CellAverages averages(grid, [&](const HyperTreeGrid<3>::Element& e) {
+        EXPECT_EQ(ghosts->GetValue(grid.index(e)), 0);
+        return 1.0;
+    });
+    const auto hierarchy = erase(grid, averages);
+    const engine::Walk<double> walk(hierarchy, {.values = false});
+    engine::for_each_element(walk, false, [&](const auto& view, const engine::Split& split) {
+        if (split.rule != nullptr) return;
+        const auto& e = element_in(grid, view);
+        const bool is_ghost = ghosts->GetValue(grid.index(e)) != 0;
+        EXPECT_EQ(grid.hidden(e), is_ghost ? Hidden::wholly : Hidden::not_at_all);
+        hidden += is_ghost ? 1U : 0U;
+    });
+    EXPECT_GT(hidden, 100U);
+    expect_sound_grid(grid, averages);
 }
 
 /// No leaf is left to take a mean of.

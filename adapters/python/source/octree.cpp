@@ -129,8 +129,14 @@ void Forest<dim>::check(const OctreeArrays& arrays) {
     if (arrays.max_level < 0 || arrays.max_level > 20) {
         throw InvalidInput("max_level is " + std::to_string(arrays.max_level) + ", not 0 to 20");
     }
-    for (const double value : arrays.values) {
-        if (!std::isfinite(value)) throw InvalidInput("a value of the octree is not finite");
+    const std::size_t of_a_leaf = count == 0 ? 1 : arrays.values.size() / count;
+    for (std::size_t i = 0; i < arrays.values.size(); ++i) {
+        const std::size_t leaf = i / of_a_leaf;
+        if (!arrays.masked.empty() && arrays.masked[leaf] != 0) continue;  // nobody looks at it
+        if (!std::isfinite(arrays.values[i])) {
+            throw InvalidInput("the value " + std::to_string(arrays.values[i]) + " of leaf " +
+                               std::to_string(leaf) + " is not finite; hide such leaves by masked");
+        }
     }
 }
 
@@ -278,6 +284,7 @@ template <int dim>
 void Forest<dim>::gather(std::span<const double> of_corners) {
     std::vector<bool> set(values_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        if (!masked_.empty() && masked_[i / corners] != 0) continue;  // nobody looks at it
         const std::uint32_t node = nodes_[i];
         const double value = of_corners[corners * order_[i / corners] + i % corners];
         if (set[node] && values_[node] != value) {

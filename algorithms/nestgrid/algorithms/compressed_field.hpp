@@ -88,9 +88,11 @@ public:
     using Element = ElementOf<Grid>;
 
     CompressedField(const Grid& grid, const CompressedValues<Real>& values)
-        : grid_{&grid}, values_{&values} {}
+        : grid_{&grid}, values_{&values}, made_for_{grid} {}
 
+    /// \throw GridError where the grid has changed since the field was made
     NodeMask coarse_values(std::size_t i, std::span<Real> out, Context<Grid>& context) const {
+        made_for_.require_same(*grid_, "the field");
         std::array<NodeKey, max_corners> nodes;
         const auto coarse = detail::call_coarse(*grid_, context, i);
         const auto corners = std::span(nodes).first(topology(coarse.shape).corners);
@@ -111,6 +113,7 @@ public:
 private:
     const Grid* grid_;
     const CompressedValues<Real>* values_;
+    detail::MadeFor made_for_;
 };
 
 }  // namespace nestgrid

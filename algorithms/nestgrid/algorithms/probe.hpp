@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/algorithms/discontinuous_data.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
 
@@ -23,7 +24,14 @@ struct ProbeResult {
     /// P_S U: component c at point i is values[i * components + c]; not a number outside the grid.
     std::vector<double> values;
     std::vector<int> level;  ///< of the element around each point; -1 outside the grid
+    /// The element around each point, an index into elements; no_element outside the grid.
+    std::vector<std::uint32_t> element_of;
+    std::vector<Point> reference;  ///< each point in the reference element (shape.hpp)
+    Elements elements;             ///< around points: as<Grid::Element>() gives the grid's own
+    std::vector<Shape> shape_of;   ///< shape of each of them
     TraversalCounts counts;
+
+    static constexpr std::uint32_t no_element = ~std::uint32_t{0};
 
     bool found(std::size_t i) const { return level[i] >= 0; }
 };
@@ -58,6 +66,12 @@ template <class Grid, class Field, class... S>
                                                        const S&... s) {
         return probe<typename Field::value_type>(erase(grid, field), points, s...);
     }
+
+/// Data that jump between leaves, at points, at full resolution. A point on the border of several
+/// leaves takes the data of one of them.
+/// \return values of data.components()
+/// \throw InvalidInput where a coordinate is not finite
+ProbeResult probe(const DiscontinuousData& data, std::span<const Point> points);
 
 /// The field at one point.
 /// \return its components

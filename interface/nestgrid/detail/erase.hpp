@@ -9,6 +9,7 @@
 #include <memory>
 
 #include <nestgrid/detail/constants.hpp>
+#include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/detail/operations.hpp>
 #include <nestgrid/hierarchy.hpp>
 
@@ -103,13 +104,14 @@ public:
     using Element = ElementOf<Grid>;
 
     ErasedHierarchy(const Grid& grid, const Field& field)
-        : Hierarchy<Real>(facts_of(grid, field)), grid_{&grid}, field_{&field} {}
+        : Hierarchy<Real>(facts_of(grid, field)), grid_{&grid}, field_{&field}, made_for_{grid} {}
 
     std::size_t coarse_count() const override { return grid_->coarse_count(); }
     std::uint64_t epoch() const override { return nestgrid::epoch(*grid_); }
     Elements make_elements() const override { return Elements::of<Element>(); }
 
     std::unique_ptr<Task> open() const override {
+        made_for_.require_same(*grid_, "the hierarchy");
         if constexpr (has_context_) return std::make_unique<OpenTask>(*grid_);
         return nullptr;
     }
@@ -334,6 +336,7 @@ private:
 
     const Grid* grid_;
     const Field* field_;
+    MadeFor made_for_;
 };
 
 }  // namespace detail

@@ -216,7 +216,7 @@ void GridChecker::check_hanging_node(const State& leaf, const Made& made, bool i
                                        " at another place than the middle of an edge or face, and "
                                        "the grid does not offer 'constrained'");
     }
-    if (options_->hanging_values && node.deviates) {
+    if (options_->hanging_values && node.deviates && is_seen(made.place)) {
         fail(Law::hanging_value, who + ", but its value is not its interpolant");
     }
 }

@@ -24,13 +24,23 @@ void GridChecker::walk(const State& s) {
     put_corner_values(s, frame);
     const NodeMask missing = hierarchy_->enter(task_.get(), s.member->element, *rule, rule->all(),
                                                frame.value.data(), ~NodeMask{0}, frame.children);
-    if ((missing & rule->all()) != 0) {
-        fail(Law::value_present, "the field lacks a value at a new node of " + name(s.step));
-    }
     std::vector<Corner> nodes(s.corner.begin(), s.corner.begin() + topology(s.shape).corners);
+    if ((missing & rule->all()) != 0) check_missing(s, *rule, missing, nodes);
     check_new_nodes(s, *rule, std::span(frame.value).subspan(nodes.size() * components_), nodes);
     check_hidden(s);
     walk_children(s, nodes);
+}
+
+/// \param nodes the corners
+void GridChecker::check_missing(const State& s, const Rule& rule, NodeMask missing,
+                                std::vector<Corner> nodes) {
+    const std::size_t corners = nodes.size();
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        make_node(rule, n, nodes);
+        if ((missing >> n & 1U) == 0) continue;
+        fail_unless_hidden(nodes[corners + n].place, Law::value_present,
+                           "the field lacks a value at a new node of " + name(s.step));
+    }
 }
 
 /// Puts the values at the corners into a frame, behind which those at new nodes have room.
@@ -76,7 +86,10 @@ void GridChecker::check_leaf_state(const State& s) {
     }
     if (s.member->hidden == Hidden::wholly) return;
     std::array<NodeKey, max_corners> keys{};
-    for (std::size_t k = 0; k < topology(s.shape).corners; ++k) keys[k] = s.corner[k].key;
+    for (std::size_t k = 0; k < topology(s.shape).corners; ++k) {
+        keys[k] = s.corner[k].key;
+        seen_.insert(s.corner[k].place, true);
+    }
     leaves_.push_back({s.shape, keys});
 }
 
@@ -167,7 +180,7 @@ void GridChecker::check_new_nodes(const State& s, const Rule& rule, std::span<co
         check_stencil(s, rule, n, nodes);
         const auto value = values.subspan(n * components_, components_);
         c.value = value[0];
-        check_values(s.step, "new node", n, value);
+        check_values(s.step, "new node", n, c.place, value);
         const Stencil& stencil = rule.new_nodes[n];
         if (nodes_.find(c.place) == nullptr) add_made(c, stencil, nodes);
         check_node(s, corners + n, c, value, (constrained >> n & 1U) != 0,

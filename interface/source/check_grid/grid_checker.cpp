@@ -35,6 +35,7 @@ std::optional<GridViolation> GridChecker::run() {
         for (std::size_t i = 0; i < count; ++i) check_coarse(i);
         check_ids();
         for (std::size_t i = 0; i < count; ++i) walk_coarse(i);
+        check_seen_values();
         check_hanging();
     } catch (const Found& found) {
         return found.violation;
@@ -155,8 +156,11 @@ void GridChecker::walk_coarse(std::size_t i) {
     coarse_ids_.emplace_back(coarse_.ids.begin(), coarse_.ids.begin() + corners);
     if (is_masked(coarse_family_, 0)) return;
     std::vector<double> values(max_corners * components_);
-    if (hierarchy_->coarse_values(task_.get(), i, corners, values.data()) != 0) {
-        fail(Law::value_present, "the field lacks a value at a corner of " + name(s.step));
+    const NodeMask missing = hierarchy_->coarse_values(task_.get(), i, corners, values.data());
+    for (std::size_t k = 0; k < corners; ++k) {
+        if ((missing >> k & 1U) == 0) continue;
+        fail_unless_hidden(s.corner[k].place, Law::value_present,
+                           "the field lacks a value at a corner of " + name(s.step));
     }
     std::array<NodeKey, max_corners> own{};
     if (own_keys_) {
@@ -170,21 +174,36 @@ void GridChecker::walk_coarse(std::size_t i) {
         c.position = coarse_.corners[k];
         c.value = value[0];
         size_ = std::max(size_, norm(c.position - coarse_.corners[0]));
-        check_values(s.step, "corner", k, value);
+        check_values(s.step, "corner", k, c.place, value);
         check_node(s, k, c, value, false, false);
     }
     walk(s);
 }
 
-void GridChecker::check_values(std::size_t step, const char* which, std::size_t n,
+void GridChecker::check_values(std::size_t step, const char* which, std::size_t n, NodeKey place,
                                std::span<const double> values) {
     for (const double v : values) {
         if (!std::isfinite(v)) {
-            fail(Law::value_finite, "the field's value at " + std::string(which) + " " +
-                                        std::to_string(n) + " of " + name(step) +
-                                        " is not a finite number");
+            fail_unless_hidden(place, Law::value_finite,
+                               "the field's value at " + std::string(which) + " " +
+                                   std::to_string(n) + " of " + name(step) +
+                                   " is not a finite number");
+        } else {
+            largest_value_ = std::max(largest_value_, std::abs(v));
         }
-        largest_value_ = std::max(largest_value_, std::abs(v));
+    }
+}
+
+/// Nobody looks at values of nodes that hidden leaves alone have. Which these are is known at the
+/// end of the walk.
+void GridChecker::fail_unless_hidden(NodeKey place, Law law, const std::string& sentence) {
+    if (!hierarchy_->offers(Feature::hidden)) fail(law, sentence);
+    unless_hidden_.push_back({place, {law, sentence}});
+}
+
+void GridChecker::check_seen_values() const {
+    for (const auto& [place, violation] : unless_hidden_) {
+        if (is_seen(place)) fail(violation.law, violation.sentence);
     }
 }
 
@@ -215,9 +234,10 @@ void GridChecker::check_node(const State& s, std::size_t n, const Corner& c,
     const auto both = [&] { return where() + " and in " + name(node->element); };
     if (node->key != c.key) fail(Law::one_stencil, "one node has two keys: as " + both());
     if (const auto component = find_other_value(*node, values)) {
-        fail(Law::value_unique,
-             "the field gives one node two values, " + all_digits(values[*component]) + " and " +
-                 all_digits(values_[node->first + *component]) + ": as " + both());
+        fail_unless_hidden(c.place, Law::value_unique,
+                           "the field gives one node two values, " +
+                               all_digits(values[*component]) + " and " +
+                               all_digits(values_[node->first + *component]) + ": as " + both());
     }
     if (node->constrained != constrained) {
         fail(Law::hanging_mask, "one node is constrained and not constrained: as " + both());

@@ -131,8 +131,11 @@ private:
                     bool constrained, bool deviates);
     std::optional<std::size_t> find_other_value(const Node& node,
                                                 std::span<const double> values) const;
-    void check_values(std::size_t step, const char* which, std::size_t n,
+    void check_values(std::size_t step, const char* which, std::size_t n, NodeKey place,
                       std::span<const double> values);
+    void fail_unless_hidden(NodeKey place, Law law, const std::string& sentence);
+    void check_seen_values() const;
+    bool is_seen(NodeKey place) const { return seen_.find(place) != nullptr; }
 
     // Splits (check_splits.cpp).
     void walk(const State& s);
@@ -140,6 +143,8 @@ private:
     State child_state(const State& s, std::size_t child, const std::vector<Corner>& nodes);
     void check_leaf_state(const State& s);
     void check_rule(const State& s, const Rule& rule);
+    void check_missing(const State& s, const Rule& rule, NodeMask missing,
+                       std::vector<Corner> nodes);
     void make_node(const Rule& rule, std::size_t n, std::vector<Corner>& nodes) const;
     void check_stencil(const State& s, const Rule& rule, std::size_t n,
                        const std::vector<Corner>& nodes);
@@ -194,6 +199,9 @@ private:
     std::vector<Leaf> leaves_;
     HangingProbe probe_;
     HangingNodes hanging_;
+    // What is wrong with values at places, unless hidden leaves alone have them; in order.
+    std::vector<std::pair<NodeKey, GridViolation>> unless_hidden_;
+    KeyTable<NodeKey, bool> seen_;  // places of the corners of leaves that are not hidden
 };
 
 }  // namespace nestgrid::detail

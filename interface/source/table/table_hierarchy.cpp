@@ -22,7 +22,7 @@ class TableHierarchy final : public Hierarchy<Real>, private BisectionRows<Real>
 
 public:
     TableHierarchy(const nestgrid_grid& grid, const nestgrid_field& field)
-        : Hierarchy<Real>({}), grid_{grid}, field_{field} {
+        : Hierarchy<Real>({}), grid_{grid}, field_{field}, made_for_{grid_} {
         HierarchyFacts& facts = this->facts_;
         facts.dimension = grid_.table().dimension;
         facts.components = field_.table().components;
@@ -39,7 +39,10 @@ public:
     std::size_t coarse_count() const override { return grid_.coarse_count(); }
     std::uint64_t epoch() const override { return grid_.epoch(); }
     Elements make_elements() const override { return Elements::of<nestgrid_element>(); }
-    std::unique_ptr<Task> open() const override { return std::make_unique<OpenTask>(grid_); }
+    std::unique_ptr<Task> open() const override {
+        made_for_.require_same(grid_, "the hierarchy");
+        return std::make_unique<OpenTask>(grid_);
+    }
 
     void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const override {
         const CoarseElement<nestgrid_element> from = grid_.coarse(i, context_of(task));
@@ -144,6 +147,7 @@ private:
 
     TableGrid grid_;
     TableField<Real> field_;
+    MadeFor made_for_;
 };
 
 /// Zero everywhere.

@@ -164,6 +164,11 @@ def test_forest_and_mask():
     drawn = [nestgrid.Octree(leaves, v, masked=masked).isosurface(2.2).vertices for v in cells]
     np.testing.assert_array_equal(*drawn)
     assert len(drawn[0]) > 0
+    for hidden in (math.nan, 1.5, 1000):  # at corners, which other leaves may contradict
+        beside = np.where(masked[:, None], hidden, values)
+        assert nestgrid.Octree(leaves, beside, masked=masked).isosurface(1.5).report() == hole
+    with pytest.raises(nestgrid.InvalidInput, match="leaf 3 is not finite"):
+        nestgrid.Octree(leaves, np.where(np.arange(len(leaves)) == 3, math.nan, cells[0]))
     moved = nestgrid.Octree(leaves, values, coordinates=[(0, 1, 5), (0, 2), (0, 4)])
     assert math.isclose(moved.isosurface(1.5).report()["area"], 8)
 

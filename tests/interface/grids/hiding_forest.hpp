@@ -5,6 +5,7 @@
 #pragma once
 
 #include <nestgrid/algorithms/hanging_nodes.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 
 #include "forest.hpp"
 
@@ -47,6 +48,40 @@ public:
     }
 
     bool draws_all = false;
+
+    /// Whether each node is one of hidden leaves alone.
+    std::vector<bool> unseen() const {
+        std::vector<bool> unseen(this->positions.size(), true);
+        for (std::size_t e = 0; e < this->cells.size(); ++e) {
+            const auto& cell = this->cells[e];
+            if (cell.rule != nullptr || part_[e] == Hidden::wholly) continue;
+            for (const std::uint32_t node : cell.nodes) unseen[node] = false;
+        }
+        return unseen;
+    }
+    /// Puts at the nodes of hidden leaves alone what the library has there: 0 on the coarse grid,
+    /// and interpolants.
+    void fill_unseen(std::vector<double>& values) const {
+        const std::vector<bool> fill = unseen();
+        for (std::size_t i = 0; i < this->coarse_count(); ++i) {
+            const auto& cell = this->cells[this->coarse(i).element];
+            for (std::size_t k = 0; k < topology(cell.shape).corners; ++k) {
+                if (fill[cell.nodes[k]]) values[cell.nodes[k]] = 0;
+            }
+        }
+        for (const auto& cell : this->cells) {
+            if (cell.rule == nullptr) continue;
+            const std::size_t corners = topology(cell.shape).corners;
+            std::vector<double> local;
+            for (const std::uint32_t node : cell.nodes) local.push_back(values[node]);
+            for (std::size_t n = corners; n < cell.nodes.size(); ++n) {
+                if (!fill[cell.nodes[n]]) continue;
+                local[n] = nestgrid::detail::interpolate(cell.rule->new_nodes[n - corners],
+                                                         local.data(), 1);
+                values[cell.nodes[n]] = local[n];
+            }
+        }
+    }
 
 private:
     std::vector<Hidden> part_;

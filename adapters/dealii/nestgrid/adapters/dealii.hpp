@@ -18,6 +18,7 @@
 #include <deal.II/fe/mapping.h>
 #include <deal.II/grid/tria.h>
 
+#include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/error.hpp>
 #include <nestgrid/optional.hpp>
 #include <nestgrid/rule_table.hpp>

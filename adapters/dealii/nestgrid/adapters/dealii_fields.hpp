@@ -21,7 +21,15 @@ public:
     DealiiField(const Grid& grid, const dealii::DoFHandler<dim, spacedim>& dofs,
                 const Vector& values, const std::array<unsigned, component_count>& which = {});
 
+    /// \throw GridError where the triangulation has changed since the field was made, or the vector
+    ///        or the degrees of freedom have
     NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
+        made_for_.require_same(*grid_, "the field");
+        if (values_->size() != dofs_->n_dofs() || dofs_->n_dofs() != count_) {
+            throw GridError(
+                "the vector or the degrees of freedom have changed since the field "
+                "was made for them: make another one");
+        }
         const DofCell c(&grid_->triangulation(), 0, int(i), dofs_);
         for (unsigned k = 0; k < c->n_vertices(); ++k) put(c, k, out, k);
         return 0;
@@ -59,6 +67,8 @@ private:
     const Grid* grid_;
     const dealii::DoFHandler<dim, spacedim>* dofs_;
     const Vector* values_;
+    dealii::types::global_dof_index count_;  // of degrees of freedom
+    detail::MadeFor made_for_;
     std::array<unsigned, component_count> offset_{};  // among the degrees of freedom of a vertex
 };
 
@@ -66,7 +76,7 @@ template <int dim, class Vector, int component_count, int spacedim>
 DealiiField<dim, Vector, component_count, spacedim>::DealiiField(
     const Grid& grid, const dealii::DoFHandler<dim, spacedim>& dofs, const Vector& values,
     const std::array<unsigned, component_count>& which)
-    : grid_{&grid}, dofs_{&dofs}, values_{&values} {
+    : grid_{&grid}, dofs_{&dofs}, values_{&values}, count_{dofs.n_dofs()}, made_for_{grid} {
     if (&dofs.get_triangulation() != &grid.triangulation()) {
         throw InvalidInput("the degrees of freedom are those of another triangulation");
     }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <nestgrid/adapters/dune.hpp>
+#include <nestgrid/detail/made_for.hpp>
 
 namespace nestgrid {
 
@@ -108,9 +109,11 @@ public:
     using Context = typename Grid::Context;
 
     DuneFunctionField(const Grid& grid, Function function)
-        : grid_{&grid}, function_{std::move(function)} {}
+        : grid_{&grid}, function_{std::move(function)}, made_for_{grid} {}
 
+    /// \throw GridError where the grid has changed since the field was made
     NodeMask coarse_values(std::size_t i, std::span<double> out, Context& context) const {
+        made_for_.require_same(*grid_, "the field");
         const Element e = grid_->coarse_entity(i);
         for (std::size_t k = 0; k < out.size(); ++k)
             out[k] = value(e, static_cast<int>(k), context);
@@ -144,6 +147,7 @@ private:
 
     const Grid* grid_;
     Function function_;
+    detail::MadeFor made_for_;
 };
 
 }  // namespace nestgrid

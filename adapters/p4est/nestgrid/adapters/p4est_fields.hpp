@@ -7,6 +7,7 @@
 #include <bit>
 
 #include <nestgrid/adapters/p4est_face_codes.hpp>
+#include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/detail/mean.hpp>
 
 namespace nestgrid {
@@ -97,20 +98,23 @@ public:
     /// \param values of each leaf; both must outlive this and stay as they are
     /// \throw InvalidInput where there is not one value for each leaf
     P4estCellValues(const Grid& grid, std::span<const Real> values)
-        : grid_{&grid}, values_{values} {
+        : grid_{&grid}, values_{values}, made_for_{grid} {
         if (values.size() != grid.leaf_count()) {
             throw InvalidInput("there are " + std::to_string(values.size()) +
                                " values of cells, but " + std::to_string(grid.leaf_count()) +
                                " leaves");
         }
     }
+    /// \throw GridError where the forest has changed since
     Real operator()(const typename Grid::Element& leaf) const {
+        made_for_.require_same(*grid_, "the object with its values of cells");
         return values_[grid_->leaf_index(leaf)];
     }
 
 private:
     const Grid* grid_;
     std::span<const Real> values_;
+    detail::MadeFor made_for_;
 };
 
 template <int dim, class Map, class Values>

@@ -22,6 +22,7 @@
 #include <nestgrid/adapters/family.hpp>
 #include <nestgrid/adapters/work_tree.hpp>
 #include <nestgrid/detail/constants.hpp>
+#include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/optional.hpp>
 
 namespace nestgrid {
@@ -253,7 +254,8 @@ public:
     using Element = typename Grid::Element;
 
     /// \throw InvalidInput where there is not one value per node number
-    NodeField(const Grid& grid, std::span<const Real> values) : grid_{&grid}, values_{values} {
+    NodeField(const Grid& grid, std::span<const Real> values)
+        : grid_{&grid}, values_{values}, made_for_{grid} {
         if (values.size() != grid.node_count()) {
             throw InvalidInput("the field has " + std::to_string(values.size()) +
                                " values, but the grid " + std::to_string(grid.node_count()) +
@@ -263,7 +265,9 @@ public:
     NodeField(const Grid& grid, const std::vector<Real>& values)
         : NodeField(grid, std::span<const Real>(values)) {}
 
+    /// \throw GridError where the grid has changed since the field was made
     NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
+        made_for_.require_same(*grid_, "the field");
         const auto nodes = grid_->coarse_grid().element(i);
         for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = values_[nodes[k]];
         return 0;
@@ -278,6 +282,7 @@ public:
 private:
     const Grid* grid_;
     std::span<const Real> values_;
+    detail::MadeFor made_for_;
 };
 
 }  // namespace nestgrid

@@ -29,6 +29,7 @@
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/detail/constants.hpp>
 #include <nestgrid/detail/interpolate.hpp>
+#include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/detail/operations.hpp>
 #include <nestgrid/error.hpp>
 
@@ -102,6 +103,7 @@ public:
         const std::size_t s = split(e, 0, context) == nullptr ? 1 : 0;
         detail::call_new_positions(*grid_[s], context.side[s], e.side[s].element, which, out);
     }
+    /// \throw GridError by coarse() where one of the grids has changed since
     std::uint64_t epoch() const {
         return nestgrid::epoch(*grid_[0]) * 0x9E3779B97F4A7C15U + nestgrid::epoch(*grid_[1]);
     }
@@ -129,6 +131,7 @@ private:
     std::array<const Grid*, 2> grid_;
     std::array<const Field*, 2> field_;
     std::array<HangingNodes, 2> hanging_;  // where a grid does not say so itself
+    std::array<detail::MadeFor, 2> made_for_;
 };
 
 /// One of the two frames as a field on the union, which must outlive it.

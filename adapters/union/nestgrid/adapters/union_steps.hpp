@@ -24,7 +24,9 @@ inline bool are_same(const Rule& a, const Rule& b) {
 template <class Grid, class Field>
 Union<Grid, Field>::Union(const Grid& first, const Field& first_field, const Grid& second,
                           const Field& second_field)
-    : grid_{&first, &second}, field_{&first_field, &second_field} {
+    : grid_{&first, &second},
+      field_{&first_field, &second_field},
+      made_for_{detail::MadeFor(first), detail::MadeFor(second)} {
     require_same_coarse();
     require_same_rules();
     for (const std::size_t s : {0U, 1U}) find_hanging(s);
@@ -147,6 +149,7 @@ template <class Grid, class Field>
 auto Union<Grid, Field>::coarse(std::size_t i, Context& context) const -> CoarseElement<Element> {
     CoarseElement<Element> result;
     for (const std::size_t s : {0U, 1U}) {
+        made_for_[s].require_same(*grid_[s], "the union");
         const auto from = detail::call_coarse(*grid_[s], context.side[s], i);
         Side& side = result.element.side[s];
         side.element = from.element;

@@ -5,7 +5,8 @@
 // rectilinear coarse grid, with data of cells.
 //
 // A node is named by its place on the lattice of the deepest level, so that trees agree about
-// it. Masked cells are hidden. Data of cells get to the nodes by CellAverages (cell_data.hpp).
+// it. Masked cells and ghost cells are hidden. Data of cells get to the nodes by CellAverages
+// (cell_data.hpp).
 #pragma once
 
 #include <string>
@@ -15,6 +16,7 @@
 #include <vtkDataArray.h>
 #include <vtkHyperTree.h>
 #include <vtkHyperTreeGrid.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <nestgrid/error.hpp>
 #include <nestgrid/optional.hpp>
@@ -117,7 +119,9 @@ private:
     std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
     std::array<std::vector<double>, 3> coordinates_;
     std::vector<vtkHyperTree*> trees_;
-    std::vector<Hidden> hidden_;  // by index; empty without a mask
+    vtkBitArray* mask_ = nullptr;             // where there is one
+    vtkUnsignedCharArray* ghosts_ = nullptr;  // likewise
+    std::vector<Hidden> hidden_;              // by index; empty without a mask and ghosts
 };
 
 }  // namespace nestgrid

@@ -36,13 +36,22 @@ HyperTreeGrid<dim>::HyperTreeGrid(vtkHyperTreeGrid& grid)
     for (vtkIdType i = 0; i < grid.GetMaxNumberOfTrees(); ++i) {
         if (vtkHyperTree* tree = grid.GetTree(i)) trees_.push_back(tree);
     }
+    const vtkIdType cells = grid.GetGlobalNodeIndexMax() + 1;
+    const auto require_entry_for_each = [&](const char* name, vtkIdType entries) {
+        if (entries >= cells) return;
+        throw InvalidInput(std::string(name) + " of the hyper tree grid has " +
+                           std::to_string(entries) + " entries for " + std::to_string(cells) +
+                           " cells");
+    };
     if (grid.HasMask() && grid.GetMask()->GetNumberOfValues() > 0) {
-        const vtkIdType cells = grid.GetGlobalNodeIndexMax() + 1;
-        if (grid.GetMask()->GetNumberOfValues() < cells) {
-            throw InvalidInput("the mask of the hyper tree grid has " +
-                               std::to_string(grid.GetMask()->GetNumberOfValues()) +
-                               " entries for " + std::to_string(cells) + " cells");
-        }
+        mask_ = grid.GetMask();
+        require_entry_for_each("the mask", mask_->GetNumberOfValues());
+    }
+    ghosts_ = grid.GetGhostCells();
+    if (ghosts_ != nullptr) {
+        require_entry_for_each("the ghost array", ghosts_->GetNumberOfValues());
+    }
+    if (mask_ != nullptr || ghosts_ != nullptr) {
         hidden_.resize(static_cast<std::size_t>(cells));
         for (vtkHyperTree* tree : trees_) read_mask({tree, 0, 0, {}}, false);
     }
@@ -50,7 +59,10 @@ HyperTreeGrid<dim>::HyperTreeGrid(vtkHyperTreeGrid& grid)
 
 template <int dim>
 Hidden HyperTreeGrid<dim>::read_mask(const Element& e, bool masked) {
-    masked = masked || grid_->GetMask()->GetValue(index(e)) != 0;
+    masked = masked || (mask_ != nullptr && mask_->GetValue(index(e)) != 0);
+    if (split(e) == nullptr && ghosts_ != nullptr && ghosts_->GetValue(index(e)) != 0) {
+        masked = true;  // another process has the cell
+    }
     Hidden result = masked ? Hidden::wholly : Hidden::not_at_all;
     if (split(e) != nullptr) {
         std::array<Element, max_children> child;

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is found at points: each gets the value of the element that it is deepest in.
+#pragma once
+
+#include <vector>
+
+#include <nestgrid/algorithms/probe.hpp>
+#include <walk/element_view.hpp>
+
+namespace nestgrid::engine {
+
+template <class Real>
+class FoundPoints {
+public:
+    /// Makes a result in which no point is found.
+    FoundPoints(const Hierarchy<Real>& hierarchy, std::size_t points);
+
+    /// Begins with the points of another element.
+    void begin_element() { element_ = none; }
+    /// Takes the value of the element at hand at a point.
+    /// \param s the point in its reference element
+    /// \param weight of the corners, in the value
+    /// \param depth how deep the point lies in the element
+    void offer(const ElementView<Real>& view, std::uint32_t point, const Point& s,
+               std::span<const double> weight, double depth);
+
+    bool found(std::uint32_t point) const { return result_.found(point); }
+    TraversalCounts& counts() { return result_.counts; }
+    ProbeResult take() { return std::move(result_); }
+
+private:
+    static constexpr std::uint32_t none = ProbeResult::no_element;
+
+    ProbeResult result_;
+    std::vector<double> depth_;  // of each point in its element
+    std::uint32_t element_ = none;
+};
+
+}  // namespace nestgrid::engine
