@@ -26,7 +26,8 @@ public:
     DrawnElement(const Walk<Real>& walk, const ElementView<Real>& view)
         : drawn_{map_of(walk, view, false)},
           placed_{map_of(walk, view, walk.places_corners())},
-          differ_{!std::ranges::equal(drawn_.corners(), placed_.corners())},
+          differ_{!std::equal(drawn_.corners().begin(), drawn_.corners().end(),
+                              placed_.corners().begin())},
           tolerance_{face_tolerance(drawn_.corners())},
           most_off_{off_surface * extent(drawn_.corners())} {}
 
@@ -124,18 +125,17 @@ void BoxDescent<Real>::arrive(const View& view) {
     group.clear();
     if (view.father == nullptr) {
         const auto coarse = static_cast<std::uint32_t>(view.coarse);
-        for (const Candidate& in :
-             std::ranges::equal_range(coarse_, coarse, {}, &Candidate::element)) {
-            group.push_back(in.point);
-        }
+        auto in = std::ranges::lower_bound(coarse_, coarse, {}, &Candidate::element);
+        for (; in != coarse_.end() && in->element == coarse; ++in) group.push_back(in->point);
         return;
     }
     std::array<Point, max_corners> x;
     walk_->corners(view, nullptr, x.data());
     const PointBox box = box_around(std::span(x).first(view.corner_count()),
                                     reach_->beyond(view.coarse, view.level));
-    std::ranges::copy_if(group_on(view.level - 1), std::back_inserter(group),
-                         [&](std::uint32_t p) { return box.contains(points_[p]); });
+    for (const std::uint32_t p : group_on(view.level - 1)) {
+        if (box.contains(points_[p])) group.push_back(p);
+    }
 }
 
 template class BoxDescent<float>;

@@ -110,7 +110,7 @@ void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes) {
             if (split.rule != nullptr || is_hidden != hidden) return;
             std::array<NodeKey, max_corners> keys;
             walk.corners(view, keys.data(), nullptr);
-            std::ranges::for_each(std::span(keys).first(view.corner_count()), function);
+            for (const NodeKey key : std::span(keys).first(view.corner_count())) function(key);
         });
     };
     for_each_corner(false, [&](NodeKey key) { seen.insert(key, {}); });

@@ -17,12 +17,13 @@ import sys
 import tempfile
 
 try:
+    import meshio
     import nibabel
     import pydicom
     from pydicom.dataset import FileDataset, FileMetaDataset
     from pydicom.uid import ExplicitVRLittleEndian, generate_uid
 except ImportError:
-    print("skipped: nibabel or pydicom is missing")
+    print("skipped: meshio, nibabel or pydicom is missing")
     sys.exit(77)
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -438,9 +439,66 @@ def test_analyze():
     refused("start.nii", "inside its header")
 
 
+def volume_of(points, triangles):
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return abs(np.einsum("ij,ij->i", a - points.mean(axis=0), np.cross(b - a, c - a)).sum()) / 6
+
+
+def test_written():
+    """Far from the origin, files keep the surface that is told, or say what they do to it."""
+    global cases
+    steps, origin = np.eye(3) * 0.01, np.array([500000.0, -300000.0, 12.0])
+    centre = origin + steps @ [11.3, 10.2, 9.6]
+    samples = 100 - 100 * (100 - ball(steps, origin, centre))
+    header = "NRRD0004\ntype: double\ndimension: 3\nsizes: %d %d %d\nspace dimension: 3\n" % SHAPE
+    header += "space directions: (0.01,0,0) (0,0.01,0) (0,0,0.01)\nspace origin: (500000,-300000,12)\n"
+    with open("far.nrrd", "wb") as file:
+        file.write((header + "endian: little\nencoding: raw\n\n").encode() + samples.astype("<f8").tobytes("F"))
+    for ending in ".ply", ".vtp", ".obj", ".stl", ".gltf":
+        cases += 1
+        done = program("isosurface", "far.nrrd", "--value", "93", "-o", "far" + ending, "--json")
+        if done.returncode != 0:
+            fail(f"far{ending}: {done.stderr}")
+            continue
+        told = json.loads(done.stdout)
+        moved = "they move by up to" in " ".join(told["notes"])
+        if moved != (ending in (".stl", ".gltf")):
+            fail(f"far{ending}: {told['notes']}")
+        if ending in (".ply", ".obj", ".vtp"):
+            if ending == ".vtp":
+                reader = vtkXMLPolyDataReader()
+                reader.SetFileName("far.vtp")
+                reader.Update()
+                surface = reader.GetOutput()
+                points = vtk_to_numpy(surface.GetPoints().GetData())
+                triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+            else:
+                mesh = meshio.read("far" + ending)
+                points, triangles = mesh.points, mesh.cells_dict["triangle"]
+                if ending == ".ply" and not {"nx", "ny", "nz"} <= set(mesh.point_data):
+                    fail(f"far.ply: has {list(mesh.point_data)}, no normals")
+            volume = told["surfaces"][0]["volume"]
+            if abs(volume_of(points, triangles) - volume) > 1e-6 * volume:
+                fail(f"far{ending}: volume {volume_of(points, triangles)}, told {volume}")
+    cases += 1
+    done = program("slice", "far.nrrd", "--axis", "z", "--at", "12.09", "-o", "slice.ply")
+    mesh = meshio.read("slice.ply") if done.returncode == 0 else None
+    if mesh is None or "value" not in mesh.point_data:
+        fail(f"slice.ply: {done.stderr} {mesh and list(mesh.point_data)}")
+    elif abs(mesh.point_data["value"] - (100 - 100 * np.linalg.norm(mesh.points - centre, axis=1))).max() > 0.6:
+        fail("slice.ply: values are not those of the field")
+    # Close to the origin, single precision is enough.
+    near = header.replace("500000,-300000,12", "0,0,0")
+    with open("near.nrrd", "wb") as file:
+        file.write((near + "endian: little\nencoding: raw\n\n").encode() + samples.astype("<f8").tobytes("F"))
+    done = program("isosurface", "near.nrrd", "--value", "93", "-o", "near.ply")
+    if b"property float x" not in open("near.ply", "rb").read(400):
+        fail(f"near.ply: {done.stderr}")
+
+
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    for test in (test_dicom, test_spaces, test_planes, test_pictures, test_frames, test_labels, test_analyze):
+    for test in (test_dicom, test_spaces, test_planes, test_pictures, test_frames, test_labels, test_analyze, test_written):
         test()
     os.chdir("/")
 print(f"{cases} files and choices, {failures} failures")

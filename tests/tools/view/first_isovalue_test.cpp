@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-#include <first_isovalue.hpp>
+#include "drawing/first_isovalue.hpp"
 
 namespace {
 
