@@ -94,16 +94,18 @@ for command in isosurface slice isolines boundary probe info; do
     void $command 'is for .raw files' "v.vti $options" --type uint8
     void $command 'is for .raw files' "v.nii.gz $options" --endian big
     void $command 'is for .raw files' "v.nrrd $options" --spacing 1,1,1
-    void $command 'is for .vti and .nestgrid' "v.mha $options" --array value
+    void $command 'is for .dcm, .vti and .nestgrid' "v.mha $options" --array value
     void $command 'one frame only' "v.mha $options" --frame 0
     void $command 'one number per sample' "v.nrrd $options" --component 0
     void $command 'one number per sample' "v.vti $options" --magnitude
-    void $command 'is for .mha' "two.nestgrid $([ $command = info ] || sed 's/^/--array x /; s/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/' <<<"$options")" --magnitude
+    void $command 'is for .dcm, .mha' "two.nestgrid $([ $command = info ] || sed 's/^/--array x /; s/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/' <<<"$options")" --magnitude
     effect $command "series.mha $options" --frame 1
     differ $command --component "vectors.mha $options --component 0" "vectors.mha $options --component 1"
     differ $command --magnitude "vectors.mha $options --component 0" "vectors.mha $options --magnitude"
     void $command 'does not say where its axes point' "v.mha $options" --space ras
-    differ $command --space "patient.mha $options --space ras" "patient.mha $options --space lps"
+    differ $command --space "patient.mha $options $keep --space ras" "patient.mha $options $keep --space lps"
+    half=$(sed 's/130/0.5/' <<<"$options")
+    differ $command --label "v.mha $half $keep --label 130" "v.mha $half $keep"
     refused 1 'exclude each other' $command vectors.mha $options --component 0 --magnitude
     void $command "not for 'two.nestgrid'" "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
     refused 1 'give --dims' $command v.raw $options && echo "$command --dims" >>covered
@@ -243,10 +245,11 @@ for command in height surface; do
     options=$([ $command = height ] && echo --scale 2)
     keep='-o kept/x.vtp'
     differ $command --array "plane.nestgrid $options --array x" "plane.nestgrid $options --array x*y"
-    void $command 'is for .vti and .nestgrid' "hills.pgm $options" --array value
+    void $command 'is for .dcm, .vti and .nestgrid' "hills.pgm $options" --array value
     refused 1 'within 1e-06 seconds' $command hills.pgm $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
     void $command 'does not say where its axes point' "hills.pgm $options" --space ras
     # Bare samples in a plane, with several frames and components.
+    differ $command --label "hills.pgm $options $keep --label 64" "hills.pgm $options $keep"
     effect $command "plane.mha $options" --frame 1
     differ $command --component "pairs.mha $options --component 0" "pairs.mha $options --component 1"
     differ $command --magnitude "pairs.mha $options --component 0" "pairs.mha $options --magnitude"

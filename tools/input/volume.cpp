@@ -118,7 +118,8 @@ std::size_t Volume::sample_count() const {
 std::vector<Volume> read_volumes(const fs::path& path, const VolumeChoice& choice,
                                  const RawFormat& raw, double seconds) {
     const Format* const format = format_of(path);
-    if (!fs::is_directory(path) || format == nullptr) require_file(path);
+    const bool may_be_folder = format != nullptr && format->recognises != nullptr;
+    if (!may_be_folder || !fs::is_directory(path)) require_file(path);
     if (format == nullptr || format->read_samples == nullptr) {
         throw IoError(path.string() + unknown_format(path));
     }

@@ -50,7 +50,8 @@ bool has_mark(const fs::path& path) {
 
 bool is_dicom(const fs::path& path) {
     std::error_code none;
-    if (!fs::is_directory(path, none)) return has_mark(path);
+    if (fs::is_regular_file(path, none)) return has_mark(path);
+    if (!fs::is_directory(path, none)) return false;
     std::size_t looked_at = 0;
     constexpr std::size_t most = 1000;
     for (fs::recursive_directory_iterator at(path, none), end; !none && at != end;
