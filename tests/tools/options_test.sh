@@ -201,7 +201,7 @@ refused 2 box isosurface $raw --value 130 --box-threshold 1
 effect isosurface "$raw --value 30" --cap
 effect isosurface "$raw --value 130 -o kept/x.vtp" --no-normals
 void isosurface 'changes no .stl file' "$raw --value 130 -o kept/x.stl" --no-normals
-void isosurface 'changes no .ply file' "$raw --value 130 -o kept/x.ply" --no-normals
+effect isosurface "$raw --value 130 -o kept/x.ply" --no-normals
 void isosurface 'is for surfaces, not for isolines' "hills.pgm --value 60" --cap
 void isosurface 'is for surfaces, not for isolines' "hills.pgm --value 60 -o kept/x.vtp" --no-normals
 effect isosurface "$raw --value 130" --at-nodes

@@ -91,7 +91,7 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
                        "is for surfaces, not for isolines");
     }
     const std::string format = ending_of(o.surface.output);
-    if (o.surface.picture.image.empty() && (format == ".stl" || format == ".ply")) {
+    if (o.surface.picture.image.empty() && format == ".stl") {
         refuse_options(command, {"--no-normals"}, "changes no " + format + " file");
     }
 }

@@ -21,14 +21,21 @@ nestgrid::Point point_of(vtkPolyData* surface, vtkIdType number) {
     return x;
 }
 
-/// The least square of the length of an edge, but for those of no length.
-double least_square(vtkPolyData* surface, vtkCellArray* cells, bool rings) {
-    using nestgrid::operator-;
+/// The lengths of edges, but for those of no length.
+struct Lengths {
     double least = std::numeric_limits<double>::infinity();
+    double sum = 0;
+    std::size_t count = 0;
+};
+
+void add_lengths(vtkPolyData* surface, vtkCellArray* cells, bool rings, Lengths& lengths) {
+    using nestgrid::operator-;
     const auto look = [&](vtkIdType a, vtkIdType b) {
-        const nestgrid::Point edge = point_of(surface, a) - point_of(surface, b);
-        const double square = nestgrid::dot(edge, edge);
-        if (square > 0) least = std::min(least, square);
+        const double length = nestgrid::norm(point_of(surface, a) - point_of(surface, b));
+        if (!(length > 0)) return;
+        lengths.least = std::min(lengths.least, length);
+        lengths.sum += length;
+        ++lengths.count;
     };
     vtkIdType count = 0;
     const vtkIdType* corners = nullptr;
@@ -38,7 +45,6 @@ double least_square(vtkPolyData* surface, vtkCellArray* cells, bool rings) {
         for (vtkIdType i = 1; i < count; ++i) look(corners[i - 1], corners[i]);
         if (rings && count > 2) look(corners[count - 1], corners[0]);
     }
-    return least;
 }
 
 }  // namespace
@@ -55,7 +61,11 @@ SinglePrecision single_precision(vtkPolyData* surface) {
         square = std::max(square, moved);
     }
     result.moved = std::sqrt(square);
-    result.shortest_edge = std::sqrt(std::min(least_square(surface, surface->GetPolys(), true),
-                                              least_square(surface, surface->GetLines(), false)));
+    Lengths lengths;
+    add_lengths(surface, surface->GetPolys(), true, lengths);
+    add_lengths(surface, surface->GetLines(), false, lengths);
+    result.shortest_edge = lengths.least;
+    result.mean_edge =
+        lengths.count == 0 ? lengths.least : lengths.sum / static_cast<double>(lengths.count);
     return result;
 }

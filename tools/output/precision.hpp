@@ -8,9 +8,12 @@
 struct SinglePrecision {
     double moved = 0;          ///< the greatest distance that a point moves
     double shortest_edge = 0;  ///< of its cells, as long as they are; infinite without cells
+    double mean_edge = 0;      ///< likewise
 
     /// Whether no point moves by more than a thousandth of the shortest edge.
-    bool suffices() const { return 1000 * moved <= shortest_edge; }
+    bool keeps_edges() const { return 1000 * moved <= shortest_edge; }
+    /// Whether none moves by more than a thousandth of the mean edge: slivers may lose their area.
+    bool keeps_shape() const { return 1000 * moved <= mean_edge; }
 };
 
 SinglePrecision single_precision(vtkPolyData* surface);

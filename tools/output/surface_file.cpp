@@ -57,12 +57,12 @@ std::string what_single_precision_moves(vtkPolyData* surface, const fs::path& pa
     const Format* const format = format_of(path);
     if (format == nullptr || !format->single_precision) return "";
     const SinglePrecision single = single_precision(surface);
-    if (single.suffices()) return "";
+    if (single.keeps_shape()) return "";
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
-                  "%s has points of seven digits: they move by up to %.3g, where the shortest edge "
+                  "%s has points of seven digits: they move by up to %.3g, where the mean edge "
                   "is %.3g long; .vtp, .ply and .obj keep them",
-                  format->endings.front().c_str(), single.moved, single.shortest_edge);
+                  format->endings.front().c_str(), single.moved, single.mean_edge);
     return text.data();
 }
 

@@ -32,7 +32,7 @@ void describe(vtkPolyData* surface, const std::string& unit, const std::string& 
               const std::map<std::string, double>& values = {});
 
 /// A sentence on how far points are moved by a format of single precision; nothing where that is
-/// less than a thousandth of the shortest edge.
+/// less than a thousandth of the mean edge.
 std::string what_single_precision_moves(vtkPolyData* surface, const std::filesystem::path& path);
 
 /// What a surface has: "triangles", "lines", and how many.

@@ -137,7 +137,7 @@ void for_each_cell(vtkCellArray* cells, const Function& function) {
 
 std::string write_ply(vtkPolyData* surface, const std::filesystem::path& path) {
     std::ofstream file(path, std::ios::binary);
-    const bool single = single_precision(surface).suffices();
+    const bool single = single_precision(surface).keeps_edges();
     const PointColumns columns = columns_of(surface);
     file << header_of(surface, columns, single);
     RowBuffer row(file);

@@ -17,7 +17,7 @@ namespace {
 vtkSmartPointer<vtkPolyData> in_short(vtkPolyData* surface) {
     auto result = vtkSmartPointer<vtkPolyData>::New();
     result->ShallowCopy(surface);
-    if (single_precision(surface).suffices()) {
+    if (single_precision(surface).keeps_shape()) {
         const vtkNew<vtkPoints> points;
         points->SetDataTypeToFloat();
         points->DeepCopy(surface->GetPoints());
