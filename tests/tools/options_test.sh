@@ -80,6 +80,8 @@ local_samples() { printf '%s\n' 'DimSize = 20 24 9' 'ElementSpacing = 1 1 2' 'El
 { printf '%s\n' 'NDims = 2' 'DimSize = 20 216' 'ElementSpacing = 1 1' 'ElementNumberOfChannels = 2' \
     'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' && cat v.raw; } >pairs.mha
 { echo 'AnatomicalOrientation = RAI' && echo 'NDims = 3' && local_samples; } >patient.mha
+{ printf '%s\n' 'AnatomicalOrientation = RAI' 'NDims = 3' 'DimSize = 20 432 1' 'ElementSpacing = 1 1 1' \
+    'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' && cat v.raw; } >body.mha
 frames='a.raw b.raw --dims 20,24,16 --type uint8'
 
 declare -A base=([isosurface]='--value 130' [slice]='--axis z --at 9' [isolines]='--axis z --at 9 --count 3'
@@ -248,6 +250,7 @@ for command in height surface; do
     void $command 'is for .dcm, .vti and .nestgrid' "hills.pgm $options" --array value
     refused 1 'within 1e-06 seconds' $command hills.pgm $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
     void $command 'does not say where its axes point' "hills.pgm $options" --space ras
+    differ $command --space "body.mha $options $keep --space ras" "body.mha $options $keep --space lps"
     # Bare samples in a plane, with several frames and components.
     differ $command --label "hills.pgm $options $keep --label 64" "hills.pgm $options $keep"
     effect $command "plane.mha $options" --frame 1
