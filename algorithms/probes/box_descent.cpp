@@ -75,14 +75,8 @@ void BoxDescent<Real>::run(std::span<const std::uint32_t> which) {
                                   [&](std::size_t i, std::span<const Point> corners) {
                                       return box_around(corners, reach_->beyond(i, 0));
                                   });
-    for (std::size_t i = 0; i < coarse_.size();) {
-        const std::size_t first = coarse_[i].element;
-        std::size_t last = first;
-        while (i < coarse_.size() && coarse_[i].element <= last) {
-            last = std::size_t{coarse_[i++].element} + 1;
-        }
-        walk_->run(*this, first, last);
-    }
+    for_each_run(coarse_,
+                 [&](std::size_t first, std::size_t last) { walk_->run(*this, first, last); });
 }
 
 template <class Real>

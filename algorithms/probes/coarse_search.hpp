@@ -86,4 +86,18 @@ std::vector<Candidate> search_coarse_boxes(const Hierarchy<Real>& hierarchy,
                                            std::span<const std::uint32_t> which,
                                            const CoarseBox& box_of);
 
+/// Calls function(first, last) for each run of coarse elements, without gaps, in which points lie.
+/// \param found in ascending order of their elements
+template <class Found, class Function>
+void for_each_run(const Found& found, const Function& function) {
+    for (std::size_t i = 0; i < found.size();) {
+        const std::size_t first = found[i].element;
+        std::size_t last = first;
+        while (i < found.size() && found[i].element <= last) {
+            last = std::size_t{found[i++].element} + 1;
+        }
+        function(first, last);
+    }
+}
+
 }  // namespace nestgrid::engine

@@ -24,14 +24,8 @@ std::span<const Point> corners_of(const Walk<Real>& walk, const ElementView<Real
 template <class Real>
 void Descent<Real>::run(Group found) {
     coarse_ = found;
-    for (std::size_t i = 0; i < found.size();) {
-        const std::size_t first = found[i].element;
-        std::size_t last = first;
-        while (i < found.size() && found[i].element <= last) {
-            last = std::size_t{found[i++].element} + 1;
-        }
-        walk_->run(*this, first, last);
-    }
+    for_each_run(found,
+                 [&](std::size_t first, std::size_t last) { walk_->run(*this, first, last); });
 }
 
 template <class Real>

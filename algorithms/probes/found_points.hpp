@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is found at points: each gets the value of the element that it is deepest in.
+// The results of a probe: a point in several elements gets the value of the one it is deepest in.
 #pragma once
 
 #include <vector>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What CGAL's readers of surfaces take for something else, or do not check, put right in the text
-// before they read it; included by cgal_files.hpp.
+// Corrections of surface files before CGAL parses them: variants that its readers misread, and
+// headers that they do not check. Included by cgal_files.hpp.
 #pragma once
 
 #include <algorithm>
@@ -116,7 +116,7 @@ inline SurfaceText obj_text(std::string content, const std::string& name) {
         if (words.empty() || (words[0] != "v" && words[0] != "f")) continue;
         std::string clean = words[0];
         for (std::size_t i = 1; i < words.size() && !words[i].starts_with('#'); ++i) {
-            // Of a corner, its point alone matters.
+            // A corner is point/texture/normal, of which the point is kept.
             clean +=
                 " " + words[i].substr(0, words[0] == "f" ? words[i].find('/') : words[i].size());
             if (clean.back() == ' ') {
