@@ -31,36 +31,17 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter, vtkTIFFWriter
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLPolyDataReader
 
+from ball import AXES, CENTRE, FLIP, ORIGIN, SHAPE, SPACING, STEPS, affine, ball, nearest_sphere
+
 PROGRAM = os.path.abspath(sys.argv[1])
-SHAPE = (24, 22, 20)
-SPACING = np.array([1.5, 2.0, 2.5])
-ORIGIN = np.array([-7.0, 31.0, 12.5])
-FLIP = np.array([-1, -1, 1])  # between LPS and RAS
 failures = 0
 cases = 0
-
-
-def rotation():
-    a, b = 0.4, -0.7
-    x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
-    z = np.array([[np.cos(b), -np.sin(b), 0], [np.sin(b), np.cos(b), 0], [0, 0, 1]])
-    return z @ x
-
-
-STEPS = rotation() * SPACING
-CENTRE = ORIGIN + STEPS @ [11.3, 10.2, 9.6]
 
 
 def fail(text):
     global failures
     failures += 1
     print("FAILED:", text)
-
-
-def ball(steps=STEPS, origin=ORIGIN, centre=CENTRE, shape=SHAPE):
-    places = np.indices(shape).reshape(3, -1)
-    distance = np.linalg.norm(steps @ places + (origin - centre)[:, None], axis=0)
-    return (100 - distance).reshape(shape)
 
 
 def program(*arguments):
@@ -88,12 +69,6 @@ def points_of(*arguments):
     return vtk_to_numpy(reader.GetOutput().GetPoints().GetData()).astype(float)
 
 
-def sphere_of(points):
-    matrix = np.column_stack([2 * points, np.ones(len(points))])
-    solution = np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0]
-    return solution[:3], np.sqrt(solution[3] + solution[:3] @ solution[:3])
-
-
 def good(name, *options, centre=CENTRE, value=88.0, words=""):
     """The isosurface of 88 is a sphere of radius 12 around the centre."""
     global cases
@@ -106,7 +81,7 @@ def good(name, *options, centre=CENTRE, value=88.0, words=""):
     points = points_of("isosurface", name, *options, "--value", value)
     if points is None:
         return
-    middle, radius = sphere_of(points)
+    middle, radius = nearest_sphere(points)
     if np.abs(middle - centre).max() > 0.05 or abs(radius - 12) > 0.12:
         fail(f"{name} {options}: a sphere of radius {radius:.4g} around {middle}, not {centre}")
     return json.loads(done.stdout)
@@ -199,10 +174,9 @@ def test_dicom():
     # Two moments in one place.
     write_series("moments", samples=100 * ball())
     series = pydicom.dcmread("moments/" + os.listdir("moments")[0]).SeriesInstanceUID
-    axes = STEPS / SPACING
     for k in range(SHAPE[2]):
-        write_slice(f"moments/later{k}", -100 * ball()[:, :, k], ORIGIN + k * STEPS[:, 2], axes[:, 0],
-                    axes[:, 1], series, 100 + k)
+        write_slice(f"moments/later{k}", -100 * ball()[:, :, k], ORIGIN + k * STEPS[:, 2], AXES[:, 0],
+                    AXES[:, 1], series, 100 + k)
     good("moments", value=8800, words="frame 0 of the 2 in moments")
     good("moments", "--frame", "1", value=-8800)
     # A slice that is missing, or too many.
@@ -233,9 +207,7 @@ def test_spaces():
     global cases
     samples = np.rint(100 * ball())
     write_series("scan", samples=samples)
-    matrix = np.eye(4)
-    matrix[:3, :3] = FLIP[:, None] * STEPS
-    matrix[:3, 3] = FLIP * ORIGIN
+    matrix = affine(FLIP[:, None] * STEPS, FLIP * ORIGIN)
     nibabel.save(nibabel.Nifti1Image(samples.astype(np.int16), matrix), "scan.nii.gz")
     header = "NRRD0004\ntype: int16\ndimension: 3\nsizes: %d %d %d\nspace: %s\n" % (*SHAPE, "LPS")
     header += "space directions: " + " ".join("(%.12g,%.12g,%.12g)" % tuple(STEPS[:, d]) for d in range(3))
@@ -243,10 +215,9 @@ def test_spaces():
     with open("scan.nrrd", "wb") as file:
         file.write(header.encode() + samples.astype("<i2").tobytes("F"))
     with open("scan.mha", "wb") as file:
-        axes = STEPS / SPACING
         file.write(("NDims = 3\nDimSize = %d %d %d\nElementType = MET_SHORT\nAnatomicalOrientation = RAI\n"
                     % SHAPE
-                    + "TransformMatrix = " + " ".join("%.12g" % x for x in axes.T.ravel())
+                    + "TransformMatrix = " + " ".join("%.12g" % x for x in AXES.T.ravel())
                     + "\nOffset = %.12g %.12g %.12g\n" % tuple(ORIGIN)
                     + "ElementSpacing = %.12g %.12g %.12g\nElementDataFile = LOCAL\n" % tuple(SPACING)
                     ).encode() + samples.astype("<i2").tobytes("F"))
@@ -273,15 +244,13 @@ def test_planes():
         index[axis] = slice(9, 10)
         plane = samples[tuple(index)]
         origin = ORIGIN + STEPS[:, axis] * 9
-        matrix = np.eye(4)
-        matrix[:3, :3] = STEPS
-        matrix[:3, 3] = origin
+        matrix = affine(STEPS, origin)
         nibabel.save(nibabel.Nifti1Image(plane, matrix), f"plane{axis}.nii")
         image = vtkImageData()
         image.SetDimensions(plane.shape)
         image.SetSpacing(SPACING)
         image.SetOrigin(origin)
-        image.SetDirectionMatrix(*rotation().ravel())
+        image.SetDirectionMatrix(*AXES.ravel())
         array = numpy_to_vtk(plane.ravel("F"), deep=True)
         array.SetName("heat")
         image.GetPointData().SetScalars(array)
@@ -352,9 +321,7 @@ def test_pictures():
 def test_frames():
     """Frames of one file are moments: values fall by 3 from each to the next."""
     global cases
-    matrix = np.eye(4)
-    matrix[:3, :3] = STEPS
-    matrix[:3, 3] = ORIGIN
+    matrix = affine()
     frames = np.stack([ball() - 3 * t for t in range(4)], axis=3).astype(np.float32)
     image = nibabel.Nifti1Image(frames, matrix)
     image.header.set_xyzt_units("mm", "sec")
@@ -365,8 +332,8 @@ def test_frames():
     for time, value in (10, 88), (13.75, 83.5), (17.5, 79):
         cases += 1
         points = points_of("isosurface", "four.nii.gz", "--value", value, "--time", time)
-        if points is not None and abs(sphere_of(points)[1] - 12) > 0.12:
-            fail(f"four.nii.gz at {time}: radius {sphere_of(points)[1]}")
+        if points is not None and abs(nearest_sphere(points)[1] - 12) > 0.12:
+            fail(f"four.nii.gz at {time}: radius {nearest_sphere(points)[1]}")
     done = program("isosurface", "four.nii.gz", "--value", "83.5", "--frames", "4", "-o", "film.vtp")
     if done.returncode != 0 or 'timestep="17.5"' not in open("film.pvd").read():
         fail(f"film of four.nii.gz: {done.stderr}")
@@ -387,9 +354,7 @@ def test_frames():
 def test_labels():
     """A label is a part of its own, whatever its neighbours are."""
     global cases
-    matrix = np.eye(4)
-    matrix[:3, :3] = STEPS
-    matrix[:3, 3] = ORIGIN
+    matrix = affine()
     distance = 100 - ball()
     labels = np.where(distance < 6, 7, np.where(distance < 12, 3, 0)).astype(np.int16)
     nibabel.save(nibabel.Nifti1Image(labels, matrix), "labels.nii.gz")

@@ -36,39 +36,16 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
+from ball import AXES, CENTRE, FLIP, ORIGIN, SHAPE, SPACING, STEPS, affine
+from ball import ball as exact_ball
+
 ITK_WRITER = os.path.abspath(sys.argv[2])
 UNU = "teem-unu"
 
-SHAPE = (24, 22, 20)
-SPACING = np.array([1.5, 2.0, 2.5])
-ORIGIN = np.array([-7.0, 31.0, 12.5])
-FLIP = np.array([-1, -1, 1])  # from LPS to RAS
 
-
-def rotation():
-    a, b = 0.4, -0.7
-    x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
-    z = np.array([[np.cos(b), -np.sin(b), 0], [np.sin(b), np.cos(b), 0], [0, 0, 1]])
-    return z @ x
-
-
-AXES = rotation()  # its columns
-STEPS = AXES * SPACING
-CENTRE = ORIGIN + STEPS @ [11.3, 10.2, 9.6]
-
-
-def ball(steps=STEPS, origin=ORIGIN, centre=CENTRE, shape=SHAPE):
-    """Samples in float32 of the ball where index (i, j, k) is at origin + steps (i, j, k)."""
-    places = np.indices(shape).reshape(3, -1)
-    distance = np.linalg.norm(steps @ places + (origin - centre)[:, None], axis=0)
-    return (100 - distance).reshape(shape).astype(np.float32)
-
-
-def affine(steps=STEPS, origin=ORIGIN):
-    matrix = np.eye(4)
-    matrix[:3, :3] = steps
-    matrix[:3, 3] = origin
-    return matrix
+def ball(*place, **more):
+    """The samples in float32."""
+    return exact_ball(*place, **more).astype(np.float32)
 
 
 # NIfTI

@@ -12,7 +12,8 @@ import sys
 
 import numpy as np
 
-from foreign_volumes import CENTRE, judge_all
+from ball import CENTRE, nearest_sphere
+from foreign_volumes import judge_all
 
 PROGRAM, PACKAGE = (os.path.abspath(each) if each else "" for each in (sys.argv[1], (*sys.argv[3:], "")[0]))
 
@@ -46,9 +47,7 @@ def sphere_of(name, value, options):
     with open("out.obj") as lines:
         points = np.array([line.split()[1:4] for line in lines if line.startswith("v ")], float)
     os.remove("out.obj")
-    matrix = np.column_stack([2 * points, np.ones(len(points))])
-    solution = np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0]
-    return solution[:3], np.sqrt(solution[3] + solution[:3] @ solution[:3])
+    return nearest_sphere(points)
 
 
 def near(got, expected, most):
