@@ -34,8 +34,8 @@ struct Format {
     /// tells.
     bool (*recognises)(const Path& path) = nullptr;
 
-    // What it can be used as; what it cannot is null. All are called in a child process, and throw
-    // nestgrid::IoError or nestgrid::InvalidInput with a sentence that names the file.
+    // What it can be used as; what it cannot is null. Readers are called in a child process, and
+    // throw nestgrid::IoError or nestgrid::InvalidInput with a sentence that names the file.
     FileSamples (*read_samples)(const Path& path, const WantedSamples& wanted) = nullptr;
     nestgrid::CoarseGrid (*read_mesh)(const Path& path, const WantedMesh& wanted) = nullptr;
     /// \return why it could not be written, or nothing

@@ -10,7 +10,8 @@
 /// \throw nestgrid::IoError where the file does not end with its closing element
 void check_xml_end(const std::filesystem::path& path);
 
-/// \throw nestgrid::IoError for a NIfTI file whose samples have a type that VTK does not know, which
+/// \throw nestgrid::IoError for a NIfTI file whose samples have a type that VTK does not know,
+/// which
 ///        it looks for behind the end of its list, or start inside the header
 void check_nifti_header(const std::filesystem::path& path);
 

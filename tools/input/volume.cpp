@@ -52,7 +52,6 @@ Volume open_volume(const std::shared_ptr<const Parcel>& parcel, std::size_t fram
     volume.note = description.note.data();
     volume.geometry = description.geometry;
     volume.time = description.first_time + static_cast<double>(frame) * description.time_step;
-    volume.time_unit = description.time_unit.data();
     const auto type = std::find_if(types.begin(), types.end(),
                                    [&](const NamedType& t) { return volume.type == t.name; });
     const auto array =

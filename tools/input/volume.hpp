@@ -27,7 +27,6 @@ struct Volume {
     std::string length_unit;  ///< such as mm; empty where the file gives none
     std::string space;        ///< such as RAS, where the axes point to; empty where it is not said
     double time = 0;          ///< of one of several frames
-    std::string time_unit;    ///< such as s; empty where the file gives none
     std::string note;         ///< a sentence on what is left out or moved; mostly empty
 
     std::size_t sample_count() const;

@@ -7,11 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include <vtkCellArray.h>
-#include <vtkCellArrayIterator.h>
-#include <vtkSmartPointer.h>
-
 #include <nestgrid/detail/geometry.hpp>
+
+#include "output/cells.hpp"
 
 namespace {
 
@@ -37,14 +35,10 @@ void add_lengths(vtkPolyData* surface, vtkCellArray* cells, bool rings, Lengths&
         lengths.sum += length;
         ++lengths.count;
     };
-    vtkIdType count = 0;
-    const vtkIdType* corners = nullptr;
-    const auto cell = vtkSmartPointer<vtkCellArrayIterator>::Take(cells->NewIterator());
-    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell()) {
-        cell->GetCurrentCell(count, corners);
-        for (vtkIdType i = 1; i < count; ++i) look(corners[i - 1], corners[i]);
-        if (rings && count > 2) look(corners[count - 1], corners[0]);
-    }
+    for_each_cell(cells, [&](std::span<const vtkIdType> corners) {
+        for (std::size_t i = 1; i < corners.size(); ++i) look(corners[i - 1], corners[i]);
+        if (rings && corners.size() > 2) look(corners.back(), corners.front());
+    });
 }
 
 }  // namespace

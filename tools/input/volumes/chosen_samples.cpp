@@ -251,7 +251,6 @@ VolumeDescription describe(const FileSamples& samples, const VolumeChoice& choic
     put(samples.length_unit, description.length_unit);
     put(samples.space, description.space);
     put(samples.note, description.note);
-    put(samples.time_unit, description.time_unit);
     description.frames = choice.all_frames ? samples.frames.count : 1;
     description.first_time = samples.first_time;
     description.time_step = samples.time_step;

@@ -37,7 +37,6 @@ struct VolumeDescription {
     std::size_t frames = 1;  ///< that are chosen
     double first_time = 0;
     double time_step = 1;
-    std::array<char, 16> time_unit{};
 
     /// Of one frame.
     std::size_t sample_count() const;

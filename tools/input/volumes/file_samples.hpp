@@ -37,7 +37,6 @@ struct FileSamples {
     SampleAxis frames{};
     double first_time = 0;
     double time_step = 1;
-    std::string time_unit{};       ///< like s; empty where the file has none
     bool frames_are_list = false;  ///< which the file does not say to be times
     double slope = 1;              ///< a value is slope times number plus intercept
     double intercept = 0;

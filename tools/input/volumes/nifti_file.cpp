@@ -8,7 +8,7 @@
 //   dim, pixdim, datatype, vox_offset, byte order, qform, sform   by VTK; sform goes before qform
 //   dim[4]: frames; dim[5]: components; dim[6] and dim[7]         refused unless 1
 //   scl_slope, scl_inter                                          applied here
-//   xyzt_units, pixdim[4], toffset                                units; times of frames
+//   xyzt_units, pixdim[4], toffset                                unit of length; times of frames
 //   qform_code, sform_code                                        whether axes are those of a space
 //   intent_name                                                   the name of the data
 //   intent_code, intent_p*, cal_*, slice_*, descrip, aux_file   without effect
@@ -92,9 +92,6 @@ void set_times(FileSamples& samples, vtkNIFTIImageHeader* header) {
     const double first = header->GetTOffset();
     if (std::isfinite(step) && step > 0) samples.time_step = step;
     if (std::isfinite(first)) samples.first_time = first;
-    constexpr std::array<const char*, 4> names{"", "s", "ms", "µs"};
-    const auto code = static_cast<std::size_t>(header->GetXYZTUnits()) >> 3U & 7U;
-    if (code < names.size()) samples.time_unit = names[code];
 }
 
 /// A slope of 0, or one that is no number, means that the numbers are the values.

@@ -243,7 +243,6 @@ void add_axis(FileSamples& samples, const Nrrd& nrrd, unsigned axis, Role role,
         const double step = nrrd.axis[axis].spacing;
         if (std::isfinite(step) && step > 0) samples.time_step = step;
         if (std::isfinite(nrrd.axis[axis].min)) samples.first_time = nrrd.axis[axis].min;
-        if (nrrd.axis[axis].units != nullptr) samples.time_unit = nrrd.axis[axis].units;
     }
     if (role == Role::components)
         samples.component_kind = airEnumStr(nrrdKind, nrrd.axis[axis].kind);

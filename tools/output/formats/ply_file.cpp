@@ -10,15 +10,13 @@
 #include <fstream>
 #include <span>
 
-#include <vtkCellArray.h>
-#include <vtkCellArrayIterator.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkPointData.h>
-#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 
 #include "formats.hpp"
+#include "output/cells.hpp"
 #include "output/precision.hpp"
 
 namespace {
@@ -120,18 +118,6 @@ void put_points(vtkPolyData* surface, const PointColumns& columns, bool single, 
             for (const double coordinate : x) row.put(static_cast<float>(coordinate));
         }
         for (vtkDataArray* const array : columns.values) row.put(array->GetComponent(i, 0));
-    }
-}
-
-/// Calls function(corners) for each cell.
-template <class Function>
-void for_each_cell(vtkCellArray* cells, const Function& function) {
-    vtkIdType count = 0;
-    const vtkIdType* corners = nullptr;
-    const auto cell = vtkSmartPointer<vtkCellArrayIterator>::Take(cells->NewIterator());
-    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell()) {
-        cell->GetCurrentCell(count, corners);
-        function(std::span<const vtkIdType>(corners, static_cast<std::size_t>(count)));
     }
 }
 
