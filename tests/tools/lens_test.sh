@@ -98,7 +98,7 @@ run_closed isosurface v.vti --value 130 --lens surface:core.vtp
 run_closed boundary v.vti --lens surface:box.stl --threshold 20 --blend 1.5
 run probe v.vti --line 5,11,0,5,11,30 --count 3 --lens surface:box.stl
 refused 1 "'open.off': the surface of a solid is open" isosurface v.vti --value 130 --lens surface:open.off -o x.vtp
-refused 1 "crossing.off': .* intersects or touches itself" isosurface v.vti --value 130 --lens surface:crossing.off -o x.vtp
+refused 1 "crossing.off': the surface of a solid goes through itself" isosurface v.vti --value 130 --lens surface:crossing.off -o x.vtp
 refused 1 "point.off': the surface of a solid is empty" isosurface v.vti --value 130 --lens surface:point.off -o x.vtp
 refused 1 "'none.stl' does not exist" isosurface v.vti --value 130 --lens surface:none.stl -o x.vtp
 refused 1 "'v.vti' is of no format for meshes" isosurface v.vti --value 130 --lens surface:v.vti -o x.vtp

@@ -3,8 +3,9 @@
 #include "input/meshes/solid.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -12,6 +13,7 @@
 #include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/stitch_borders.h>
+#include <boost/iterator/function_output_iterator.hpp>
 
 #include <nestgrid/adapters/cgal_domain.hpp>
 
@@ -77,6 +79,52 @@ Mesh join(Points points, Triangles triangles) {
     return mesh;
 }
 
+using Kernel = CGAL::Kernel_traits<CgalPoint>::Kernel;
+
+Kernel::Triangle_3 triangle_of(const Mesh& mesh, Mesh::Face_index face) {
+    const auto edge = mesh.halfedge(face);
+    return {mesh.point(mesh.source(edge)), mesh.point(mesh.target(edge)),
+            mesh.point(mesh.target(mesh.next(edge)))};
+}
+
+/// Whether one triangle has corners on both sides of the plane of the other, farther from it than a
+/// distance. None has where the other one is flatter than that.
+bool lies_across(const Kernel::Triangle_3& of, const Kernel::Triangle_3& other, double distance) {
+    const auto normal = CGAL::normal(other[0], other[1], other[2]);
+    const double length = std::sqrt(normal.squared_length());
+    double longest = 0;
+    for (int i = 0; i < 3; ++i) {
+        longest = std::max(longest, CGAL::squared_distance(other[i], other[i + 1]));
+    }
+    if (length <= distance * std::sqrt(longest)) return false;
+    double least = 0;
+    double greatest = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double height = CGAL::scalar_product(of[i] - other[0], normal) / length;
+        least = std::min(least, height);
+        greatest = std::max(greatest, height);
+    }
+    return least < -distance && greatest > distance;
+}
+
+/// \throw nestgrid::InvalidInput where triangles go through each other by more than what rounding
+/// to single precision does, in which most formats keep them
+void refuse_crossings(const Mesh& mesh) {
+    double size = 0;
+    for (const CgalPoint& x : mesh.points()) {
+        for (int axis = 0; axis < 3; ++axis) size = std::max(size, std::abs(x[axis]));
+    }
+    const double rounding = 4 * size * static_cast<double>(std::numeric_limits<float>::epsilon());
+    const auto look = [&](const std::pair<Mesh::Face_index, Mesh::Face_index>& met) {
+        const auto first = triangle_of(mesh, met.first);
+        const auto second = triangle_of(mesh, met.second);
+        if (lies_across(first, second, rounding) && lies_across(second, first, rounding)) {
+            throw InvalidInput("the surface of a solid goes through itself");
+        }
+    };
+    Processing::self_intersections(mesh, boost::make_function_output_iterator(look));
+}
+
 }  // namespace
 
 nestgrid::Distance read_solid(const fs::path& path) {
@@ -85,9 +133,7 @@ nestgrid::Distance read_solid(const fs::path& path) {
         if (faces.dimension != 2) throw InvalidInput("the mesh is none of a surface");
         const auto mesh = std::make_shared<const Mesh>(join(points_of(faces), triangles_of(faces)));
         const nestgrid::CgalSolid<CgalPoint> solid(*mesh);
-        if (Processing::does_self_intersect(*mesh)) {
-            throw InvalidInput("the surface of a solid intersects or touches itself");
-        }
+        refuse_crossings(*mesh);
         return [mesh, solid](const Point& x) { return solid(x); };
     } catch (const InvalidInput& error) {
         throw InvalidInput("'" + path.string() + "': " + error.what());

@@ -11,6 +11,6 @@
 /// they name, points with equal coordinates are one; orientation has no meaning. To be called
 /// before there are threads.
 /// \throw nestgrid::IoError where the file cannot be read
-/// \throw nestgrid::InvalidInput where the surface is empty or open, or intersects or touches
-/// itself
+/// \throw nestgrid::InvalidInput where the surface is empty or open, or goes through itself
+/// by more than rounding to single precision does
 nestgrid::Distance read_solid(const std::filesystem::path& path);
