@@ -102,21 +102,20 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
 template <class Real>
 void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes) {
     const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
-    struct Seen {};
-    KeyTable<NodeKey, Seen> seen;
-    const auto for_each_corner = [&](bool hidden, const auto& function) {
-        for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
-            const bool is_hidden = view.member->hidden == Hidden::wholly;
-            if (split.rule != nullptr || is_hidden != hidden) return;
-            std::array<NodeKey, max_corners> keys;
-            walk.corners(view, keys.data(), nullptr);
-            for (const NodeKey key : std::span(keys).first(view.corner_count())) function(key);
-        });
-    };
-    for_each_corner(false, [&](NodeKey key) { seen.insert(key, {}); });
-    for_each_corner(true, [&](NodeKey key) {
-        if (seen.find(key) == nullptr) nodes.insert_unseen(key);
+    NodeSet met(hierarchy.facts().node_count);
+    NodeSet seen(hierarchy.facts().node_count);
+    for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
+        for (const NodeKey key : split.keys) met.insert(key);
+        const bool shown = split.rule == nullptr && view.member->hidden != Hidden::wholly;
+        if (!shown && view.level > 0) return;
+        std::array<NodeKey, max_corners> keys;
+        walk.corners(view, keys.data(), nullptr);
+        for (const NodeKey key : std::span(keys).first(view.corner_count())) {
+            if (shown) seen.insert(key);
+            if (view.level == 0) met.insert(key);
+        }
     });
+    nodes.set_unseen(met.without(seen));
 }
 
 template HangingNodes derive_hanging_nodes(const Hierarchy<float>&);

@@ -23,7 +23,7 @@ bool hanging_nodes_unknown(const Hierarchy<Real>& hierarchy) {
            !hierarchy.facts().conforming;
 }
 
-/// Adds the nodes of hidden leaves alone. Walks the hierarchy twice.
+/// Sets the nodes of hidden leaves alone, or of no leaf. Walks the hierarchy once.
 template <class Real>
 void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes);
 

@@ -8,6 +8,7 @@
 
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/holes.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
@@ -77,37 +78,37 @@ struct Numbers {
     }
 };
 
-template <int dim, class Grid, class Field>
-Numbers everything(const Grid& grid, const Field& field) {
+template <int dim>
+Numbers everything(const Hierarchy<double>& hierarchy) {
     Numbers numbers;
     const auto draw = [&](const Criterion& criterion, const Bounds& bounds) {
         for (const double isovalue : {0.0, 0.3}) {
-            const auto result = isosurface(grid, field, isovalue, criterion, bounds,
-                                           IsosurfaceOptions{.normals = true, .verify = true});
+            const auto result = isosurface<dim>(hierarchy, isovalue, criterion, bounds,
+                                                IsosurfaceOptions{.normals = true, .verify = true});
             numbers.add(result.surface);
             numbers.all.push_back(result.error_bound);
         }
         if constexpr (dim == 3) {
             const Plane plane({0.9, 0.8, 0.7}, {1, 0.5, -0.3});
-            numbers.add(slice(grid, field, plane, criterion, bounds).surface);
+            numbers.add(slice(hierarchy, plane, criterion, bounds).surface);
         } else {
-            numbers.add(height_field(grid, field, 1.0, criterion, bounds).surface);
+            numbers.add(height_field(hierarchy, 1.0, criterion, bounds).surface);
         }
         std::mt19937 random(5);
         std::vector<Point> points(200);
         for (Point& x : points) {
             for (std::size_t d = 0; d < dim; ++d) x[d] = 2 * uniform(random);
         }
-        for (const double u : probe(grid, field, points, criterion, bounds).values) {
+        for (const double u : probe(hierarchy, points, criterion, bounds).values) {
             numbers.all.push_back(std::isnan(u) ? 1e9 : u);
         }
     };
-    const HierarchicalIndicator offsets(grid, field);
+    const HierarchicalIndicator offsets(hierarchy);
     numbers.all.insert(numbers.all.end(), {offsets.least(), offsets.greatest()});
-    const HierarchicalIndicator deviations(grid, field, NodeError::deviation);
-    const std::array swept{visual_indicator(grid, field), wavelet_indicator(grid, field),
-                           numerical_indicator(grid, field), norm_indicator(grid, field),
-                           geometry_indicator(grid, field)};
+    const HierarchicalIndicator deviations(hierarchy, NodeError::deviation);
+    const std::array swept{visual_indicator(hierarchy), wavelet_indicator(hierarchy),
+                           numerical_indicator(hierarchy), norm_indicator(hierarchy),
+                           geometry_indicator(hierarchy)};
     for (const double threshold : {0.0, 0.05, 0.5}) {
         draw(Threshold(&offsets, threshold), offsets);
         draw(Threshold(&deviations, threshold), deviations);
@@ -134,7 +135,7 @@ void expect_nobody_looks(Forest<dim> forest, int steps) {
         const PlaceholderField<dim> field(grid, f, unseen, placeholder);
         const auto violation = check_grid(grid, field);
         EXPECT_FALSE(violation) << violation->sentence;
-        const Numbers numbers = everything<dim>(grid, field);
+        const Numbers numbers = everything<dim>(erase(grid, field));
         if (!first) first = numbers;
         EXPECT_EQ(numbers.all, first->all);
     }
@@ -164,6 +165,116 @@ TEST(HiddenValues, DoNotExcuseOthers) {
     ASSERT_TRUE(violation);
     EXPECT_EQ(violation->law, Law::value_finite);
     EXPECT_THROW(HierarchicalIndicator(grid, field), InvalidInput);
+}
+
+/// Values of a field at the nodes of a forest, those that hang being means.
+template <int dim>
+std::vector<double> resolved(const HidingForest<dim>& grid, std::vector<double> values) {
+    for (bool settled = false; !settled;) {
+        settled = true;
+        for (const auto& cell : grid.cells) {
+            if (cell.rule == nullptr) continue;
+            std::vector<double> local;
+            for (const std::uint32_t node : cell.nodes) local.push_back(values[node]);
+            const std::size_t corners = topology(cell.shape).corners;
+            for (std::size_t n = corners; n < cell.nodes.size(); ++n) {
+                if (!grid.hangs(cell.nodes[n])) continue;
+                const double mean =
+                    detail::interpolate(cell.rule->new_nodes[n - corners], local.data(), 1);
+                double& value = values[cell.nodes[n]];
+                if (std::isnan(mean) != std::isnan(value)) settled = false;
+                value = mean;
+            }
+        }
+    }
+    return values;
+}
+
+/// The forest with those leaves hidden, one by one, at whose corners there are no values.
+template <int dim>
+HidingForest<dim> hidden_one_by_one(const Forest<dim>& forest, const std::vector<double>& values) {
+    std::vector<bool> hides(forest.cells.size());
+    for (;;) {
+        const auto hidden = [&](std::size_t leaf) { return bool{hides[leaf]}; };
+        HidingForest<dim> grid(forest, hidden);
+        const std::vector<double> at = resolved(grid, values);
+        bool any = false;
+        for (std::size_t e = 0; e < forest.cells.size(); ++e) {
+            const auto& cell = forest.cells[e];
+            if (cell.rule != nullptr || hides[e]) continue;
+            const bool missing = std::ranges::any_of(
+                cell.nodes, [&](std::uint32_t node) { return std::isnan(at[node]); });
+            hides[e] = missing;
+            any = any || missing;
+        }
+        if (!any) return grid;
+    }
+}
+
+template <int dim>
+void expect_holes(Forest<dim> forest, int steps, double share) {
+    std::mt19937 random(8);
+    refine_randomly(forest, random, steps);
+    const auto f = [](const Point& x) { return std::sin(3 * x[0]) + x[1] - x[2] * x[0] - 0.4; };
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> values;
+    std::vector<bool> missing;
+    for (const Point& x : forest.positions) {
+        missing.push_back(uniform(random) < share);
+        values.push_back(missing.back() ? nan : f(x));
+    }
+    const HidingForest<dim> expected = hidden_one_by_one(forest, values);
+    const PlaceholderField<dim> field(forest, f, missing, nan);
+    const auto inner = erase(forest, field);
+    const Holes<double> holes(inner);
+    std::size_t hidden = 0;
+    for (std::size_t e = 0; e < forest.cells.size(); ++e) {
+        if (forest.cells[e].rule == nullptr &&
+            expected.hidden(static_cast<std::uint32_t>(e)) == Hidden::wholly) {
+            ++hidden;
+        }
+    }
+    EXPECT_EQ(holes.hidden()->hidden_leaves(), hidden);
+    EXPECT_GT(hidden, 0U);
+    const PlaceholderField<dim> of_expected(expected, f, missing, nan);
+    EXPECT_EQ(everything<dim>(holes).all, everything<dim>(erase(expected, of_expected)).all);
+    EXPECT_THROW(Holes<double>(holes, holes.hidden()), InvalidInput);
+}
+
+/// Where values are missing, the drawing is that of a grid that hides the leaves around them.
+TEST(Holes, AreTheLeavesWithoutValues) {
+    std::mt19937 random(3);
+    for (const double share : {0.03, 0.1, 0.4}) {
+        SCOPED_TRACE(share);
+        expect_holes(boxes<3>(random, 2), 40, share);
+        expect_holes(kuhn<3>(3), 600, share);
+        expect_holes(boxes<2>(random, 3), 150, share);
+        expect_holes(kuhn<2>(2), 300, share);
+    }
+}
+
+/// Fields of one grid share the elements that any of them hides.
+TEST(Holes, AreSharedByFields) {
+    std::mt19937 random(3);
+    Forest<2> forest = boxes<2>(random, 3);
+    refine_randomly(forest, random, 100);
+    const auto f = [](const Point& x) { return x[0] + x[1]; };
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    std::array<std::vector<bool>, 3> missing;
+    for (std::size_t i = 0; i < forest.positions.size(); ++i) {
+        for (std::size_t k = 0; k < 2; ++k) missing[k].push_back(random() % 20 == 0);
+        missing[2].push_back(missing[0].back() || missing[1].back());
+    }
+    const auto erased = [&](std::size_t k) {
+        return std::make_unique<PlaceholderField<2>>(forest, f, missing[k], nan);
+    };
+    const auto first = erased(0);
+    const auto second = erased(1);
+    const auto both = erased(2);
+    const auto one = std::make_shared<const HiddenElements>(erase(forest, *first));
+    const HiddenElements shared(erase(forest, *second), one);
+    EXPECT_GT(shared.hidden_leaves(), one->hidden_leaves());
+    EXPECT_EQ(shared.hidden_leaves(), HiddenElements(erase(forest, *both)).hidden_leaves());
 }
 
 }  // namespace hidden_values_test

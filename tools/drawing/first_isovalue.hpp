@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,22 +36,26 @@ struct ValueSample {
     double greatest = 0;
 };
 
-/// \param at at(i) is value i
-/// \throw nestgrid::InvalidInput where a value is not finite
+/// \param at at(i) is value i; those that are not a number (NaN) do not count
+/// \throw nestgrid::InvalidInput where a value is infinite
 template <class At>
 ValueSample value_sample_of(std::size_t count, const At& at) {
     ValueSample sample;
-    if (count == 0) return sample;
-    sample.least = sample.greatest = static_cast<double>(at(std::size_t{0}));
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double least = infinity;
+    double greatest = -infinity;
     for (std::size_t i = 0; i < count; ++i) {
         const auto value = static_cast<double>(at(i));
-        if (!std::isfinite(value)) {
-            throw nestgrid::InvalidInput("a value of the field is not a usable number: " +
-                                         std::to_string(value));
+        if (std::isinf(value)) {
+            throw nestgrid::InvalidInput("a value of the field is infinite");
         }
-        sample.least = std::min(sample.least, value);
-        sample.greatest = std::max(sample.greatest, value);
+        // Comparisons with what is not a number are false.
+        least = value < least ? value : least;
+        greatest = value > greatest ? value : greatest;
     }
+    if (!(least <= greatest)) return sample;
+    sample.least = least;
+    sample.greatest = greatest;
     // Multiples of the golden ratio are spread evenly, and do not follow the rows of a lattice.
     constexpr double golden = 0.6180339887498949;
     const std::size_t taken = std::min(count, ValueSample::most);
@@ -58,8 +63,11 @@ ValueSample value_sample_of(std::size_t count, const At& at) {
         const double part = std::fmod(static_cast<double>(k) * golden, 1.0);
         const std::size_t i =
             taken == count ? k : static_cast<std::size_t>(part * static_cast<double>(count));
-        sample.values.push_back(static_cast<double>(at(std::min(i, count - 1))));
-        sample.next.push_back(static_cast<double>(at(std::min(i + 1, count - 1))));
+        const auto value = static_cast<double>(at(std::min(i, count - 1)));
+        const auto next = static_cast<double>(at(std::min(i + 1, count - 1)));
+        if (std::isnan(value)) continue;
+        sample.values.push_back(value);
+        sample.next.push_back(std::isnan(next) ? value : next);
     }
     return sample;
 }

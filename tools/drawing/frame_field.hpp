@@ -65,3 +65,7 @@ void set_frames(FrameField& to, std::shared_ptr<const Grid> grid, std::vector<Fi
                      std::make_shared<const Parts>(kept, memory));
     };
 }
+
+/// Hides the elements at which a frame has no value (NaN), in all frames.
+/// \throw nestgrid::GridError as nestgrid::HiddenElements
+void hide_missing(FrameField& field);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/input_field.hpp"
 
+#include <algorithm>
+
 #include <nestgrid/adapters/bisection.hpp>
 
 namespace {
@@ -71,6 +73,9 @@ InputField volume_field(Input& input, const Paths& paths, const std::vector<doub
         field.geometry = first.geometry;
         field.volumes = volumes;
     }
+    const bool any_missing =
+        std::ranges::any_of(*volumes, [](const Volume& volume) { return volume.missing > 0; });
+    if (any_missing) hide_missing(field);
     field.leaf_elements = leaf_count(first.geometry);
     field.name_in_file = first.name;
     field.length_unit = first.length_unit;

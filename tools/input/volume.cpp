@@ -50,6 +50,7 @@ Volume open_volume(const std::shared_ptr<const Parcel>& parcel, std::size_t fram
     volume.length_unit = description.length_unit.data();
     volume.space = description.space.data();
     volume.note = description.note.data();
+    volume.missing = description.missing;
     volume.geometry = description.geometry;
     volume.time = description.first_time + static_cast<double>(frame) * description.time_step;
     const auto type = std::find_if(types.begin(), types.end(),
@@ -97,6 +98,17 @@ std::string unknown_format(const fs::path& path) {
     return " is of no known format (" + listed(known) + ")" + did_you_mean(ending_of(path), known);
 }
 
+/// \throw nestgrid::IoError for a file that is missing or of no format for samples
+const Format& format_of_samples(const fs::path& path) {
+    const Format* const format = format_of(path);
+    const bool may_be_folder = format != nullptr && format->recognises != nullptr;
+    if (!may_be_folder || !fs::is_directory(path)) require_file(path);
+    if (format == nullptr || format->read_samples == nullptr) {
+        throw IoError(path.string() + unknown_format(path));
+    }
+    return *format;
+}
+
 }  // namespace
 
 std::size_t leaf_count(const nestgrid::LatticeGeometry<3>& geometry) {
@@ -116,18 +128,22 @@ std::size_t Volume::sample_count() const {
 
 std::vector<Volume> read_volumes(const fs::path& path, const VolumeChoice& choice,
                                  const RawFormat& raw, double seconds) {
-    const Format* const format = format_of(path);
-    const bool may_be_folder = format != nullptr && format->recognises != nullptr;
-    if (!may_be_folder || !fs::is_directory(path)) require_file(path);
-    if (format == nullptr || format->read_samples == nullptr) {
-        throw IoError(path.string() + unknown_format(path));
+    const Format& format = format_of_samples(path);
+    if (!(seconds > 0)) {
+        std::uintmax_t bytes = bytes_to_read(path, format);
+        if (!choice.mask.empty()) {
+            bytes += bytes_to_read(choice.mask, format_of_samples(choice.mask));
+        }
+        seconds = reading_time(bytes);
     }
-    if (!(seconds > 0)) seconds = reading_time(bytes_to_read(path, *format));
     const WantedSamples wanted{choice.array, choice.all_frames || choice.frame.value_or(0) != 0,
                                raw};
     const auto parcel = run_apart(path.string(), seconds, [&](Parcel& to) {
-        FileSamples samples = format->read_samples(path, wanted);
-        put_chosen(samples, choice, to);
+        FileSamples samples = format.read_samples(path, wanted);
+        std::optional<FileSamples> mask;
+        if (!choice.mask.empty())
+            mask = format_of_samples(choice.mask).read_samples(choice.mask, {});
+        put_chosen(samples, choice, mask ? &*mask : nullptr, to);
     });
     std::vector<Volume> volumes;
     const std::size_t frames = parcel->block<VolumeDescription>(0).front().frames;

@@ -28,6 +28,7 @@ struct Volume {
     std::string space;        ///< such as RAS, where the axes point to; empty where it is not said
     double time = 0;          ///< of one of several frames
     std::string note;         ///< a sentence on what is left out or moved; mostly empty
+    std::size_t missing = 0;  ///< samples that are not a number, of all frames of the file
 
     std::size_t sample_count() const;
     bool is_plane() const { return geometry.samples[2] == 1; }
@@ -38,7 +39,7 @@ struct Volume {
 /// \param seconds that the child may take; 0 for a time by the size of the file
 /// \return one volume, or all frames where they are chosen
 /// \throw nestgrid::IoError for a file that is missing, truncated, damaged or of an unknown format,
-///        and for samples that are not finite scalars on at least 2 x 2 places
+///        and for samples that are no scalars, infinite or not on at least 2 x 2 places
 /// \throw nestgrid::InvalidInput for a choice that the file does not leave
 std::vector<Volume> read_volumes(const std::filesystem::path& path, const VolumeChoice& choice,
                                  const RawFormat& raw, double seconds);

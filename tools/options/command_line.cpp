@@ -83,6 +83,18 @@ void add_read_options(CLI::App& command, Input& input) {
         ->type_name("NUMBER")
         ->group("Input");
     command
+        .add_option("--missing", input.choice.missing,
+                    "samples with this value have none, as those that are not a number (NaN): "
+                    "nothing is drawn beside them; again for several values")
+        ->type_name("VALUE")
+        ->group("Input")
+        ->take_all();
+    command
+        .add_option("--mask", input.choice.mask,
+                    "a file of as many samples: where they are 0, those of the input have no value")
+        ->type_name("FILE")
+        ->group("Input");
+    command
         .add_option("--space", input.choice.space,
                     "turn places to the right, front and top of a patient (ras), or to the left, "
                     "back and top (lps) [as in the file]")
@@ -133,8 +145,8 @@ void refuse_options(const CLI::App& command, const std::vector<std::string>& nam
 namespace {
 
 /// Options that apply to all files of samples.
-constexpr std::array sample_options{"--frame", "--component", "--magnitude",
-                                    "--label", "--space",     "--read-limit"};
+constexpr std::array sample_options{"--frame",   "--component", "--magnitude", "--label",
+                                    "--missing", "--mask",      "--space",     "--read-limit"};
 
 bool applies(const std::string& option, const Format& format) {
     if (std::ranges::find(format.options, option) != format.options.end()) return true;

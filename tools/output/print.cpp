@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "drawing/first_isovalue.hpp"
+
 namespace {
 
 /// Whether an error was asked for and is kept.
@@ -247,11 +249,12 @@ void report_info(const Volume& volume, Report& report) {
     report.add("samples", std::vector<double>(samples.begin(),
                                               samples.begin() + static_cast<std::ptrdiff_t>(axes)));
     report.add("type", volume.type);
+    if (volume.missing > 0) report.add("missing", std::uint64_t{volume.missing});
     report_range(with_samples(volume,
                               [](auto values) {
-                                  const auto [lo, hi] = std::ranges::minmax_element(values);
-                                  return std::pair(static_cast<double>(*lo),
-                                                   static_cast<double>(*hi));
+                                  const ValueSample sample = value_sample_of(
+                                      values.size(), [&](std::size_t i) { return values[i]; });
+                                  return std::pair(sample.least, sample.greatest);
                               }),
                  report);
     report.add("nodes", std::uint64_t{volume.sample_count()});

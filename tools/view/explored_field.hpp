@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -39,7 +40,7 @@ Histogram histogram_of(std::size_t count, const At& at, const std::array<double,
     const std::size_t step = (count + most - 1) / most;
     for (std::size_t i = 0; i < count; i += step) {
         const double part = (static_cast<double>(at(i)) - h.least) / width;
-        if (part < 0 || part > 1) continue;
+        if (!(part >= 0 && part <= 1)) continue;
         const auto bin = static_cast<std::size_t>(part * Histogram::bins);
         ++h.counts[std::min(bin, Histogram::bins - 1)];
     }
@@ -77,11 +78,14 @@ void describe_samples(ExploredField& field, const std::vector<std::span<const Sa
     const std::span<const Sample> first = frames.front();
     describe_values(field, first.size(), [&](std::size_t i) { return first[i]; });
     field.samples = first.size();
-    std::array<double, 2> range{static_cast<double>(first[0]), static_cast<double>(first[0])};
+    std::array<double, 2> range{std::numeric_limits<double>::infinity(),
+                                -std::numeric_limits<double>::infinity()};
     for (const auto& frame : frames) {
-        const auto [least, greatest] = std::ranges::minmax(frame);
-        range = {std::min(range[0], static_cast<double>(least)),
-                 std::max(range[1], static_cast<double>(greatest))};
+        for (const Sample sample : frame) {
+            // Comparisons with what is not a number are false.
+            const auto value = static_cast<double>(sample);
+            range = {value < range[0] ? value : range[0], value > range[1] ? value : range[1]};
+        }
     }
     field.range = range;
 }

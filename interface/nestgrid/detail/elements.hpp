@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -26,8 +27,10 @@ namespace nestgrid {
 /// One element, or where it lies.
 struct Handle {
     static constexpr std::size_t size = 48;
-    static constexpr std::size_t alignment = 16;
+    static constexpr std::size_t alignment = 8;
     alignas(alignment) std::byte bytes[size];  // NOLINT(modernize-avoid-c-arrays): no zeros
+    /// For a hierarchy that tells more of the elements of another one. Not kept in lists.
+    std::uint32_t mark;
 };
 
 namespace detail {
@@ -41,6 +44,7 @@ inline constexpr bool fits_handle = std::is_trivially_copyable_v<Element> &&
 /// Makes a handle of an element. An element that does not fit must outlive the handle.
 template <class Element>
 void set_handle(Handle& handle, const Element& element) {
+    handle.mark = 0;
     if constexpr (fits_handle<Element>) {
         std::memcpy(handle.bytes, &element, sizeof(Element));
     } else {

@@ -4,6 +4,8 @@
 // A forest with hidden leaves.
 #pragma once
 
+#include <functional>
+
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 
@@ -21,11 +23,16 @@ public:
         : HidingForest(std::move(forest), random) {}
     /// \param hidden_of_four so many of four leaves are hidden, on average
     HidingForest(Forest<dim> forest, std::mt19937& random, unsigned hidden_of_four = 1)
+        : HidingForest(std::move(forest),
+                       [&](std::size_t) { return random() % 4 < hidden_of_four; }) {}
+    /// \param hides whether a leaf is hidden, given the number of its cell; called from the last
+    /// one
+    HidingForest(Forest<dim> forest, const std::function<bool(std::size_t leaf)>& hides)
         : Forest<dim>(std::move(forest)), part_(this->cells.size()) {
         for (std::size_t e = this->cells.size(); e-- > 0;) {
             const auto& cell = this->cells[e];
             if (cell.rule == nullptr) {
-                part_[e] = random() % 4 < hidden_of_four ? Hidden::wholly : Hidden::not_at_all;
+                part_[e] = hides(e) ? Hidden::wholly : Hidden::not_at_all;
                 continue;
             }
             part_[e] = part_[cell.first_child];
@@ -48,6 +55,8 @@ public:
     }
 
     bool draws_all = false;
+
+    bool hangs(std::uint32_t node) const { return hanging_.contains(this->keys[node]); }
 
     /// Whether each node is one of hidden leaves alone.
     std::vector<bool> unseen() const {

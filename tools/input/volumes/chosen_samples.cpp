@@ -6,6 +6,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include <nestgrid/error.hpp>
 
@@ -202,20 +204,35 @@ void check_place(const FileSamples& samples) {
     }
 }
 
-void check_finite(const FileSamples& file, const std::string& type, const std::byte* data,
-                  std::size_t count) {
-    with_samples(type, data, count, [&](auto samples) {
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            if (std::isfinite(static_cast<double>(samples[i]))) continue;
-            const auto nx = static_cast<std::size_t>(file.geometry.samples[0]);
-            const auto ny = static_cast<std::size_t>(file.geometry.samples[1]);
-            const auto nz = static_cast<std::size_t>(file.geometry.samples[2]);
-            throw InvalidInput(
-                file.path.string() + ": the sample at (" + std::to_string(i % nx) + ", " +
-                std::to_string(i / nx % ny) + ", " + std::to_string(i / nx / ny % nz) + ") is " +
-                (std::isnan(static_cast<double>(samples[i])) ? "not a number" : "infinite"));
+/// "(3, 4, 0)".
+std::string place_of(std::size_t i, const nestgrid::LatticeGeometry<3>& geometry) {
+    const auto nx = static_cast<std::size_t>(geometry.samples[0]);
+    const auto ny = static_cast<std::size_t>(geometry.samples[1]);
+    const auto nz = static_cast<std::size_t>(geometry.samples[2]);
+    return "(" + std::to_string(i % nx) + ", " + std::to_string(i / nx % ny) + ", " +
+           std::to_string(i / nx / ny % nz) + ")";
+}
+
+/// \return how many samples have no value
+/// \throw nestgrid::InvalidInput for an infinite one, and where none has a value
+std::size_t count_missing(const FileSamples& file, const std::string& type, const std::byte* data,
+                          std::size_t count) {
+    std::size_t missing = 0;
+    with_samples(type, data, count, [&]<class Sample>(std::span<Sample> samples) {
+        if constexpr (std::is_floating_point_v<Sample>) {
+            for (std::size_t i = 0; i < samples.size(); ++i) {
+                if (std::isfinite(samples[i])) continue;
+                if (std::isinf(samples[i])) {
+                    throw InvalidInput(file.path.string() + ": the sample at " +
+                                       place_of(i, file.geometry) +
+                                       " is infinite; --missing takes a value for none");
+                }
+                ++missing;
+            }
         }
     });
+    if (missing == count) throw InvalidInput(file.path.string() + ": no sample has a value");
+    return missing;
 }
 
 bool is_dense(const FileSamples& samples) {
@@ -239,7 +256,8 @@ void fill(FileSamples& samples, std::size_t numbers) {
 bool is_computed(const FileSamples& samples, const VolumeChoice& choice) {
     const bool plane = samples.geometry.samples[2] == 1;
     return samples.components.count > 1 || samples.slope != 1 || samples.intercept != 0 ||
-           choice.label || (plane && !samples.type.starts_with("float"));
+           choice.label || !choice.missing.empty() || !choice.mask.empty() ||
+           (plane && !samples.type.starts_with("float"));
 }
 
 VolumeDescription describe(const FileSamples& samples, const VolumeChoice& choice) {
@@ -257,19 +275,78 @@ VolumeDescription describe(const FileSamples& samples, const VolumeChoice& choic
     return description;
 }
 
+/// Whether samples are kept, x fastest; empty where all are.
+using KeptSamples = std::vector<bool>;
+
+/// \throw nestgrid::InvalidInput where the mask has other places than the samples, or several
+///        numbers for each
+KeptSamples kept_by(FileSamples& mask, const FileSamples& samples) {
+    const std::string name = "the mask " + mask.path.string();
+    check_counts(mask);
+    turn_plane(mask);
+    if (mask.components.count > 1) throw InvalidInput(name + " has several numbers per sample");
+    const nestgrid::LatticeGeometry<3>& is = mask.geometry;
+    const nestgrid::LatticeGeometry<3>& wanted = samples.geometry;
+    if (is.samples != wanted.samples) {
+        const auto counts = [](const nestgrid::LatticeGeometry<3>& g) {
+            return std::to_string(g.samples[0]) + " x " + std::to_string(g.samples[1]) + " x " +
+                   std::to_string(g.samples[2]);
+        };
+        throw InvalidInput(name + " has " + counts(is) + " samples, but " + samples.path.string() +
+                           " has " + counts(wanted));
+    }
+    fill(mask, numbers_in_file(mask));
+    const std::size_t count = places_in(is);
+    std::vector<double> values(count);
+    compute(mask, std::span(values));
+    KeptSamples kept(count);
+    for (std::size_t i = 0; i < count; ++i) kept[i] = values[i] != 0 && !std::isnan(values[i]);
+    return kept;
+}
+
+/// Makes samples that have no value not a number.
+template <class Value>
+void hide_missing(const VolumeChoice& choice, const KeptSamples& kept, std::span<Value> values) {
+    constexpr Value none = std::numeric_limits<Value>::quiet_NaN();
+    for (std::size_t i = 0; !kept.empty() && i < values.size(); ++i) {
+        if (!kept[i]) values[i] = none;
+    }
+    for (const double missing : choice.missing) {
+        std::ranges::replace(values, static_cast<Value>(missing), none);
+    }
+}
+
 /// Fills the beginning of a block with a frame, of which the data are the first sample.
-void put_frame(const FileSamples& samples, const VolumeChoice& choice, std::size_t count,
-               std::span<std::byte> block, const std::string& type) {
+void put_frame(const FileSamples& samples, const VolumeChoice& choice, const KeptSamples& kept,
+               std::size_t count, std::span<std::byte> block, const std::string& type) {
     if (!is_computed(samples, choice)) return gather(samples, count, block);
     if (type == "float64") {
-        return compute(samples, std::span(reinterpret_cast<double*>(block.data()), count));
+        const std::span values(reinterpret_cast<double*>(block.data()), count);
+        compute(samples, values);
+        return hide_missing(choice, kept, values);
     }
     const std::span values(reinterpret_cast<float*>(block.data()), count);
-    if (!choice.label) return compute(samples, values);
+    if (!choice.label) {
+        compute(samples, values);
+        return hide_missing(choice, kept, values);
+    }
     std::vector<double> exact(count);
     compute(samples, std::span(exact));
-    std::ranges::transform(exact, values.begin(),
-                           [&](double value) { return value == *choice.label ? 1.0F : 0.0F; });
+    hide_missing(choice, kept, std::span(exact));
+    std::ranges::transform(exact, values.begin(), [&](double value) {
+        if (std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
+        return value == *choice.label ? 1.0F : 0.0F;
+    });
+}
+
+/// Says how many samples have no value.
+void note_missing(VolumeDescription& description, std::size_t missing, std::size_t all) {
+    description.missing = missing;
+    if (missing == 0) return;
+    const std::string before = description.note.data();
+    put(before + (before.empty() ? "" : "; ") + std::to_string(missing) + " of " +
+            std::to_string(all) + " samples have no value: nothing is drawn beside them",
+        description.note);
 }
 
 }  // namespace
@@ -327,9 +404,11 @@ void check_plausible(const std::filesystem::path& path, std::uintmax_t found, do
                   " bytes cannot hold the " + number.data() + " that its header asks for");
 }
 
-void put_chosen(FileSamples& samples, const VolumeChoice& choice, Parcel& parcel) {
+void put_chosen(FileSamples& samples, const VolumeChoice& choice, FileSamples* mask,
+                Parcel& parcel) {
     check_counts(samples);
     turn_plane(samples);
+    const KeptSamples kept = mask == nullptr ? KeptSamples() : kept_by(*mask, samples);
     turn_to(choice.space, samples);
     check_place(samples);
     const bool list_is_sample = samples.frames_are_list && samples.components.count == 1 &&
@@ -337,8 +416,9 @@ void put_chosen(FileSamples& samples, const VolumeChoice& choice, Parcel& parcel
     if (list_is_sample) std::swap(samples.frames, samples.components);
     const std::size_t numbers = numbers_in_file(samples);
     const std::size_t offset = choose_frame(samples, choice) + choose_component(samples, choice);
-    const VolumeDescription description = describe(samples, choice);
-    parcel.put(std::span<const VolumeDescription>(&description, 1));
+    auto& description =
+        *reinterpret_cast<VolumeDescription*>(parcel.append(sizeof(VolumeDescription)).data());
+    description = describe(samples, choice);
     const std::string type = description.type.data();
     const std::size_t count = description.sample_count();
     const std::size_t all = description.frames * count;
@@ -347,20 +427,21 @@ void put_chosen(FileSamples& samples, const VolumeChoice& choice, Parcel& parcel
     if (as_they_are && numbers == all && samples.data == nullptr && (in_order || all == count)) {
         const std::span<std::byte> block = parcel.append(all * bytes_of(type));
         samples.fill(block);
-        check_finite(samples, type, block.data(), all);
+        note_missing(description, count_missing(samples, type, block.data(), all), all);
         return;
     }
     fill(samples, numbers);
     samples.data += offset * bytes_of(samples.type);
     if (as_they_are && description.frames == 1 && is_dense(samples)) {
-        check_finite(samples, type, samples.data, count);
+        note_missing(description, count_missing(samples, type, samples.data, count), count);
         parcel.put_last_use({samples.data, count * bytes_of(type)});
         return;
     }
     const std::span<std::byte> block = parcel.append(all * bytes_of(type));
     for (std::size_t frame = 0; frame < description.frames; ++frame) {
-        put_frame(samples, choice, count, block.subspan(frame * count * bytes_of(type)), type);
+        put_frame(samples, choice, kept, count, block.subspan(frame * count * bytes_of(type)),
+                  type);
         samples.data += samples.frames.stride * bytes_of(samples.type);
     }
-    check_finite(samples, type, block.data(), all);
+    note_missing(description, count_missing(samples, type, block.data(), all), all);
 }

@@ -5,8 +5,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "input/volumes/file_samples.hpp"
 
@@ -20,7 +22,9 @@ struct VolumeChoice {
     std::optional<std::int64_t> component{};  ///< of each sample, from 0
     bool magnitude = false;                   ///< the norm of each sample instead
     std::optional<double> label{};            ///< samples are 1 where they have this value, else 0
-    std::string space{};  ///< to turn places to, ras or lps; empty for that of the file
+    std::string space{};            ///< to turn places to, ras or lps; empty for that of the file
+    std::vector<double> missing{};  ///< values that stand for none, beside what is no number
+    std::filesystem::path mask{};   ///< samples that are not 0 there are kept; empty for all
 };
 
 /// The plane of samples of which there is one along the third axis.
@@ -37,6 +41,7 @@ struct VolumeDescription {
     std::size_t frames = 1;  ///< that are chosen
     double first_time = 0;
     double time_step = 1;
+    std::size_t missing = 0;  ///< samples of all frames that have no value, and are NaN
 
     /// Of one frame.
     std::size_t sample_count() const;
@@ -44,8 +49,11 @@ struct VolumeDescription {
 
 /// Appends a description and the chosen samples, frame after frame, in the type of the file unless
 /// they are computed: then in float32, or in float64 where that would lose digits. Those of a
-/// plane, whose third axis has one sample, are always of these types. \throw nestgrid::InvalidInput
-/// where the choice is missing or does not fit the file, for a space
-///        that places cannot be turned to, and for
-///        samples that are not finite or not on at least 2 x 2 places
-void put_chosen(FileSamples& samples, const VolumeChoice& choice, Parcel& parcel);
+/// plane, whose third axis has one sample, are always of these types. Samples without a value are
+/// not a number (NaN).
+/// \param mask samples that are kept are not 0 there; null for all
+/// \throw nestgrid::InvalidInput where the choice is missing or does not fit the file, for a space
+///        that places cannot be turned to, for a mask on other places, and for samples that are
+///        infinite, all without a value, or not on at least 2 x 2 places
+void put_chosen(FileSamples& samples, const VolumeChoice& choice, FileSamples* mask,
+                Parcel& parcel);

@@ -68,7 +68,8 @@ public:
         copy(stride);
     }
 
-    /// Central differences of the samples, one-sided at the boundary.
+    /// Central differences of the samples, one-sided at the boundary and beside samples that are
+    /// not a number (NaN).
     void corner_gradients(const Element& e, std::span<Point> out) const {
         for (std::size_t k = 0; k < corners_; ++k) out[k] = gradient_at(grid_->corner_place(e, k));
     }
@@ -84,6 +85,8 @@ private:
     NESTGRID_INLINE value_type at(typename Grid::Place p) const {
         return static_cast<value_type>(samples_[grid_->sample(p)]);
     }
+    double rise_beside_missing(std::size_t centre, std::size_t up, std::size_t down,
+                               std::size_t d) const;
     static std::array<Point, 3> dual_axes(const LatticeGeometry<Grid::dimension>& geometry);
 
     const Grid* grid_;
@@ -101,9 +104,24 @@ Point LatticeField<Grid, Sample>::gradient_at(typename Grid::Place p) const {
         const std::size_t down = x > 0 ? 1 : 0;
         const double rise = static_cast<double>(samples_[centre + up * grid_->sample_stride(d)]) -
                             static_cast<double>(samples_[centre - down * grid_->sample_stride(d)]);
+        if (std::is_floating_point_v<Sample> && std::isnan(rise)) {
+            gradient = gradient + rise_beside_missing(centre, up, down, d) * dual_[d];
+            continue;
+        }
         gradient = gradient + (up + down == 2 ? 0.5 * rise : rise) * dual_[d];
     }
     return gradient;
+}
+
+/// The rise from a sample to one of its neighbours that has a value, or 0 where none has.
+template <class Grid, class Sample>
+double LatticeField<Grid, Sample>::rise_beside_missing(std::size_t centre, std::size_t up,
+                                                       std::size_t down, std::size_t d) const {
+    const auto value = [&](std::size_t i) { return static_cast<double>(samples_[i]); };
+    const double above = value(centre + up * grid_->sample_stride(d)) - value(centre);
+    const double below = value(centre) - value(centre - down * grid_->sample_stride(d));
+    if (up == 1 && !std::isnan(above)) return above;
+    return down == 1 && !std::isnan(below) ? below : 0;
 }
 
 /// The columns of the inverse transpose of the direction matrix, each divided by the spacing.

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/holes.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <nestgrid/error.hpp>
+#include <walk/for_each_element.hpp>
+#include <walk/hanging_nodes.hpp>
+
+namespace nestgrid {
+
+/// Takes all elements in the order of a depth-first traversal.
+class HiddenElements::Builder {
+public:
+    explicit Builder(HiddenElements& to) : to_{&to} {}
+
+    template <class Real>
+    void add_leaf(const engine::ElementView<Real>& leaf, bool hidden) {
+        open_to(leaf);
+        put(leaf.level, leaf.child, leaf.coarse, hidden ? wholly_ : shown_);
+        if (hidden) ++to_->hidden_leaves_;
+    }
+    void finish() {
+        close_to(0);
+        to_->marks_.shrink_to_fit();
+    }
+
+private:
+    /// An element to whose children more may come.
+    struct Open {
+        NodeKey path;
+        std::size_t coarse;
+        std::size_t child;  // of its father
+        std::size_t count;  // of its children
+        bool any_shown;
+        bool any_hidden;
+        std::array<Mark, max_children> marks;  // shown where a child is masked
+    };
+
+    /// Opens the fathers of an element, and closes all others.
+    template <class Real>
+    void open_to(const engine::ElementView<Real>& view) {
+        const auto* const father = view.father;
+        const auto depth = static_cast<std::size_t>(view.level);
+        if (father == nullptr) return close_to(0);
+        if (depth <= open_.size() && open_[depth - 1].path == father->path) return close_to(depth);
+        open_to(*father);
+        open_.push_back({father->path,
+                         father->coarse,
+                         father->child,
+                         view.made_by->children.size(),
+                         false,
+                         false,
+                         {}});
+    }
+    void close_to(std::size_t depth) {
+        while (open_.size() > depth) {
+            const Open closed = open_.back();
+            open_.pop_back();
+            put(static_cast<int>(open_.size()), closed.child, closed.coarse, mark_of(closed));
+        }
+    }
+    Mark mark_of(const Open& element) {
+        if (!element.any_hidden) return shown_;
+        if (!element.any_shown) return wholly_;
+        const std::size_t first = to_->marks_.size();
+        if (first + element.count > std::numeric_limits<Mark>::max() - partly_) {
+            throw GridError("more than 2^32 elements beside those without values");
+        }
+        to_->marks_.insert(to_->marks_.end(), element.marks.begin(),
+                           element.marks.begin() + static_cast<std::ptrdiff_t>(element.count));
+        return static_cast<Mark>(first) + partly_;
+    }
+    void put(int level, std::size_t child, std::size_t coarse, Mark mark) {
+        if (level == 0) {
+            to_->coarse_[coarse] = mark;
+            return;
+        }
+        Open& father = open_[static_cast<std::size_t>(level) - 1];
+        father.marks[child] = mark;
+        father.any_shown = father.any_shown || mark != wholly_;
+        father.any_hidden = father.any_hidden || mark != shown_;
+    }
+
+    HiddenElements* to_;
+    std::vector<Open> open_;
+};
+
+template <class Real>
+void HiddenElements::find(const Hierarchy<Real>& hierarchy) {
+    coarse_.assign(hierarchy.coarse_count(), shown_);
+    marks_.clear();
+    hidden_leaves_ = 0;
+    const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
+    const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = !hanging.empty()}, &hanging);
+    const std::size_t components = walk.components();
+    Builder builder(*this);
+    const auto look = [&](const engine::ElementView<Real>& view, const engine::Split& split) {
+        if (split.rule != nullptr) return;
+        const std::span<const Real> values(view.value, view.corner_count() * components);
+        const bool hidden = view.member->hidden == Hidden::wholly ||
+                            std::ranges::any_of(values, [](Real u) { return std::isnan(u); });
+        builder.add_leaf(view, hidden);
+    };
+    engine::for_each_element<Real>(walk, false, look);
+    builder.finish();
+}
+
+template <class Real>
+HiddenElements::HiddenElements(const Hierarchy<Real>& hierarchy,
+                               std::shared_ptr<const HiddenElements> already) {
+    const auto look = [&] {
+        if (already) return find(Holes<Real>(hierarchy, already));
+        find(hierarchy);
+    };
+    look();
+    if (hierarchy.facts().conforming) return;
+    while (hidden_leaves_ > (already ? already->hidden_leaves_ : 0)) {
+        already = std::make_shared<const HiddenElements>(std::move(*this));
+        look();
+    }
+}
+
+template HiddenElements::HiddenElements(const Hierarchy<float>&,
+                                        std::shared_ptr<const HiddenElements>);
+template HiddenElements::HiddenElements(const Hierarchy<double>&,
+                                        std::shared_ptr<const HiddenElements>);
+
+template <class Real>
+HierarchyFacts Holes<Real>::facts_with_hidden(const Hierarchy<Real>& inner) {
+    HierarchyFacts facts = inner.facts();
+    facts.features |= static_cast<unsigned>(Feature::hidden);
+    // Neither is told which elements are hidden.
+    facts.knows_stars = facts.knows_star_positions = facts.fills_rows = false;
+    facts.knows_patches = facts.bisects_means = facts.gradients_at_nodes = false;
+    return facts;
+}
+
+template <class Real>
+Holes<Real>::Holes(const Hierarchy<Real>& inner, std::shared_ptr<const HiddenElements> hidden)
+    : Hierarchy<Real>(facts_with_hidden(inner)),
+      inner_{&inner},
+      hidden_{std::move(hidden)},
+      made_for_{inner} {
+    if (dynamic_cast<const Holes<Real>*>(&inner) != nullptr) {
+        throw InvalidInput("a hierarchy with holes gets no others: hide all at once");
+    }
+}
+
+template <class Real>
+NodeMask Holes<Real>::enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
+                            Real* values, NodeMask wanted, Family& children) const {
+    const HiddenElements::Mark mark = element.mark;
+    const NodeMask missing = inner_->enter(task, element, rule, which, values, wanted, children);
+    children.hidden = 0;
+    for (std::size_t c = 0; c < rule.children.size(); ++c) {
+        hide(children, c, hidden_->child(mark, c));
+    }
+    return missing;
+}
+
+template class Holes<float>;
+template class Holes<double>;
+
+}  // namespace nestgrid

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drawing/frame_field.hpp"
+
+#include <nestgrid/algorithms/holes.hpp>
+
+namespace {
+
+using Hidden = std::shared_ptr<const nestgrid::HiddenElements>;
+
+SharedHierarchy with_holes(const SharedHierarchy& frame, const Hidden& hidden) {
+    return std::visit(
+        [&]<class Real>(
+            const std::shared_ptr<const nestgrid::Hierarchy<Real>>& inner) -> SharedHierarchy {
+            struct Kept {
+                Kept(std::shared_ptr<const nestgrid::Hierarchy<Real>> of, const Hidden& hidden)
+                    : inner{std::move(of)}, holes(*inner, hidden) {}
+                std::shared_ptr<const nestgrid::Hierarchy<Real>> inner;
+                nestgrid::Holes<Real> holes;
+            };
+            const auto kept = std::make_shared<const Kept>(inner, hidden);
+            return std::shared_ptr<const nestgrid::Hierarchy<Real>>(kept, &kept->holes);
+        },
+        frame);
+}
+
+}  // namespace
+
+void hide_missing(FrameField& field) {
+    Hidden hidden;
+    const auto look = [&] {
+        for (const SharedHierarchy& frame : field.frames) {
+            std::visit(
+                [&](const auto& hierarchy) {
+                    hidden = std::make_shared<const nestgrid::HiddenElements>(*hierarchy, hidden);
+                },
+                frame);
+        }
+        return hidden->hidden_leaves();
+    };
+    // What one frame hides may make nodes hang no longer at which another one has no value.
+    std::size_t found = look();
+    for (std::size_t before = 0; found > before && field.frames.size() > 1;) {
+        before = std::exchange(found, look());
+    }
+    if (!hidden->any()) return;
+    for (SharedHierarchy& frame : field.frames) frame = with_holes(frame, hidden);
+    if (!field.between) return;
+    field.between = [between = field.between, hidden](std::span<const float> weights) {
+        return with_holes(between(weights), hidden);
+    };
+}
