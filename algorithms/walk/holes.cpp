@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <nestgrid/error.hpp>
 #include <walk/for_each_element.hpp>
@@ -125,10 +126,27 @@ HiddenElements::HiddenElements(const Hierarchy<Real>& hierarchy,
     }
 }
 
-template HiddenElements::HiddenElements(const Hierarchy<float>&,
-                                        std::shared_ptr<const HiddenElements>);
-template HiddenElements::HiddenElements(const Hierarchy<double>&,
-                                        std::shared_ptr<const HiddenElements>);
+template <class Real>
+std::shared_ptr<const HiddenElements> HiddenElements::of_all(
+    std::span<const Hierarchy<Real>* const> fields) {
+    std::shared_ptr<const HiddenElements> hidden;
+    const auto look = [&] {
+        for (const Hierarchy<Real>* field : fields) {
+            hidden = std::make_shared<const HiddenElements>(*field, std::move(hidden));
+        }
+        return hidden->hidden_leaves();
+    };
+    std::size_t found = look();
+    const bool conforming = fields.front()->facts().conforming;
+    // What one field hides may make nodes hang no longer at which another one has no value.
+    for (std::size_t before = 0; !conforming && fields.size() > 1 && found > before;) {
+        before = std::exchange(found, look());
+    }
+    return hidden;
+}
+
+NESTGRID_HIDDEN_ELEMENTS(, float)
+NESTGRID_HIDDEN_ELEMENTS(, double)
 
 template <class Real>
 HierarchyFacts Holes<Real>::facts_with_hidden(const Hierarchy<Real>& inner) {

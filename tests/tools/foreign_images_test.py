@@ -367,6 +367,80 @@ def test_labels():
             fail(f"label {label}: {row} {done.stderr}")
 
 
+def test_holes():
+    """Samples are missing where they are no number, have a value, or are outside a mask: the surface
+    is the part of the ball for which all are there."""
+    global cases
+    matrix = affine()
+    samples = ball().astype(np.float32)
+    outside = np.indices(SHAPE)[0] > 12
+    there = np.where(outside, 0, 5).astype(np.uint8)
+    holes = np.where(outside, np.nan, samples).astype(np.float32)
+    whole = np.round(samples).astype(np.int16)
+    nibabel.save(nibabel.Nifti1Image(samples, matrix), "ball.nii.gz")
+    nibabel.save(nibabel.Nifti1Image(there, matrix), "there.nii.gz")
+    nibabel.save(nibabel.Nifti1Image(holes, matrix), "holes.nii.gz")
+    scaled = nibabel.Nifti1Image(np.where(outside, -999, whole), matrix)
+    scaled.header.set_slope_inter(1, 0)
+    nibabel.save(scaled, "padded.nii.gz")
+    image = vtkImageData()
+    image.SetDimensions(SHAPE)
+    array = numpy_to_vtk(there.ravel(order="F"), deep=True)
+    image.GetPointData().SetScalars(array)
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(image)
+    writer.SetFileName("there.vti")
+    writer.Write()
+    last = ORIGIN + STEPS[:, 0] * 12
+    for name, *options in (
+        ("holes.nii.gz",),
+        ("ball.nii.gz", "--mask", "there.nii.gz"),
+        ("ball.nii.gz", "--mask", "there.vti"),
+        ("holes.nii.gz", "--mask", "there.vti"),
+        ("padded.nii.gz", "--missing", -999),
+        ("padded.nii.gz", "--missing", 17.5, "--missing", -999, "--mask", "there.nii.gz"),
+    ):
+        for more in (), ("--threshold", "3%"), ("--error", 1), ("--threshold", "3%", "--indicator", "wavelet"):
+            cases += 1
+            points = points_of("isosurface", name, *options, "--value", 88, *more)
+            if points is None:
+                continue
+            along = (points - last) @ AXES[:, 0]
+            distance = np.linalg.norm(points - CENTRE, axis=1)
+            if along.max() > 1e-4 or along.max() < -SPACING[0] or np.abs(distance - 12).max() > 2.5:
+                fail(f"{name} {options} {more}: up to {along.max()} beyond the mask, radii {distance.min()} to {distance.max()}")
+    whole = points_of("isosurface", "ball.nii.gz", "--value", 88)
+    inside = whole[(whole - last) @ AXES[:, 0] < -1e-3]
+    part = points_of("isosurface", "holes.nii.gz", "--value", 88)
+    cut = part[(part - last) @ AXES[:, 0] < -1e-3]
+    if len(inside) != len(cut) or np.abs(np.sort(inside, axis=0) - np.sort(cut, axis=0)).max() > 1e-5:
+        fail(f"{len(cut)} vertices beside holes, {len(inside)} of them of the whole ball")
+    # Frames hide what is missing in any of them.
+    both = np.stack([samples, holes, samples + 2], axis=3)
+    nibabel.save(nibabel.Nifti1Image(both, matrix), "frames.nii.gz")
+    for time in 0, 0.5, 2:
+        cases += 1
+        points = points_of("isosurface", "frames.nii.gz", "--value", 88, "--time", time, "--threshold", "3%")
+        if points is not None and ((points - last) @ AXES[:, 0]).max() > 1e-4:
+            fail(f"at the time {time} there is a surface beyond the mask")
+    # Planes.
+    plane = ball()[:, :, 10:11].astype(np.float32)
+    plane[13:] = np.nan
+    nibabel.save(nibabel.Nifti1Image(plane, matrix), "plane.nii.gz")
+    for command in ("isosurface", "plane.nii.gz", "--value", 90), ("isolines", "plane.nii.gz", "--count", 4), ("height", "plane.nii.gz", "--scale", 1):
+        cases += 1
+        points = points_of(*command)
+        if points is not None and ((points - last) @ AXES[:, 0]).max() > 1e-4:
+            fail(f"{command}: draws what is missing")
+    refused("ball.nii.gz", "but ball.nii.gz has 24 x 22 x 20", "--mask", "plane.nii.gz")
+    refused("ball.nii.gz", "'none.nii' does not exist", "--mask", "none.nii")
+    refused("there.nii.gz", "no sample has a value", "--missing", 0, "--missing", 5)
+    refused("labels.nii.gz", "no sample has the value 9", "--label", 9)
+    done = program("isosurface", "holes.nii.gz", "--value", 88, "--against-vtk")
+    if done.returncode != 1 or "every sample has a value" not in done.stderr:
+        fail(f"--against-vtk: {done.stderr}")
+
+
 def test_analyze():
     global cases
     samples = np.rint(100 * ball(np.eye(3) * 2, np.zeros(3), np.array([22.0, 20.0, 19.0]))).astype(np.int16)
@@ -463,7 +537,7 @@ def test_written():
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    for test in (test_dicom, test_spaces, test_planes, test_pictures, test_frames, test_labels, test_analyze, test_written):
+    for test in (test_dicom, test_spaces, test_planes, test_pictures, test_frames, test_labels, test_holes, test_analyze, test_written):
         test()
     os.chdir("/")
 print(f"{cases} files and choices, {failures} failures")

@@ -201,7 +201,12 @@ def nifti_cases(judge):
     hole = plain.copy()
     hole[3, 4, 5] = np.nan
     nifti("hole.nii", hole)
-    judge.refused("hole.nii", "is not a number")
+    judge.good("hole.nii", hole, space="RAS", note="1 of 10560 samples have no value")
+    hole[3, 4, 5] = np.inf
+    nifti("infinite.nii", hole)
+    judge.refused("infinite.nii", "sample at (3, 4, 5) is infinite")
+    nifti("nothing.nii", np.full_like(hole, np.nan))
+    judge.refused("nothing.nii", "no sample has a value")
 
 
 # NRRD

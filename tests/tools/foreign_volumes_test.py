@@ -51,7 +51,7 @@ def sphere_of(name, value, options):
 
 
 def near(got, expected, most):
-    return np.abs(np.subtract(got, expected)).max() <= most
+    return np.allclose(got, expected, rtol=0, atol=most, equal_nan=True)
 
 
 class Judge:
@@ -81,9 +81,11 @@ class Judge:
         if facts is None:
             return None
         samples = np.asarray(samples, float)
-        span = max(1, abs(samples).max())
-        if not near([facts["least_value"], facts["greatest_value"]], [samples.min(), samples.max()], 1e-6 * span):
-            fail(f"{name}: range {facts['least_value']} to {facts['greatest_value']}, not {samples.min()} to {samples.max()}")
+        least, greatest = np.nanmin(samples), np.nanmax(samples)
+        if not near([facts["least_value"], facts["greatest_value"]], [least, greatest], 1e-6 * max(1, -least, greatest)):
+            fail(f"{name}: range {facts['least_value']} to {facts['greatest_value']}, not {least} to {greatest}")
+        if facts.get("missing", 0) != np.isnan(samples).sum():
+            fail(f"{name}: {facts.get('missing')} samples are missing, not {np.isnan(samples).sum()}")
         if facts["samples"] != list(map(float, samples.shape)):
             fail(f"{name}: samples {facts['samples']}, not {samples.shape}")
         return facts
@@ -110,7 +112,7 @@ def good_in_python(name, samples, options, facts):
     except nestgrid.IoError as error:
         fail(f"load('{name}'): {error}")
         return
-    if not near(np.sort(volume.array, axis=None), np.sort(samples, axis=None), 1e-5 * max(1, abs(samples).max())):
+    if not near(np.sort(volume.array, axis=None), np.sort(samples, axis=None), 1e-5 * max(1, np.nanmax(abs(samples)))):
         fail(f"load('{name}'): other samples")
     axes = np.array([facts["axis_x"], facts["axis_y"], facts["axis_z"]]).T
     steps, origin = axes * facts["spacing"], facts["origin"]

@@ -82,6 +82,12 @@ local_samples() { printf '%s\n' 'DimSize = 20 24 9' 'ElementSpacing = 1 1 2' 'El
 { echo 'AnatomicalOrientation = RAI' && echo 'NDims = 3' && local_samples; } >patient.mha
 { printf '%s\n' 'AnatomicalOrientation = RAI' 'NDims = 3' 'DimSize = 20 432 1' 'ElementSpacing = 1 1 1' \
     'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' && cat v.raw; } >body.mha
+# Twelve rows of 1, twelve of 0, and so on.
+for ((i = 0; i < 18; ++i)); do head -c 240 /dev/zero | tr '\0' '\1' && head -c 240 /dev/zero; done >half.raw
+{ printf '%s\n' 'NDims = 3' 'DimSize = 20 24 18' 'ElementSpacing = 0.5 1 2' 'ElementType = MET_UCHAR' \
+    'ElementDataFile = half.raw'; } >half.mhd
+{ printf '%s\n' 'NDims = 3' 'DimSize = 20 432 1' 'ElementSpacing = 1 1 1' 'ElementType = MET_UCHAR' \
+    'ElementDataFile = half.raw'; } >half_plane.mhd
 frames='a.raw b.raw --dims 20,24,16 --type uint8'
 
 declare -A base=([isosurface]='--value 130' [slice]='--axis z --at 9' [isolines]='--axis z --at 9 --count 3'
@@ -108,6 +114,8 @@ for command in isosurface slice isolines boundary probe info; do
     differ $command --space "patient.mha $options $keep --space ras" "patient.mha $options $keep --space lps"
     half=$(sed 's/130/0.5/' <<<"$options")
     differ $command --label "v.mha $half $keep --label 130" "v.mha $half $keep"
+    effect $command "v.mha $options $keep" --mask half.mhd
+    differ $command --missing "half.mhd $half $keep --missing 0" "half.mhd $half $keep"
     refused 1 'exclude each other' $command vectors.mha $options --component 0 --magnitude
     void $command "not for 'two.nestgrid'" "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
     refused 1 'give --dims' $command v.raw $options && echo "$command --dims" >>covered
@@ -253,6 +261,8 @@ for command in height surface; do
     differ $command --space "body.mha $options $keep --space ras" "body.mha $options $keep --space lps"
     # Bare samples in a plane, with several frames and components.
     differ $command --label "hills.pgm $options $keep --label 64" "hills.pgm $options $keep"
+    effect $command "body.mha $options $keep" --mask half_plane.mhd
+    differ $command --missing "half_plane.mhd $options $keep --missing 0" "half_plane.mhd $options $keep"
     effect $command "plane.mha $options" --frame 1
     differ $command --component "pairs.mha $options --component 0" "pairs.mha $options --component 1"
     differ $command --magnitude "pairs.mha $options --component 0" "pairs.mha $options --magnitude"

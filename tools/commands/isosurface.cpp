@@ -82,6 +82,9 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
     const CLI::App& command = *o.surface.command;
     if (!field.volumes || o.time.in_use()) {
         refuse_options(command, {"--against-vtk"}, "is for one volume");
+    } else if (field.volumes->front().missing > 0) {
+        refuse_options(command, {"--against-vtk"},
+                       "is for volumes of which every sample has a value");
     }
     const int dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
                                      field.frames.front());

@@ -27,22 +27,16 @@ SharedHierarchy with_holes(const SharedHierarchy& frame, const Hidden& hidden) {
 }  // namespace
 
 void hide_missing(FrameField& field) {
-    Hidden hidden;
-    const auto look = [&] {
-        for (const SharedHierarchy& frame : field.frames) {
-            std::visit(
-                [&](const auto& hierarchy) {
-                    hidden = std::make_shared<const nestgrid::HiddenElements>(*hierarchy, hidden);
-                },
-                frame);
-        }
-        return hidden->hidden_leaves();
-    };
-    // What one frame hides may make nodes hang no longer at which another one has no value.
-    std::size_t found = look();
-    for (std::size_t before = 0; found > before && field.frames.size() > 1;) {
-        before = std::exchange(found, look());
-    }
+    const Hidden hidden = std::visit(
+        [&]<class Frame>(const Frame&) {
+            std::vector<typename Frame::element_type*> frames;
+            for (const SharedHierarchy& each : field.frames) {
+                frames.push_back(std::get<Frame>(each).get());
+            }
+            using Real = typename Frame::element_type::value_type;
+            return nestgrid::HiddenElements::of_all<Real>(frames);
+        },
+        field.frames.front());
     if (!hidden->any()) return;
     for (SharedHierarchy& frame : field.frames) frame = with_holes(frame, hidden);
     if (!field.between) return;

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
 #include "input/field_pair.hpp"
 #include "input/input_field.hpp"
 
@@ -38,6 +41,11 @@ InputField frames_of(nestgrid::StoredHierarchy<Family> stored, const Input& inpu
     } else {
         set_frames(field, grid, std::move(fields), all.times, kept);
     }
+    const auto any_missing = [](const nestgrid::NamedField* each) {
+        return each != nullptr &&
+               std::ranges::any_of(each->values, [](double value) { return std::isnan(value); });
+    };
+    if (any_missing(&named) || any_missing(find_field(all.fields, input.by))) hide_missing(field);
     field.name = named.name;
     field.nodes = grid->used_node_count();
     field.leaf_elements = grid->leaf_count();

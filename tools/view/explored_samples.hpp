@@ -5,7 +5,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include <nestgrid/adapters/bisection.hpp>
 
@@ -32,6 +34,18 @@ inline std::array<Point, 2> box_of(const LatticeGeometry<3>& g) {
     return box;
 }
 
+/// Hides elements beside samples that are not a number, where there are any.
+template <class Sample>
+void hide_missing_samples(ExploredField& field,
+                          const std::vector<std::span<const Sample>>& frames) {
+    if constexpr (std::is_floating_point_v<Sample>) {
+        const auto has_missing = [](std::span<const Sample> frame) {
+            return std::ranges::any_of(frame, [](Sample value) { return std::isnan(value); });
+        };
+        if (std::ranges::any_of(frames, has_missing)) hide_missing(field);
+    }
+}
+
 /// The samples of a volume, x fastest.
 /// \param memory that holds the samples, or null where they outlive the field
 /// \throw InvalidInput as LatticeBisection and LatticeField
@@ -42,6 +56,7 @@ ExploredField explored_samples(const LatticeGeometry<3>& geometry, std::span<con
     const auto grid = std::make_shared<const Grid>(geometry);
     ExploredField f =
         still_field(grid, LatticeField<Grid, Sample>(*grid, samples), std::move(memory));
+    hide_missing_samples(f, std::vector{samples});
     f.box = box_of(geometry);
     describe_samples(f, std::vector{samples});
     return f;
@@ -59,6 +74,7 @@ ExploredField explored_samples(const LatticeGeometry<3>& geometry,
     std::vector<LatticeField<Grid, Sample>> fields;
     for (const auto& samples : frames) fields.emplace_back(*grid, samples);
     ExploredField f = moving_field(grid, std::move(fields), std::move(times), std::move(memory));
+    hide_missing_samples(f, frames);
     f.box = box_of(geometry);
     describe_samples(f, frames);
     return f;

@@ -234,15 +234,20 @@ def shape(*parts: tuple[str, int]) -> Kind:
     return kind
 
 
+def _with_holes(array: np.ma.MaskedArray) -> np.ndarray:
+    """A copy with nan for masked entries, of a type that keeps all other numbers."""
+    if array.dtype.kind not in "iuf":
+        return np.ma.getdata(array)  # which is refused
+    small = array.dtype.itemsize <= (4 if array.dtype.kind == "f" else 2)
+    return array.astype(np.float32 if small else np.float64).filled(np.nan)
+
+
 def samples(value: Any) -> np.ndarray:
-    """An array that is not copied where it is one."""
+    """An array that is not copied where it is one without masked entries."""
     if isinstance(value, (str, bytes, dict, set)) or value is None or callable(value):
         raise not_a("an array of 2 or 3 indices", value)
     if np.ma.is_masked(value):
-        raise Unfit(
-            "has masked entries, which would be drawn: fill them with numbers (numpy.ma.filled)",
-            InvalidInput,
-        )
+        return _with_holes(value)
     try:
         return np.asanyarray(value)
     except ValueError:

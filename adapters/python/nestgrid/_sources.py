@@ -22,7 +22,7 @@ class Volume(Field):
 
     array      2 or 3 indices; index d runs along coordinate d. Integers of 8 to 64 bits, float32
                or float64, in C or Fortran order, or with any other order of the indices, without
-               gaps
+               gaps. Nothing is drawn beside samples that are nan, or masked (numpy.ma; copied)
     spacing    distance of samples along each index, in units of length; None: 1
     origin     position of array[0, 0, 0]; None: 0
     direction  (d, d) for d indices: column i is the axis of index i in space, such as that of a
@@ -75,10 +75,16 @@ class Volume(Field):
         return f"{' x '.join(str(n) for n in self._array.shape)} samples of {self._array.dtype}"
 
     def _range_text(self) -> str:
-        least, greatest = self._array.min(), self._array.max()
+        missing = 0
+        if self._array.dtype.kind == "f":
+            missing = np.count_nonzero(np.isnan(self._array))
+        if missing == self._array.size:
+            return "without any value"
+        least, greatest = np.nanmin(self._array), np.nanmax(self._array)
         if not np.isfinite(float(least)) or not np.isfinite(float(greatest)):
             return "with values that are not finite"
-        return f"from {float(least):.6g} to {float(greatest):.6g}"
+        text = f"from {float(least):.6g} to {float(greatest):.6g}"
+        return text + (f", {missing} of them missing" if missing else "")
 
     def _rows(self) -> list[tuple[str, str]]:
         place = [

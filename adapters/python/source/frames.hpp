@@ -4,7 +4,10 @@
 // Frames of a field on one grid, and the field at a time between them.
 #pragma once
 
+#include <optional>
+
 #include <nestgrid/algorithms/between.hpp>
+#include <nestgrid/algorithms/holes.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 
@@ -18,12 +21,22 @@ class GridFrames final : public FrameSource,
                          public std::enable_shared_from_this<GridFrames<Grid, Field>> {
 public:
     /// \param memory that the grid and the fields borrow from; may be null
+    /// \param missing whether fields have nodes without a value, beside which no frame is drawn
     GridFrames(std::shared_ptr<const Grid> grid, std::vector<Field> fields,
-               std::shared_ptr<const void> memory)
+               std::shared_ptr<const void> memory, bool missing)
         : memory_{std::move(memory)}, grid_{std::move(grid)}, fields_{std::move(fields)} {
+        std::vector<const Hierarchy<Real>*> frames;
         for (const Field& field : fields_) {
             erased_.push_back(std::make_unique<Erased>(*grid_, field));
-            prerolls_.push_back(std::make_unique<Prerolls>(erased_.back().get()));
+            frames.push_back(erased_.back().get());
+        }
+        if (missing) hidden_ = HiddenElements::of_all<Real>(frames);
+        for (const Hierarchy<Real>* frame : frames) {
+            if (hidden_) {
+                holes_.push_back(std::make_unique<Holes<Real>>(*frame, hidden_));
+                frame = holes_.back().get();
+            }
+            prerolls_.push_back(std::make_unique<Prerolls>(frame));
         }
     }
 
@@ -35,6 +48,7 @@ public:
     }
 
 private:
+    using Real = typename Field::value_type;
     using Erased = detail::ErasedHierarchy<Grid, Field>;
 
     /// The field between frames.
@@ -44,10 +58,15 @@ private:
             : frames_{std::move(frames)},
               weights_(weights.begin(), weights.end()),
               between_(frames_->fields(), weights),
-              hierarchy_(*frames_->grid_, between_),
-              own_(&hierarchy_) {}
+              hierarchy_(*frames_->grid_, between_) {
+            if (frames_->hidden_) holes_.emplace(hierarchy_, frames_->hidden_);
+            own_.emplace(hierarchy());
+        }
 
-        AnyHierarchy hierarchy() const override { return &hierarchy_; }
+        AnyHierarchy hierarchy() const override {
+            if (holes_) return &*holes_;
+            return &hierarchy_;
+        }
         /// Offsets, deviations, bounds, the numerical and the wavelet indicator are sums of those
         /// of the frames; others are made of this field.
         ChosenIndicator choose(const std::string& name, double blend,
@@ -62,7 +81,7 @@ private:
                     [&](Prerolls& frame) { return frame.swept(name, blend, call); });
                 return {swept, bounds, bounds.get()};
             }
-            return {own_.swept(name, blend, call), bounds, bounds.get()};
+            return {own_->swept(name, blend, call), bounds, bounds.get()};
         }
         std::shared_ptr<const SweptIndicator> sizes(double slope, const Call& call) const override {
             return frames_->prerolls_.front()->sizes(slope, call);
@@ -71,7 +90,7 @@ private:
             const auto offsets = key_frames(NodeError::offset, 1, call);
             return {offsets->least(), offsets->greatest()};
         }
-        void clear() override { own_.clear(); }
+        void clear() override { own_->clear(); }
 
     private:
         std::shared_ptr<const KeyFrames> key_frames(NodeError error, double blend,
@@ -102,7 +121,8 @@ private:
         std::vector<float> weights_;
         Between<Field> between_;
         detail::ErasedHierarchy<Grid, Between<Field>> hierarchy_;
-        mutable Prerolls own_;
+        std::optional<Holes<Real>> holes_;
+        mutable std::optional<Prerolls> own_;
     };
 
     std::vector<const Field*> fields() const {
@@ -115,6 +135,8 @@ private:
     std::shared_ptr<const Grid> grid_;
     std::vector<Field> fields_;
     std::vector<std::unique_ptr<Erased>> erased_;
+    std::shared_ptr<const HiddenElements> hidden_;  // null where every node has a value
+    std::vector<std::unique_ptr<Holes<Real>>> holes_;
     std::vector<std::unique_ptr<Prerolls>> prerolls_;
 };
 

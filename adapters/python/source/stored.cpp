@@ -3,6 +3,8 @@
 //
 // Hierarchies in .nestgrid files.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include <nestgrid/adapters/bisection_grid.hpp>
 #include <nestgrid/adapters/octree_grid.hpp>
@@ -30,6 +32,11 @@ std::size_t index_of(const std::vector<NamedField>& fields, const std::string& n
                                     : "there is no field '" + name + "', only " + known);
 }
 
+/// Whether a value of a frame is not a number (NaN).
+bool any_missing(const NamedField& field) {
+    return std::ranges::any_of(field.values, [](double value) { return std::isnan(value); });
+}
+
 template <class Family>
 class Stored final : public PrerolledSource {
 public:
@@ -39,14 +46,22 @@ public:
     Stored(StoredHierarchy<Family> stored, const std::string& array)
         : stored_(std::move(stored)),
           field_(stored_.grid, stored_.fields[index_of(stored_.fields, array)].values),
-          hierarchy_(stored_.grid, field_) {}
+          hierarchy_(stored_.grid, field_) {
+        if (any_missing(stored_.fields[index_of(stored_.fields, array)])) {
+            holes_.emplace(hierarchy_);
+        }
+    }
 
-    AnyHierarchy hierarchy() const override { return &hierarchy_; }
+    AnyHierarchy hierarchy() const override {
+        if (holes_) return &*holes_;
+        return &hierarchy_;
+    }
 
 private:
     StoredHierarchy<Family> stored_;
     Field field_;
     detail::ErasedHierarchy<Grid, Field> hierarchy_;
+    std::optional<Holes<double>> holes_;
 };
 
 template <class Family>
@@ -67,7 +82,8 @@ LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& arra
         fields.emplace_back(kept->grid, kept->frame(kept->fields[index], i));
     }
     loaded.frames = std::make_shared<GridFrames<Grid, Field>>(
-        std::shared_ptr<const Grid>(kept, &kept->grid), std::move(fields), kept);
+        std::shared_ptr<const Grid>(kept, &kept->grid), std::move(fields), kept,
+        any_missing(kept->fields[index]));
     return loaded;
 }
 

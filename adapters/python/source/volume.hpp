@@ -5,9 +5,14 @@
 // the lattice's directions: nothing is copied, and results lie where the indices say.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
+#include <type_traits>
 
 #include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/holes.hpp>
 
 #include "frames.hpp"
 #include "source.hpp"
@@ -39,6 +44,16 @@ LatticeField<Grid, Sample> lattice_field(const Grid& grid, const Samples& sample
             std::span(static_cast<const Sample*>(samples.data), std::size_t{grid.sample_count()})};
 }
 
+/// Whether a sample has no value: is not a number (NaN).
+template <class Sample>
+bool any_missing(const Samples& samples, std::size_t count) {
+    if constexpr (std::is_floating_point_v<Sample>) {
+        const std::span all(static_cast<const Sample*>(samples.data), count);
+        return std::ranges::any_of(all, [](Sample value) { return std::isnan(value); });
+    }
+    return false;
+}
+
 template <int dim, class Sample>
 class Volume final : public PrerolledSource {
 public:
@@ -48,9 +63,14 @@ public:
         : memory_{samples.memory},
           grid_(lattice_geometry<dim>(samples)),
           field_{lattice_field<Sample>(grid_, samples)},
-          hierarchy_{erase(grid_, field_)} {}
+          hierarchy_{erase(grid_, field_)} {
+        if (any_missing<Sample>(samples, grid_.sample_count())) holes_.emplace(hierarchy_);
+    }
 
-    AnyHierarchy hierarchy() const override { return &hierarchy_; }
+    AnyHierarchy hierarchy() const override {
+        if (holes_) return &*holes_;
+        return &hierarchy_;
+    }
 
 private:
     std::shared_ptr<const void> memory_;
@@ -58,6 +78,7 @@ private:
     LatticeField<Grid, Sample> field_;
     decltype(erase(std::declval<const Grid&>(),
                    std::declval<const LatticeField<Grid, Sample>&>())) hierarchy_;
+    std::optional<Holes<typename LatticeField<Grid, Sample>::value_type>> holes_;
 };
 
 /// The samples of several arrays of one layout as frames.
@@ -68,11 +89,13 @@ std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) 
     const auto grid = std::make_shared<const Grid>(lattice_geometry<dim>(frames.front()));
     std::vector<Field> fields;
     const auto memory = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+    bool missing = false;
     for (const Samples& frame : frames) {
+        missing = missing || any_missing<Sample>(frame, grid->sample_count());
         fields.push_back(lattice_field<Sample>(*grid, frame));
         memory->push_back(frame.memory);
     }
-    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), memory);
+    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), memory, missing);
 }
 
 /// Calls function(Sample{}) with the type of a name.

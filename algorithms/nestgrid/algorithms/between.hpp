@@ -122,8 +122,9 @@ private:
     static double add_product(double weight, double value, double sum) {
         return std::fma(weight, value, sum);
     }
+    /// A value that is not a number may be one that is missing (holes.hpp).
     static value_type usable(double value) {
-        if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<value_type>::max() / 8))) {
+        if (std::abs(value) > static_cast<double>(std::numeric_limits<value_type>::max() / 8)) {
             throw InvalidInput("a value between frames is not a usable number: " +
                                std::to_string(value));
         }

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <nestgrid/detail/made_for.hpp>
@@ -35,6 +36,11 @@ public:
     template <class Real>
     explicit HiddenElements(const Hierarchy<Real>& hierarchy,
                             std::shared_ptr<const HiddenElements> already = nullptr);
+
+    /// The elements of a grid that any of several fields on it hides, such as the frames of one.
+    template <class Real>
+    static std::shared_ptr<const HiddenElements> of_all(
+        std::span<const Hierarchy<Real>* const> fields);
 
     /// What stands for an element: how it and all below it is hidden.
     using Mark = std::uint32_t;
@@ -68,10 +74,13 @@ private:
     std::size_t hidden_leaves_ = 0;
 };
 
-extern template HiddenElements::HiddenElements(const Hierarchy<float>&,
-                                               std::shared_ptr<const HiddenElements>);
-extern template HiddenElements::HiddenElements(const Hierarchy<double>&,
-                                               std::shared_ptr<const HiddenElements>);
+#define NESTGRID_HIDDEN_ELEMENTS(prefix, Real)                                             \
+    prefix template HiddenElements::HiddenElements(const Hierarchy<Real>&,                 \
+                                                   std::shared_ptr<const HiddenElements>); \
+    prefix template std::shared_ptr<const HiddenElements> HiddenElements::of_all(          \
+        std::span<const Hierarchy<Real>* const>);
+NESTGRID_HIDDEN_ELEMENTS(extern, float)
+NESTGRID_HIDDEN_ELEMENTS(extern, double)
 
 /// A hierarchy with hidden elements, and beside that another one.
 template <class Real>

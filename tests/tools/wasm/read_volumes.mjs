@@ -18,7 +18,7 @@ async function read({ files, choice, places }) {
   const target = new Uint8Array(volume.bytes);
   await volume.read(target);
   const values = numbersIn(target, volume.type);
-  let [least, greatest] = [values[0], values[0]];
+  let [least, greatest] = [Infinity, -Infinity];
   for (const value of values) {
     if (value < least) least = value;
     if (value > greatest) greatest = value;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <type_traits>
 
@@ -333,6 +334,12 @@ void put_frame(const FileSamples& samples, const VolumeChoice& choice, const Kep
     std::vector<double> exact(count);
     compute(samples, std::span(exact));
     hide_missing(choice, kept, std::span(exact));
+    if (!choice.all_frames && std::ranges::find(exact, *choice.label) == exact.end()) {
+        std::array<char, 32> label{};
+        std::snprintf(label.data(), label.size(), "%g", *choice.label);
+        throw InvalidInput(samples.path.string() + ": no sample has the value " + label.data() +
+                           ", which --label asks for");
+    }
     std::ranges::transform(exact, values.begin(), [&](double value) {
         if (std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
         return value == *choice.label ? 1.0F : 0.0F;
