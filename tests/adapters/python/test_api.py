@@ -53,11 +53,37 @@ def test_wrong_volumes():
 
 def test_values_that_are_no_numbers():
     broken = CUBE.copy()
-    broken[1, 1, 1] = np.nan
-    with refused("nan"):
+    broken[1, 1, 1] = np.inf
+    with refused("inf"):
         nestgrid.Volume(broken).isosurface(3)
-    with refused("nan"):
+    with refused("inf"):
         nestgrid.Volume(broken).range
+
+
+def test_holes():
+    """Nothing is drawn beside samples that are missing, whatever says so, alone and between frames."""
+    places = np.indices((17, 15, 16))
+    ball = (100 - np.sqrt(((places - 7.3) ** 2).sum(axis=0))).astype(np.float32)
+    outside = places[0] > 9
+    holes = np.where(outside, np.float32(np.nan), ball)
+    expected = nestgrid.Volume(holes).isosurface(95)
+    whole = nestgrid.Volume(ball).isosurface(95)
+    assert 0 < len(expected.triangles) < len(whole.triangles)
+    assert expected.vertices[:, 0].max() <= 9 and expected.open_edges > 0
+    integers = np.rint(ball * 8).astype(np.int16)
+    masked = nestgrid.Volume(np.ma.masked_array(integers, outside))
+    assert masked.array.dtype == np.float32 and np.isnan(masked.array).sum() == outside.sum()
+    assert masked.isosurface(760).vertices[:, 0].max() <= 9
+    assert f"{outside.sum()} of them missing" in repr(nestgrid.Volume(holes))
+    volume = nestgrid.Volume(holes)
+    assert volume.range == (np.nanmin(holes), np.nanmax(holes))
+    for options in {"error": 0.5}, {"threshold": 0.2}, {"max_triangles": 300}, {"threshold": 0.1, "indicator": "wavelet"}:
+        assert volume.isosurface(95, **options).vertices[:, 0].max() <= 9
+    assert np.isnan(volume.probe([(12, 7, 7)]))[0] and not np.isnan(volume.probe([(5, 7, 7)]))[0]
+    assert (volume.slice(plane=((0, 0, 7), (0, 0, 1))).vertices[:, 0] <= 9).all()
+    frames = nestgrid.Frames([ball, holes, ball + 1], [0, 1, 2])
+    for time in 0, 0.5, 1.5:
+        assert frames.at(time).isosurface(95, threshold=0.1).vertices[:, 0].max() <= 9
 
 
 def test_wrong_arguments():

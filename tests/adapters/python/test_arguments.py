@@ -182,5 +182,6 @@ def test_what_things_say_of_themselves():
         table = thing._repr_html_()
         assert table.startswith("<table>") and "<b>" not in table
     assert "&lt;b&gt;heat" in volume._repr_html_() and "mm" in volume._repr_html_()
-    broken = nestgrid.Volume(np.full((2, 2, 2), np.nan))
+    broken = nestgrid.Volume(np.full((2, 2, 2), np.inf))
     assert "not finite" in repr(broken)
+    assert "without any value" in repr(nestgrid.Volume(np.full((2, 2, 2), np.nan)))
