@@ -51,7 +51,10 @@ private:
 template <class Real>
 bool bisects_by_keys(const Hierarchy<Real>& hierarchy) {
     const HierarchyFacts& facts = hierarchy.facts();
-    if (!facts.knows_stars || !facts.knows_star_positions) return false;
+    // Walks by keys ask for values that hidden leaves alone have.
+    if (!facts.knows_stars || !facts.knows_star_positions || facts.offers(Feature::hidden)) {
+        return false;
+    }
     bool holds = true;
     const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
     for_each_split_kind(walk, [&](const ElementView<Real>& view, const Split& split,

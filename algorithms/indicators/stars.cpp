@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <span>
 
 #include <indicators/offset.hpp>
@@ -32,7 +33,9 @@ template <class Real>
 class StarRows {
 public:
     StarRows(const Hierarchy<Real>& hierarchy, detail::IndicatorEntry* entries)
-        : hierarchy_{&hierarchy}, entries_{entries} {}
+        : hierarchy_{&hierarchy},
+          may_be_missing_{hierarchy.offers(Feature::hidden)},
+          entries_{entries} {}
 
     void add(const StarRow& row) {
         for (std::size_t i = 0; i < row.count; i += run_) make_run(row, i);
@@ -71,6 +74,7 @@ private:
         if (!row.gathers) {
             fetch(0, own_);
             for (std::size_t p = 0; p < row.parents.size(); ++p) fetch(row.parents[p], parent_[p]);
+            if (may_be_missing_) leave_out_missing(count, row.parents.size());
         }
         // Where fewer than four nodes are left, computes the last one several times.
         Steps whole;
@@ -81,6 +85,22 @@ private:
         }
         for (std::size_t i = 0, at = node; i < count; i += width_, at += width_ * row.stride) {
             make(row, i, entries_ + at, i + width_ <= count ? whole : rest);
+        }
+    }
+
+    /// Makes the offset of a node infinite where a parent has no value (NaN): what a walk has there
+    /// is the mean of no data. Where the node has none itself, it is 0: nobody asks.
+    void leave_out_missing(std::size_t count, std::size_t parents) {
+        for (std::size_t i = 0; i < (count + width_ - 1) / width_ * width_; ++i) {
+            const bool missing = std::isnan(own_[i]);
+            if (!missing) add_range(Reals::all(own_[i]));
+            bool beside = false;
+            for (std::size_t p = 0; p < parents; ++p) {
+                beside = beside || std::isnan(parent_[p][i]);
+            }
+            if (!missing && !beside) continue;
+            own_[i] = missing ? 0 : std::numeric_limits<Real>::infinity();
+            for (std::size_t p = 0; p < parents; ++p) parent_[p][i] = 0;
         }
     }
 
@@ -97,7 +117,7 @@ private:
                                       return bits_of(finer[step[k]]);
                                   }));
         }
-        if (!row.gathers) add_range(Reals::load(own_.data() + i));
+        if (!row.gathers && !may_be_missing_) add_range(Reals::load(own_.data() + i));
         if (!row.parents.empty()) {
             const Floats own = own_offsets(row.parents.size(), i);
             const auto finer = (made & Entries::all(0xFFFF0000U)).template as<float>();
@@ -139,6 +159,7 @@ private:
     }
 
     const Hierarchy<Real>* hierarchy_;
+    bool may_be_missing_;
     detail::IndicatorEntry* entries_;
     Run own_;
     std::array<Run, 8> parent_;

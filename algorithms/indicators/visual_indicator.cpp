@@ -87,7 +87,8 @@ private:
 template <class Real>
 double default_tau(const Hierarchy<Real>& hierarchy) {
     RangeVisitor<Real> visitor(static_cast<std::size_t>(hierarchy.facts().components));
-    if (hierarchy.facts().knows_stars && hierarchy.facts().components == 1) {
+    const HierarchyFacts& facts = hierarchy.facts();
+    if (facts.knows_stars && facts.components == 1 && !facts.offers(Feature::hidden)) {
         std::vector<Real> values;
         hierarchy.star_rows([&](const StarRow& row) {
             values.resize(row.count);

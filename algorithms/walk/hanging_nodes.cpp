@@ -102,20 +102,12 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
 template <class Real>
 void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes) {
     const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
-    NodeSet met(hierarchy.facts().node_count);
-    NodeSet seen(hierarchy.facts().node_count);
+    UnseenSearch search(hierarchy.facts().node_count);
     for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
-        for (const NodeKey key : split.keys) met.insert(key);
         const bool shown = split.rule == nullptr && view.member->hidden != Hidden::wholly;
-        if (!shown && view.level > 0) return;
-        std::array<NodeKey, max_corners> keys;
-        walk.corners(view, keys.data(), nullptr);
-        for (const NodeKey key : std::span(keys).first(view.corner_count())) {
-            if (shown) seen.insert(key);
-            if (view.level == 0) met.insert(key);
-        }
+        search.add(walk, view, split, shown);
     });
-    nodes.set_unseen(met.without(seen));
+    nodes.set_unseen(search.found());
 }
 
 template HangingNodes derive_hanging_nodes(const Hierarchy<float>&);

@@ -4,6 +4,7 @@
 
 #include <nestgrid/detail/hanging.hpp>
 #include <nestgrid/hierarchy.hpp>
+#include <walk/walk.hpp>
 
 namespace nestgrid::engine {
 
@@ -22,6 +23,32 @@ bool hanging_nodes_unknown(const Hierarchy<Real>& hierarchy) {
             hierarchy.offers(Feature::hanging_parents)) &&
            !hierarchy.facts().conforming;
 }
+
+/// Finds the nodes of hidden leaves alone, or of no leaf, in a walk that carries keys.
+class UnseenSearch {
+public:
+    explicit UnseenSearch(std::size_t node_count) : met_(node_count), seen_(node_count) {}
+
+    /// Takes an element, each once.
+    /// \param shown whether it is a leaf that is drawn
+    template <class Real>
+    void add(const Walk<Real>& walk, const ElementView<Real>& view, const Split& split,
+             bool shown) {
+        for (const NodeKey key : split.keys) met_.insert(key);
+        if (!shown && view.level > 0) return;
+        std::array<NodeKey, max_corners> keys;
+        walk.corners(view, keys.data(), nullptr);
+        for (const NodeKey key : std::span(keys).first(view.corner_count())) {
+            if (shown) seen_.insert(key);
+            if (view.level == 0) met_.insert(key);
+        }
+    }
+    NodeSet found() const { return met_.without(seen_); }
+
+private:
+    NodeSet met_;
+    NodeSet seen_;
+};
 
 /// Sets the nodes of hidden leaves alone, or of no leaf. Walks the hierarchy once.
 template <class Real>

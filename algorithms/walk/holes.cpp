@@ -97,18 +97,21 @@ void HiddenElements::find(const Hierarchy<Real>& hierarchy) {
     marks_.clear();
     hidden_leaves_ = 0;
     const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
-    const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = !hanging.empty()}, &hanging);
+    const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true}, &hanging);
     const std::size_t components = walk.components();
     Builder builder(*this);
+    engine::UnseenSearch unseen(hierarchy.facts().node_count);
     const auto look = [&](const engine::ElementView<Real>& view, const engine::Split& split) {
-        if (split.rule != nullptr) return;
+        if (split.rule != nullptr) return unseen.add(walk, view, split, false);
         const std::span<const Real> values(view.value, view.corner_count() * components);
         const bool hidden = view.member->hidden == Hidden::wholly ||
                             std::ranges::any_of(values, [](Real u) { return std::isnan(u); });
         builder.add_leaf(view, hidden);
+        unseen.add(walk, view, split, !hidden);
     };
     engine::for_each_element<Real>(walk, false, look);
     builder.finish();
+    unseen_ = unseen.found();
 }
 
 template <class Real>
@@ -152,8 +155,7 @@ template <class Real>
 HierarchyFacts Holes<Real>::facts_with_hidden(const Hierarchy<Real>& inner) {
     HierarchyFacts facts = inner.facts();
     facts.features |= static_cast<unsigned>(Feature::hidden);
-    // Neither is told which elements are hidden.
-    facts.knows_stars = facts.knows_star_positions = facts.fills_rows = false;
+    // Patches are not told which elements are hidden.
     facts.knows_patches = facts.bisects_means = facts.gradients_at_nodes = false;
     return facts;
 }
@@ -174,11 +176,20 @@ NodeMask Holes<Real>::enter(Task* task, const Handle& element, const Rule& rule,
                             Real* values, NodeMask wanted, Family& children) const {
     const HiddenElements::Mark mark = element.mark;
     const NodeMask missing = inner_->enter(task, element, rule, which, values, wanted, children);
-    children.hidden = 0;
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         hide(children, c, hidden_->child(mark, c));
     }
     return missing;
+}
+
+template <class Real>
+void Holes<Real>::row_values(NodeKey first, std::size_t stride, std::span<Real> out) const {
+    inner_->row_values(first, stride, out);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        if (hidden_->unseen().contains(first + static_cast<NodeKey>(i * stride))) {
+            out[i] = std::numeric_limits<Real>::quiet_NaN();
+        }
+    }
 }
 
 template class Holes<float>;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/holes.hpp>
@@ -167,6 +168,14 @@ TEST(HiddenValues, DoNotExcuseOthers) {
     EXPECT_THROW(HierarchicalIndicator(grid, field), InvalidInput);
 }
 
+/// A forest that hides leaves, and does not say which nodes hang.
+template <int dim>
+class ReticentForest : public HidingForest<dim> {
+public:
+    using HidingForest<dim>::HidingForest;
+    NodeMask constrained(std::uint32_t e) const = delete;
+};
+
 /// Values of a field at the nodes of a forest, those that hang being means.
 template <int dim>
 std::vector<double> resolved(const HidingForest<dim>& grid, std::vector<double> values) {
@@ -190,10 +199,11 @@ std::vector<double> resolved(const HidingForest<dim>& grid, std::vector<double> 
     return values;
 }
 
-/// The forest with those leaves hidden, one by one, at whose corners there are no values.
+/// The forest with those leaves hidden, one by one, at whose corners there are no values, and
+/// others.
 template <int dim>
-HidingForest<dim> hidden_one_by_one(const Forest<dim>& forest, const std::vector<double>& values) {
-    std::vector<bool> hides(forest.cells.size());
+HidingForest<dim> hidden_one_by_one(const Forest<dim>& forest, const std::vector<double>& values,
+                                    std::vector<bool> hides) {
     for (;;) {
         const auto hidden = [&](std::size_t leaf) { return bool{hides[leaf]}; };
         HidingForest<dim> grid(forest, hidden);
@@ -223,9 +233,13 @@ void expect_holes(Forest<dim> forest, int steps, double share) {
         missing.push_back(uniform(random) < share);
         values.push_back(missing.back() ? nan : f(x));
     }
-    const HidingForest<dim> expected = hidden_one_by_one(forest, values);
-    const PlaceholderField<dim> field(forest, f, missing, nan);
-    const auto inner = erase(forest, field);
+    // The grid hides some of its own, too.
+    std::vector<bool> hides;
+    for (std::size_t e = 0; e < forest.cells.size(); ++e) hides.push_back(random() % 10 == 0);
+    const ReticentForest<dim> grid(forest, [&](std::size_t leaf) { return bool{hides[leaf]}; });
+    const HidingForest<dim> expected = hidden_one_by_one(forest, values, hides);
+    const PlaceholderField<dim> field(grid, f, missing, nan);
+    const auto inner = erase(grid, field);
     const Holes<double> holes(inner);
     std::size_t hidden = 0;
     for (std::size_t e = 0; e < forest.cells.size(); ++e) {
@@ -253,6 +267,85 @@ TEST(Holes, AreTheLeavesWithoutValues) {
     }
 }
 
+/// The samples of a lattice without what makes its preroll go by rows.
+template <class Grid, class Sample>
+class PlainSamples {
+public:
+    using value_type = Sample;
+    using Element = typename Grid::Element;
+    PlainSamples(const Grid& grid, std::span<const Sample> samples) : field_(grid, samples) {}
+    NodeMask coarse_values(std::size_t i, std::span<Sample> out) const {
+        return field_.coarse_values(i, out);
+    }
+    NodeMask new_values(const Element& e, NodeMask which, std::span<Sample> out) const {
+        return field_.new_values(e, which, out);
+    }
+
+private:
+    LatticeField<Grid, Sample> field_;
+};
+
+template <class Sample>
+void expect_true_rows() {
+    using Grid = LatticeBisection<3>;
+    std::mt19937 random(4);
+    for (const double share : {0.001, 0.02, 0.3}) {
+        const Grid grid(LatticeGeometry<3>{.samples = {19, 17, 33}});
+        std::vector<Sample> samples;
+        for (std::size_t i = 0; i < grid.sample_count(); ++i) {
+            const bool missing = uniform(random) < share;
+            const double x = 0.2 * static_cast<double>(i % 19);
+            const double y = 0.003 * static_cast<double>(i);
+            samples.push_back(missing ? std::numeric_limits<Sample>::quiet_NaN()
+                                      : static_cast<Sample>(std::sin(x) + std::sin(y)));
+        }
+        const LatticeField<Grid, Sample> by_rows(grid, samples);
+        const PlainSamples<Grid, Sample> by_walk(grid, samples);
+        const auto erased = erase(grid, by_rows);
+        const auto plain = erase(grid, by_walk);
+        const Holes<Sample> holes(erased);
+        const Holes<Sample> walked(plain, holes.hidden());
+        ASSERT_TRUE(holes.facts().knows_stars);
+        ASSERT_FALSE(walked.facts().knows_stars);
+        const HierarchicalIndicator rows(holes);
+        const HierarchicalIndicator all(walked);
+        for (const double threshold : {0.0, 0.02, 0.3}) {
+            SCOPED_TRACE(threshold);
+            const auto draw = [&](const Holes<Sample>& of, const HierarchicalIndicator& indicator) {
+                return isosurface<3>(of, 0.3, Threshold(&indicator, threshold), indicator,
+                                     IsosurfaceOptions{.verify = true});
+            };
+            const auto fast = draw(holes, rows);
+            const auto slow = draw(walked, all);
+            if (threshold == 0) {
+                EXPECT_EQ(fast.surface.vertices, slow.surface.vertices);
+                EXPECT_EQ(fast.surface.simplices, slow.surface.simplices);
+            }
+            std::vector<Point> points;
+            for (std::size_t k = 0; k < 2000; ++k) {
+                points.push_back(
+                    {18 * uniform(random), 16 * uniform(random), 32 * uniform(random)});
+            }
+            const auto exact = probe(holes, points).values;
+            const auto drawn = probe(holes, points, Threshold(&rows, threshold), rows).values;
+            std::size_t inside = 0;
+            for (std::size_t k = 0; k < points.size(); ++k) {
+                ASSERT_EQ(std::isnan(exact[k]), std::isnan(drawn[k]));
+                if (std::isnan(exact[k])) continue;
+                EXPECT_LE(std::abs(exact[k] - drawn[k]), fast.error_bound + 1e-6);
+                ++inside;
+            }
+            EXPECT_GT(inside, 20U);
+        }
+    }
+}
+
+/// Prerolls of samples by rows are as true beside holes as those of all elements.
+TEST(Holes, InSamplesGoByRows) {
+    expect_true_rows<float>();
+    expect_true_rows<double>();
+}
+
 /// Fields of one grid share the elements that any of them hides.
 TEST(Holes, AreSharedByFields) {
     std::mt19937 random(3);
@@ -265,16 +358,16 @@ TEST(Holes, AreSharedByFields) {
         for (std::size_t k = 0; k < 2; ++k) missing[k].push_back(random() % 20 == 0);
         missing[2].push_back(missing[0].back() || missing[1].back());
     }
-    const auto erased = [&](std::size_t k) {
-        return std::make_unique<PlaceholderField<2>>(forest, f, missing[k], nan);
-    };
-    const auto first = erased(0);
-    const auto second = erased(1);
-    const auto both = erased(2);
-    const auto one = std::make_shared<const HiddenElements>(erase(forest, *first));
-    const HiddenElements shared(erase(forest, *second), one);
-    EXPECT_GT(shared.hidden_leaves(), one->hidden_leaves());
-    EXPECT_EQ(shared.hidden_leaves(), HiddenElements(erase(forest, *both)).hidden_leaves());
+    const PlaceholderField<2> first(forest, f, missing[0], nan);
+    const PlaceholderField<2> second(forest, f, missing[1], nan);
+    const PlaceholderField<2> either(forest, f, missing[2], nan);
+    const auto of_first = erase(forest, first);
+    const auto of_second = erase(forest, second);
+    const std::array<const Hierarchy<double>*, 2> fields{&of_first, &of_second};
+    const auto shared = HiddenElements::of_all<double>(fields);
+    EXPECT_GT(shared->hidden_leaves(), HiddenElements(of_first).hidden_leaves());
+    EXPECT_GT(shared->hidden_leaves(), HiddenElements(of_second).hidden_leaves());
+    EXPECT_EQ(shared->hidden_leaves(), HiddenElements(erase(forest, either)).hidden_leaves());
 }
 
 }  // namespace hidden_values_test

@@ -11,7 +11,8 @@
 //   - so nodes without a value are corners of hidden leaves alone, which nobody asks for
 //     (optional.hpp, hidden): drawings, indicators and bounds are those of the leaves that are
 //     left.
-// Memory: 4 bytes for each child of an element that is hidden in part, none for all others.
+// Memory: 4 bytes for each child of an element that is hidden in part, and a bit for each node,
+// where keys are dense, else a table of the nodes of hidden leaves alone.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include <nestgrid/detail/made_for.hpp>
+#include <nestgrid/detail/node_set.hpp>
 #include <nestgrid/hierarchy.hpp>
 
 namespace nestgrid {
@@ -53,10 +55,12 @@ public:
         return of == wholly_ ? Hidden::wholly : Hidden::not_at_all;
     }
 
+    /// Nodes of hidden leaves alone, or of no leaf.
+    const NodeSet& unseen() const { return unseen_; }
     std::size_t hidden_leaves() const { return hidden_leaves_; }
     bool any() const { return hidden_leaves_ > 0; }
     std::size_t memory_bytes() const {
-        return (coarse_.capacity() + marks_.capacity()) * sizeof(Mark);
+        return (coarse_.capacity() + marks_.capacity()) * sizeof(Mark) + unseen_.memory_bytes();
     }
 
 private:
@@ -71,6 +75,7 @@ private:
 
     std::vector<Mark> coarse_;
     std::vector<Mark> marks_;
+    NodeSet unseen_;
     std::size_t hidden_leaves_ = 0;
 };
 
@@ -107,7 +112,6 @@ public:
     }
     void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const override {
         inner_->coarse(task, i, coarse, family);
-        family.hidden = 0;
         hide(family, 0, hidden_->coarse(i));
     }
     NodeMask coarse_values(Task* task, std::size_t i, std::size_t corners,
@@ -134,6 +138,12 @@ public:
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         return inner_->hanging_parents(node);
     }
+    void star_rows(const std::function<void(const StarRow&)>& function) const override {
+        inner_->star_rows(function);
+    }
+    /// Not a number at nodes of hidden leaves alone.
+    void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const override;
+    Point node_position(NodeKey node) const override { return inner_->node_position(node); }
 
 private:
     static HierarchyFacts facts_with_hidden(const Hierarchy<Real>& inner);
