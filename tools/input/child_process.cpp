@@ -104,15 +104,18 @@ void silence_standard_streams() {
 /// \return whether it ended in time
 bool read_until_end(int message, double seconds, std::string& text) {
     const auto start = Clock::now();
+    const auto time_left = [&] {
+        return seconds - std::chrono::duration<double>(Clock::now() - start).count();
+    };
     while (true) {
-        const double left = seconds - std::chrono::duration<double>(Clock::now() - start).count();
+        const double left = time_left();
         if (left <= 0) return false;
         pollfd ready{message, POLLIN, 0};
         const int milliseconds = static_cast<int>(std::ceil(std::min(left, 1e6) * 1000));
         if (poll(&ready, 1, milliseconds) <= 0) continue;
         std::array<char, 4096> buffer{};
         const ssize_t count = read(message, buffer.data(), buffer.size());
-        if (count == 0 || (count < 0 && errno != EINTR)) return true;
+        if (count == 0 || (count < 0 && errno != EINTR)) return time_left() > 0;
         if (count > 0) text.append(buffer.data(), static_cast<std::size_t>(count));
     }
 }
