@@ -55,7 +55,8 @@ ExtractionRequest request_of(const IsosurfaceArguments& o) {
     ExtractionRequest request{
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     request.collapses = o.collapses;
-    request.keeps_distances = o.keeps_distances;
+    request.keeps_distances =
+        o.keeps_distances || (o.collapses && o.surface.command->count("--distance") > 0);
     request.measures = o.measures;
     const SurfaceOptions& s = o.surface;
     if (!o.cuts.empty()) {
@@ -65,6 +66,9 @@ ExtractionRequest request_of(const IsosurfaceArguments& o) {
     request.threads = s.threads;
     request.projection = s.projection;
     request.projection.isovalue = o.value;
+    if (o.collapses && s.command->count("--error") + s.command->count("--distance") == 0) {
+        throw nestgrid::InvalidInput("--collapse needs an --error or a --distance to keep");
+    }
     if (!o.box.empty() && s.projection.blend != 1) {
         throw nestgrid::InvalidInput("--box has two thresholds: leave out --blend");
     }
@@ -257,11 +261,9 @@ Command add_isosurface(CLI::App& program) {
                    "keep the --distance there and back: look where the surfaces are farther from "
                    "each other, and draw more there")
         ->needs(isosurface->get_option("--distance"));
-    isosurface
-        ->add_flag("--collapse", o->collapses,
-                   "take edges away while the --error is kept: some times fewer triangles, some "
-                   "times the time")
-        ->needs(isosurface->get_option("--error"));
+    isosurface->add_flag("--collapse", o->collapses,
+                         "take edges away while the --error, or the --distance there and back, is "
+                         "kept: some times fewer triangles, some times the time");
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume")
         ->group("Surface");
     isosurface

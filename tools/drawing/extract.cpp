@@ -39,12 +39,19 @@ nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool co
 
 /// Collapses edges of a surface, and tells what is left and its bounds.
 template <class Real>
-void collapse_one(nestgrid::Surface<3>& surface, const nestgrid::Hierarchy<Real>& hierarchy,
-                  const nestgrid::Bounds& bounds, const nestgrid::Executor& executor,
-                  const ExtractionRequest& request, Extraction& e) {
+void collapse_one(nestgrid::Surface<3>& surface, const nestgrid::Surface<3>& whole,
+                  const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Bounds& bounds,
+                  const nestgrid::Executor& executor, const ExtractionRequest& request,
+                  Extraction& e) {
+    if (request.progress) request.progress("collapsing");
     const double start = now();
-    const nestgrid::Collapsed done = nestgrid::collapse(surface, hierarchy, request.isovalue,
-                                                        bounds, {.error = e.threshold}, executor);
+    nestgrid::CollapseOptions options;
+    if (request.keeps_distances)
+        options.nearness.emplace(nestgrid::Nearness{whole, e.threshold});
+    else
+        options.error = e.threshold;
+    const nestgrid::Collapsed done =
+        nestgrid::collapse(surface, hierarchy, request.isovalue, bounds, options, executor);
     e.collapse_seconds = now() - start;
     e.collapsed = done;
     done.hand_to(e.bounds, e.surface_error);
@@ -61,6 +68,11 @@ void measure_one(const nestgrid::Surface<3>& surface, const nestgrid::Surface<3>
     e.measured =
         nestgrid::measure_error(surface, whole, hierarchy, request.isovalue, points, executor);
     e.measure_seconds = now() - start;
+}
+
+/// The threshold of what is drawn before edges are collapsed.
+double first_threshold(const ExtractionRequest& request, double threshold) {
+    return request.collapses ? threshold / 2 : threshold;
 }
 
 /// Draws one surface.
@@ -84,8 +96,9 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const S& criterion,
     nestgrid::Isosurface<dimension> result;
     if constexpr (dimension == 3) {
         if (request.keeps_distances) {
+            const double distance = first_threshold(request, e.threshold);
             nestgrid::IsosurfaceWithin within =
-                nestgrid::isosurface_within(hierarchy, request.isovalue, {whole, e.threshold},
+                nestgrid::isosurface_within(hierarchy, request.isovalue, {whole, distance},
                                             criterion, bounds, options, executor);
             e.far_points = within.points;
             result = std::move(within.isosurface);
@@ -101,7 +114,7 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const S& criterion,
     e.stack_bytes = result.stack_bytes;
     if constexpr (dimension == 3) {
         if (request.collapses) {
-            collapse_one(result.surface, hierarchy, bounds, executor, request, e);
+            collapse_one(result.surface, whole, hierarchy, bounds, executor, request, e);
         }
         if (request.measures) measure_one(result.surface, whole, hierarchy, executor, request, e);
         e.report = nestgrid::surface_report(result.surface);
@@ -151,9 +164,8 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
     run.preroll_seconds += now() - begin;
     const auto draw = [&](const auto& criterion_at, Extraction e) {
         e.time = moment.time();
-        const double threshold = request.collapses ? e.threshold / 2 : e.threshold;
-        extract_one<dimension>(hierarchy, criterion_at(threshold), indicators.bounds(), executor,
-                               request, e);
+        extract_one<dimension>(hierarchy, criterion_at(first_threshold(request, e.threshold)),
+                               indicators.bounds(), executor, request, e);
         if (e.surface)
             describe(e.surface, field.length_unit, field.space, {{field.name, request.isovalue}});
         run.surfaces.push_back(std::move(e));

@@ -40,11 +40,11 @@ struct ExtractionRequest {
     /// Where edges are cut; nothing: on their finest pieces where `budgets` are asked for, but for
     /// deviations, whose error linear cuts keep.
     std::optional<nestgrid::Cuts> cuts{};
-    /// Whether edges are collapsed while the error keeps within the thresholds. What is drawn first
-    /// has half the error.
-    bool collapses = false;
     /// Whether thresholds are distances that are kept there and back.
     bool keeps_distances = false;
+    /// Whether edges are collapsed while the error, or where distances are kept these, keep within
+    /// the thresholds. What is drawn first has half of them.
+    bool collapses = false;
     bool measures = false;       ///< against the surface of all data
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};
