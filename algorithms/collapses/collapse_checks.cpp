@@ -65,7 +65,9 @@ Refusal CollapseChecks::refuse(std::uint32_t u, std::uint32_t v, const BlockMesh
     }
     if (rules_->field != nullptr && !keeps_field(star, w)) return &Collapsed::refused_by_field;
     if (rules_->strong != nullptr && !keeps_sides(star, w)) return &Collapsed::refused_by_sides;
-    if (distance_ && !keeps_distance(star, w)) return &Collapsed::refused_by_distance;
+    if (distance_ && !(keeps_distance(star, w) && keeps_domain(star, w))) {
+        return &Collapsed::refused_by_distance;
+    }
     if (!crosses_nothing(star, w)) return &Collapsed::refused_by_crossing;
     return nullptr;
 }
@@ -115,17 +117,30 @@ bool CollapseChecks::keeps_field(const BlockMesh::Star& star, const Point& w) co
                                      .side = {sides.data(), sides.size()}});
 }
 
-bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) const {
-    boost::container::small_vector<Tetrahedron, 24> swept;
-    Box box;
+/// The tetrahedra between the old triangles and the new point, in space.
+CollapseChecks::Swept CollapseChecks::swept(const BlockMesh::Star& star, const Point& w) const {
+    Swept swept;
     for (const StarTriangle& t : star) {
         const auto [a, b, c] = rules_->in_space(mesh_->corners(t.triangle));
         swept.push_back({w + rules_->middle, a, b, c});
-        box.add(Box::around(swept.back()));
     }
+    return swept;
+}
+
+bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) const {
+    const Swept all = swept(star, w);
+    Box box;
+    for (const Tetrahedron& x : all) box.add(Box::around(x));
     if (!rules_->strong->any_in(box)) return true;
-    return std::none_of(swept.begin(), swept.end(),
+    return std::none_of(all.begin(), all.end(),
                         [&](const Tetrahedron& x) { return rules_->strong->any_in(x); });
+}
+
+bool CollapseChecks::keeps_domain(const BlockMesh::Star& star, const Point& w) const {
+    const Swept all = swept(star, w);
+    return std::all_of(all.begin(), all.end(), [&](const Tetrahedron& x) {
+        return rules_->distance->domain().hold(x);
+    });
 }
 
 bool CollapseChecks::keeps_distance(const BlockMesh::Star& star, const Point& w) {

@@ -46,11 +46,15 @@ public:
     void note_done(const BlockMesh::Star& star, std::uint32_t vertex, BlockMesh& mesh);
 
 private:
+    using Swept = boost::container::small_vector<Tetrahedron, 24>;
+
     bool keeps_off_boundary(const Freedom& freedom, const BlockMesh::Star& star) const;
     bool keeps_shape(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_field(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_sides(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_distance(const BlockMesh::Star& star, const Point& w);
+    bool keeps_domain(const BlockMesh::Star& star, const Point& w) const;
+    Swept swept(const BlockMesh::Star& star, const Point& w) const;
     bool crosses_nothing(const BlockMesh::Star& star, const Point& w);
     void sort_into_cells();
     bool new_star_is_embedded(const BlockMesh::Star& star, const Point& w) const;

@@ -26,21 +26,17 @@ DomainFaces::DomainFaces(const NearLeaves& leaves) {
     tree_.finish();
 }
 
-bool DomainFaces::hold(const Triangle& x) const {
-    const FlatTriangle triangle(x);
-    return tree_.for_each([&](const Box& box) { return triangle.may_meet(box); },
-                          [&](std::size_t i) {
-                              return !triangle.box.meets(Box::around(faces_[i])) ||
-                                     separated(faces_[i], x);
-                          });
+bool DomainFaces::hold(const Tetrahedron& x) const {
+    const Box around = Box::around(x);
+    return tree_.for_each([&](const Box& box) { return box.meets(around); },
+                          [&](std::size_t i) { return separated(x, faces_[i]); });
 }
 
 bool DistanceJudge::keeps(const Point& w, std::span<const Triangle> fan,
                           std::span<const std::vector<NearPart>* const> parts) {
     return search_.is_near(w) && keeps_back(fan, parts) &&
-           std::all_of(fan.begin(), fan.end(), [&](const Triangle& x) {
-               return !search_.far_point(x) && check_->domain().hold(x);
-           });
+           std::none_of(fan.begin(), fan.end(),
+                        [&](const Triangle& x) { return search_.far_point(x).has_value(); });
 }
 
 bool DistanceJudge::keeps_back(std::span<const Triangle> fan,

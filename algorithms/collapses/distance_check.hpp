@@ -11,18 +11,18 @@
 
 #include <collapses/near_leaves.hpp>
 #include <collapses/near_parts.hpp>
+#include <collapses/strong_nodes.hpp>
 #include <nestgrid/algorithms/nearness.hpp>
 
 namespace nestgrid::engine {
 
-/// The faces of leaves on the boundary of the domain, through which no triangle may pass. Bent ones
-/// are taken for two triangles.
+/// The faces of leaves on the boundary of the domain. Bent ones are taken for two triangles.
 class DomainFaces {
 public:
     explicit DomainFaces(const NearLeaves& leaves);
 
-    /// Whether a triangle passes through none of them.
-    bool hold(const Triangle& x) const;
+    /// Whether a tetrahedron, a corner of which lies in the domain, keeps inside.
+    bool hold(const Tetrahedron& x) const;
 
 private:
     std::vector<Triangle> faces_;
@@ -56,8 +56,8 @@ class DistanceJudge {
 public:
     explicit DistanceJudge(const DistanceCheck& check) : check_{&check}, search_{check.search()} {}
 
-    /// Whether the distance is kept there and back, and the domain, where a fan of triangles takes
-    /// the place of others.
+    /// Whether the distance is kept there and back where a fan of triangles takes the place of
+    /// others.
     /// \param w the common corner of the fan
     /// \param parts of the others
     bool keeps(const Point& w, std::span<const Triangle> fan,
