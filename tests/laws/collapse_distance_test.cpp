@@ -106,14 +106,14 @@ TYPED_TEST(CollapseWithin, KeepsTheDistanceTheManifoldAndTheDomain) {
     if constexpr (TypeParam::Grid::dimension == 3) {
         std::size_t before = 0;
         std::size_t after = 0;
-        for_each_field_at_sphere<TypeParam>(2, 8, [&](const auto& grid, const auto& samples) {
+        for_each_field_at_sphere<TypeParam>(1, 8, [&](const auto& grid, const auto& samples) {
             const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
             const auto h = erase(grid, field);
             const HierarchicalIndicator indicator(h);
             const auto whole = isosurface<3>(h, 0.0, Exact{}, indicator).surface;
             if (whole.simplices.empty()) return;
             {
-                constexpr double distance = 0.06;
+                constexpr double distance = 0.08;
                 const Nearness nearness{whole, distance};
                 auto surface = begun(h, nearness, 0.0, indicator);
                 const SurfaceReport drawn = surface_report(surface);
