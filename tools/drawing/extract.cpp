@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include <nestgrid/adapters/vtk_surface.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/error.hpp>
@@ -22,7 +23,8 @@ std::string millions(std::uint64_t count) {
 nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool counting) {
     const std::string& indicator = request.projection.indicator;
     const bool finest =
-        indicator == "slope" || (!request.budgets.empty() && indicator != "deviation");
+        indicator == "slope" ||
+        (!request.budgets.empty() && !request.collapses && indicator != "deviation");
     nestgrid::IsosurfaceOptions options{
         .cuts = request.cuts.value_or(finest ? nestgrid::Cuts::finest : nestgrid::Cuts::linear),
         .normals = request.normals,
@@ -113,7 +115,7 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const S& criterion,
     e.surface_error = result.surface_error;
     e.stack_bytes = result.stack_bytes;
     if constexpr (dimension == 3) {
-        if (request.collapses) {
+        if (request.collapses && e.threshold > 0) {
             collapse_one(result.surface, whole, hierarchy, bounds, executor, request, e);
         }
         if (request.measures) measure_one(result.surface, whole, hierarchy, executor, request, e);
@@ -149,6 +151,24 @@ void with_criteria(const ChosenIndicator& indicators, const std::optional<nestgr
     });
 }
 
+/// The least threshold whose surface keeps within a number of triangles, after collapses where
+/// there are any.
+template <int dimension, class Real, class CriterionAt, class Offsets>
+nestgrid::TriangleBudget find_fitting(const nestgrid::Hierarchy<Real>& hierarchy,
+                                      const CriterionAt& criterion_at, const Offsets& offsets,
+                                      std::uint64_t budget, const nestgrid::Executor& executor,
+                                      const ExtractionRequest& request) {
+    const nestgrid::IsosurfaceOptions options = options_of(request, true);
+    if constexpr (dimension == 3) {
+        if (request.collapses) {
+            return nestgrid::find_collapse_error(hierarchy, request.isovalue, criterion_at, offsets,
+                                                 budget, options, executor);
+        }
+    }
+    return nestgrid::find_threshold<dimension>(hierarchy, request.isovalue, criterion_at, offsets,
+                                               budget, options, executor);
+}
+
 void tell_share(const ExtractionRun& run, const ExtractionRequest& request) {
     if (request.share) request.share(run.surfaces.size(), run.expected);
 }
@@ -177,9 +197,8 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
             Extraction e;
             const double start = now();
             e.search = indicators.with_offsets([&](const auto& offsets) {
-                return nestgrid::find_threshold<dimension>(hierarchy, request.isovalue,
-                                                           criterion_at, offsets, budget,
-                                                           options_of(request, true), executor);
+                return find_fitting<dimension>(hierarchy, criterion_at, offsets, budget, executor,
+                                               request);
             });
             e.search_seconds = now() - start;
             e.threshold = e.search.threshold;
