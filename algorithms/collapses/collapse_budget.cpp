@@ -20,10 +20,10 @@ namespace {
 
 using engine::octave;
 
-constexpr int most_trials = 12;
-constexpr double aim = 0.95;        // part of the number that a trial is to have
-constexpr double steepness = 1.2;   // triangles are about error^-steepness
-constexpr int least_step = 8;       // of codes, beyond what was tried
+constexpr int guesses = 6;         // trials, before intervals are halved and steps doubled
+constexpr double aim = 0.95;       // part of the number that a trial is to have
+constexpr double steepness = 1.2;  // triangles are about error^-steepness
+constexpr int least_step = 8;      // of codes, beyond what was tried
 constexpr int most_step = 4 * octave;
 constexpr int octaves_tried = 24;   // below the range of the data
 constexpr std::uint64_t taken = 8;  // triangles that collapses make one of, about
@@ -36,13 +36,16 @@ struct Trial {
 
 /// The next code between or beyond those that were tried.
 /// \param within keeps within the number; beyond does not
-int next_code(const std::optional<Trial>& beyond, const std::optional<Trial>& within, double number) {
+/// \param trials how many there were
+int next_code(const std::optional<Trial>& beyond, const std::optional<Trial>& within, double number,
+              int trials) {
     const double target = aim * number;
     const auto octaves = [&](std::uint64_t triangles) {
         return std::log2(std::max(static_cast<double>(triangles), 1.0) / target);
     };
     if (beyond && within) {
         const int between = within->code - beyond->code;
+        if (trials >= guesses) return within->code - between / 2;
         const double below = -octaves(within->triangles);
         const double part = below / std::max(below + octaves(beyond->triangles), 1e-9);
         const int margin = std::max(1, between / 10);
@@ -51,7 +54,8 @@ int next_code(const std::optional<Trial>& beyond, const std::optional<Trial>& wi
     }
     const Trial& tried = beyond ? *beyond : *within;
     const double steps = octave / steepness * octaves(tried.triangles);
-    const int step = std::clamp(static_cast<int>(std::abs(steps)), least_step, most_step);
+    const int least = least_step << std::min(trials, guesses);
+    const int step = std::clamp(static_cast<int>(std::abs(steps)), least, most_step);
     return beyond ? tried.code + step : tried.code - step;
 }
 
@@ -74,6 +78,7 @@ public:
         options_.normals = options_.cap = options_.elements = options_.reference = false;
     }
 
+    /// \throw InvalidInput where no error keeps within the number
     void run() {
         const std::uint64_t all = drawn(0, std::numeric_limits<std::uint64_t>::max()).value();
         if (all <= best_.max_triangles) {
@@ -84,15 +89,15 @@ public:
         const int greatest = code_of(2 * bounds_.range);
         const int least = std::max(1, greatest - octaves_tried * octave);
         int code = std::clamp(code_of(first_error(all)), least, greatest);
-        while (best_.trials < most_trials) {
+        while (true) {
             attempt(code);
             const int next_below = beyond_ ? beyond_->code + 1 : least;
-            if (within_ && (best_.end() == BudgetEnd::filled || within_->code <= next_below)) return;
+            if (within_ && (best_.end() == BudgetEnd::filled || within_->code <= next_below))
+                return;
             if (!within_ && code == greatest) break;
             const auto number = static_cast<double>(best_.max_triangles);
-            code = std::clamp(next_code(beyond_, within_, number), least, greatest);
+            code = std::clamp(next_code(beyond_, within_, number, best_.trials), least, greatest);
         }
-        if (within_) return;
         throw InvalidInput("even the coarsest surface has more than " +
                            std::to_string(best_.max_triangles) +
                            " triangles after collapses: " + std::to_string(best_.next_triangles));

@@ -58,7 +58,8 @@ double greatest_distance(const Surface<3>& from, const Surface<3>& to, double sa
     for (std::size_t t = 0; t < to.simplices.size(); ++t) {
         const auto x = corners_of(to, t);
         Ball ball{(1.0 / 3) * (x[0] + x[1] + x[2])};
-        for (const Point& corner : x) ball.radius = std::max(ball.radius, norm(corner - ball.middle));
+        for (const Point& corner : x)
+            ball.radius = std::max(ball.radius, norm(corner - ball.middle));
         balls.push_back(ball);
     }
     double greatest = 0;
@@ -68,7 +69,8 @@ double greatest_distance(const Surface<3>& from, const Surface<3>& to, double sa
         const double side = std::max({norm(x[1] - x[0]), norm(x[2] - x[1]), norm(x[0] - x[2])});
         const int steps = std::clamp(static_cast<int>(std::ceil(side / sample_length)), 1, 40);
         for (const Point& p : samples_of(x, steps)) {
-            double least = balls.empty() ? HUGE_VAL : norm(p - balls[near].middle) + balls[near].radius;
+            double least =
+                balls.empty() ? HUGE_VAL : norm(p - balls[near].middle) + balls[near].radius;
             for (std::size_t t = 0; t < balls.size() && least > greatest; ++t) {
                 if (square(p - balls[t].middle) > std::pow(least + balls[t].radius, 2)) continue;
                 const double off = std::sqrt(square_distance(p, corners_of(to, t)));

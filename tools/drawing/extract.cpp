@@ -22,9 +22,8 @@ std::string millions(std::uint64_t count) {
 /// \param counting whether elements are told, where no share of the work is known
 nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool counting) {
     const std::string& indicator = request.projection.indicator;
-    const bool finest =
-        indicator == "slope" ||
-        (!request.budgets.empty() && !request.collapses && indicator != "deviation");
+    const bool finest = indicator == "slope" || (!request.budgets.empty() && !request.collapses &&
+                                                 indicator != "deviation");
     nestgrid::IsosurfaceOptions options{
         .cuts = request.cuts.value_or(finest ? nestgrid::Cuts::finest : nestgrid::Cuts::linear),
         .normals = request.normals,

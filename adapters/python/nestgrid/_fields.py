@@ -134,7 +134,7 @@ class Field:
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
         """
         projection = _surface_projection(
-            threshold, max_triangles, indicator, blend, lens, error, distance
+            threshold, max_triangles, indicator, blend, lens, error, distance, collapse
         )
         if collapse:
             kept = error is not None or distance is not None or max_triangles is not None
@@ -307,8 +307,11 @@ def _surface_projection(
     lens: LensLike | None,
     error: float | None,
     distance: float | None,
+    collapse: bool,
 ) -> _nestgrid.Projection:
     """The projection of an isosurface, which has an error and a distance of its own."""
+    if collapse and max_triangles is not None and (threshold, error, distance) == (None,) * 3:
+        return _nestgrid.Projection(None, max_triangles, "error", blend, None)
     if error is None and distance is None:
         return _projection(threshold, max_triangles, indicator, blend, lens, None)
     name = "distance" if error is None else "error"

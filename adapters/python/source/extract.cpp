@@ -131,9 +131,9 @@ Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue,
     Isosurface<3> whole;
     Isosurface<3> drawn;
     if (request.keeps_distance) {
-        whole = draw(Exact{}, {.elements = false,
-                               .at_nodes = options.at_nodes,
-                               .progress = options.progress});
+        whole =
+            draw(Exact{},
+                 {.elements = false, .at_nodes = options.at_nodes, .progress = options.progress});
         if (whole.cancelled) return whole;
         drawn = isosurface_within(hierarchy, isovalue, {whole.surface, first}, criterion, bounds,
                                   options, call.executor())
