@@ -138,9 +138,8 @@ bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) co
 
 bool CollapseChecks::keeps_domain(const BlockMesh::Star& star, const Point& w) const {
     const Swept all = swept(star, w);
-    return std::all_of(all.begin(), all.end(), [&](const Tetrahedron& x) {
-        return rules_->distance->domain().hold(x);
-    });
+    return std::all_of(all.begin(), all.end(),
+                       [&](const Tetrahedron& x) { return rules_->distance->domain().hold(x); });
 }
 
 bool CollapseChecks::keeps_distance(const BlockMesh::Star& star, const Point& w) {

@@ -83,7 +83,7 @@ triangles=$(value triangles)
 "$program" isosurface v.vti --value 130 --error "$(value threshold)" --collapse >out || fail "budget: $(cat out)"
 [ "$(value triangles)" = "$triangles" ] || fail "$(value triangles) triangles of the error of a budget"
 "$program" isosurface v.vti --value 130 --max-triangles 999999 --collapse >out || fail "budget: $(cat out)"
-[ "$(value triangles)" = "$finest" ] || fail "a budget for all: $(cat out)"
+[ "$(value threshold)" = 0 ] && grep -q 'nothing is left out' out || fail "a budget for all: $(cat out)"
 # All data are nowhere away from themselves, but for cuts that are kept off nodes.
 "$program" isosurface v.vti --value 130 --measure >out || fail "measure: $(cat out)"
 awk -v d="$(value distance)" -v b="$(value distance_back)" -v m="$(value measured_error)" \
