@@ -19,7 +19,7 @@
 using namespace nestgrid;
 
 int main() {
-    constexpr int n = 65;
+    constexpr int n = 33;
     constexpr double isovalue = 0.275;
     const LatticeBisection<3> grid({.samples = {n, n, n}});
     const std::vector<float> samples = bucky_ball(n);
