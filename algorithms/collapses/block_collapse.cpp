@@ -76,7 +76,7 @@ void BlockCollapse::attempt(std::uint32_t u, std::uint32_t v) {
         ++counts_.collapses;
         ++version_[u];
         version_[v] += 1U << 20U;  // no entry of an edge to it is valid any more
-        checks_.note_changed(u);
+        checks_.note_done(star_, u, *mesh_);
         for (const std::uint32_t y : mesh_->neighbours(u)) push(u, y);
         return;
     }

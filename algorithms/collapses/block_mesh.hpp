@@ -14,6 +14,7 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include <collapses/near_parts.hpp>
 #include <collapses/quadric.hpp>
 
 namespace nestgrid::engine {
@@ -48,6 +49,8 @@ public:
     std::vector<CollapsingVertex> vertices;
     std::vector<Corners> triangles;
     std::size_t own = 0;  ///< the first triangles, which are no obstacles
+    /// By own triangle, the parts of another surface that it is near to. Empty where there is none.
+    std::vector<std::vector<NearPart>> parts;
 
     /// Lists positions, and the triangles around each vertex.
     void connect();

@@ -20,8 +20,15 @@ namespace {
 
 void require(const CollapseOptions& options, double isovalue) {
     if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
-    if (!(options.error > 0) || !std::isfinite(options.error)) {
+    if (!options.error && !options.nearness) {
+        throw InvalidInput("a collapse keeps an error or a distance: neither is given");
+    }
+    if (options.error && !(*options.error > 0 && std::isfinite(*options.error))) {
         throw InvalidInput("the error of a collapse is not a positive number");
+    }
+    if (options.nearness) {
+        options.nearness->require();
+        engine::require_simplices(options.nearness->whole);
     }
     if (!(options.turn > 0 && options.turn < 90)) {
         throw InvalidInput("the greatest turn of a triangle is not between 0 and 90 degrees");
@@ -31,25 +38,64 @@ void require(const CollapseOptions& options, double isovalue) {
     }
 }
 
-/// The triangles of a surface in order, each judged by the field.
-/// \param take take(triangle, whether it keeps the error) is called in order
-/// \return the greatest |U - C| of those that do
+/// The checks that are asked for.
+class Checks {
+public:
+    template <class Real>
+    Checks(const Hierarchy<Real>& hierarchy, double isovalue, const Bounds& bounds,
+           const CollapseOptions& options)
+        : nearness_{options.nearness} {
+        if (nearness_) to_whole_.emplace(nearness_->whole);
+        leaves_ = options.error
+                      ? engine::NearLeaves::find(hierarchy, isovalue, *options.error, bounds)
+                      : engine::NearLeaves::find_at_boundary(hierarchy, *to_whole_,
+                                                             nearness_->distance, bounds);
+        if (nearness_) distance_.emplace(*nearness_, *to_whole_, leaves_);
+        if (!options.error) return;
+        field_.emplace(leaves_);
+        strong_.emplace(leaves_);
+    }
+
+    const engine::NearLeaves& leaves() const { return leaves_; }
+    const engine::FieldCheck* field() const { return field_ ? &*field_ : nullptr; }
+    const engine::StrongNodes* strong() const { return strong_ ? &*strong_ : nullptr; }
+    const engine::DistanceCheck* distance() const { return distance_ ? &*distance_ : nullptr; }
+
+private:
+    std::optional<Nearness> nearness_;
+    std::optional<engine::ClosestPoints> to_whole_;
+    engine::NearLeaves leaves_;
+    std::optional<engine::FieldCheck> field_;
+    std::optional<engine::StrongNodes> strong_;
+    std::optional<engine::DistanceCheck> distance_;
+};
+
+/// The triangles of a surface in order, each judged by the field and by the distance there.
+/// \param take take(triangle, whether it keeps what is asked for) is called in order
+/// \return the greatest |U - C| of those that do; infinite where no error is asked for
 template <class Take>
-double judge(const Surface<3>& surface, const engine::FieldCheck& field, const Executor& executor,
+double judge(const Surface<3>& surface, const Checks& checks, const Executor& executor,
              const Take& take) {
     constexpr std::size_t chunk = 4096;
     const std::size_t count = surface.simplices.size();
     const std::size_t tasks = (count + chunk - 1) / chunk;
+    const engine::FieldCheck* const field = checks.field();
+    const engine::DistanceCheck* const distance = checks.distance();
     std::vector<std::uint8_t> keeps(count);
-    std::vector<double> greatest(tasks, 0);
+    std::vector<double> greatest(tasks,
+                                 field != nullptr ? 0 : std::numeric_limits<double>::infinity());
     executor.run(
         tasks,
         [&](std::size_t i) {
+            auto search = distance != nullptr ? std::optional(distance->search()) : std::nullopt;
             for (std::size_t t = i * chunk; t < std::min(count, (i + 1) * chunk); ++t) {
                 const auto& [a, b, c] = surface.simplices[t];
-                const engine::FlatTriangle triangle(
-                    {surface.vertices[a], surface.vertices[b], surface.vertices[c]});
-                keeps[t] = field.keeps(triangle, greatest[i]) ? 1 : 0;
+                const engine::Triangle x{surface.vertices[a], surface.vertices[b],
+                                         surface.vertices[c]};
+                const bool near = !search || !search->far_point(x);
+                const bool kept =
+                    field == nullptr || field->keeps(engine::FlatTriangle(x), greatest[i]);
+                keeps[t] = near && kept ? 1 : 0;
             }
         },
         [](std::size_t) {});
@@ -87,26 +133,32 @@ Collapsed collapse(Surface<3>& surface, const Hierarchy<Real>& hierarchy, double
                    const Bounds& bounds, const CollapseOptions& options, const Executor& executor) {
     require(options, isovalue);
     engine::require_simplices(surface);
-    const auto leaves = engine::NearLeaves::find(hierarchy, isovalue, options.error, bounds);
-    if (surface.simplices.empty()) return {};
-    const engine::FieldCheck field(leaves);
-    const engine::StrongNodes strong(leaves);
+    const Checks checks(hierarchy, isovalue, bounds, options);
+    if (surface.simplices.empty()) {
+        return {.missed = options.nearness ? options.nearness->whole.simplices.size() : 0};
+    }
     const auto box = engine::Box::around(surface.vertices);
     const engine::CollapseRules rules{
-        .field = &field,
-        .strong = &strong,
+        .field = checks.field(),
+        .strong = checks.strong(),
+        .distance = checks.distance(),
         .middle = 0.5 * (box.low + box.high),
         .least_cosine = std::cos(options.turn * std::numbers::pi / 180),
         .least_shape = options.shape};
     const std::size_t attributes = surface.attributes.size() / surface.vertices.size();
     const bool normals = !surface.normals.empty();
-    engine::CollapseRounds rounds(surface, leaves, rules, executor);
-    judge(surface, field, executor, [&](std::size_t t, bool keeps) {
+    engine::CollapseRounds rounds(surface, checks.leaves(), rules, executor);
+    judge(surface, checks, executor, [&](std::size_t t, bool keeps) {
         if (!keeps) rounds.fasten(t);
     });
+    std::size_t missed = 0;
+    if (const auto* distance = checks.distance()) {
+        missed = engine::give_parts(distance->whole(), surface, rounds.parts(), executor);
+    }
     Collapsed result = rounds.run();
     rounds.finish();
-    result.error = judge(surface, field, executor,
+    result.missed = missed;
+    result.error = judge(surface, checks, executor,
                          [&](std::size_t, bool keeps) { result.exceeding += keeps ? 0U : 1U; });
     renew(surface, hierarchy, attributes, normals);
     return result;

@@ -23,6 +23,7 @@ double shape_of(const Triangle& x) {
 
 CollapseChecks::CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region)
     : mesh_{&mesh}, rules_{&rules}, region_{region}, in_star_(mesh.triangles.size(), 0) {
+    if (rules.distance != nullptr) distance_.emplace(*rules.distance);
     sort_into_cells();
 }
 
@@ -37,7 +38,17 @@ void CollapseChecks::sort_into_cells() {
     most_entries_ = 2 * cells_.entry_count() + 1000;
 }
 
-void CollapseChecks::note_changed(std::uint32_t vertex) {
+void CollapseChecks::note_done(const BlockMesh::Star& star, std::uint32_t vertex, BlockMesh& mesh) {
+    if (distance_) {
+        auto given = distance_->given().begin();
+        for (const StarTriangle& t : star) {
+            auto& parts = mesh.parts[t.triangle];
+            if (t.goes)
+                parts = {};
+            else
+                parts.swap(*given++);
+        }
+    }
     for (const std::uint32_t t : mesh_->around(vertex)) {
         cells_.add({t, Box::around(mesh_->corners(t))});
     }
@@ -52,8 +63,11 @@ Refusal CollapseChecks::refuse(std::uint32_t u, std::uint32_t v, const BlockMesh
     if (!off_boundary || !region_.contains(w) || !keeps_shape(star, w)) {
         return &Collapsed::refused_by_shape;
     }
-    if (!keeps_field(star, w)) return &Collapsed::refused_by_field;
-    if (!keeps_sides(star, w)) return &Collapsed::refused_by_sides;
+    if (rules_->field != nullptr && !keeps_field(star, w)) return &Collapsed::refused_by_field;
+    if (rules_->strong != nullptr && !keeps_sides(star, w)) return &Collapsed::refused_by_sides;
+    if (distance_ && !(keeps_distance(star, w) && keeps_domain(star, w))) {
+        return &Collapsed::refused_by_distance;
+    }
     if (!crosses_nothing(star, w)) return &Collapsed::refused_by_crossing;
     return nullptr;
 }
@@ -103,17 +117,40 @@ bool CollapseChecks::keeps_field(const BlockMesh::Star& star, const Point& w) co
                                      .side = {sides.data(), sides.size()}});
 }
 
-bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) const {
-    boost::container::small_vector<Tetrahedron, 24> swept;
-    Box box;
+/// The tetrahedra between the old triangles and the new point, in space.
+CollapseChecks::Swept CollapseChecks::swept(const BlockMesh::Star& star, const Point& w) const {
+    Swept swept;
     for (const StarTriangle& t : star) {
         const auto [a, b, c] = rules_->in_space(mesh_->corners(t.triangle));
         swept.push_back({w + rules_->middle, a, b, c});
-        box.add(Box::around(swept.back()));
     }
+    return swept;
+}
+
+bool CollapseChecks::keeps_sides(const BlockMesh::Star& star, const Point& w) const {
+    const Swept all = swept(star, w);
+    Box box;
+    for (const Tetrahedron& x : all) box.add(Box::around(x));
     if (!rules_->strong->any_in(box)) return true;
-    return std::none_of(swept.begin(), swept.end(),
+    return std::none_of(all.begin(), all.end(),
                         [&](const Tetrahedron& x) { return rules_->strong->any_in(x); });
+}
+
+bool CollapseChecks::keeps_domain(const BlockMesh::Star& star, const Point& w) const {
+    const Swept all = swept(star, w);
+    return std::all_of(all.begin(), all.end(),
+                       [&](const Tetrahedron& x) { return rules_->distance->domain().hold(x); });
+}
+
+bool CollapseChecks::keeps_distance(const BlockMesh::Star& star, const Point& w) {
+    boost::container::small_vector<Triangle, 24> fan;
+    boost::container::small_vector<const std::vector<NearPart>*, 24> parts;
+    for (const StarTriangle& t : star) {
+        parts.push_back(&mesh_->parts[t.triangle]);
+        if (!t.goes) fan.push_back(rules_->in_space({w, mesh_->x(t.a), mesh_->x(t.b)}));
+    }
+    return distance_->keeps(w + rules_->middle, {fan.data(), fan.size()},
+                            {parts.data(), parts.size()});
 }
 
 bool CollapseChecks::crosses_nothing(const BlockMesh::Star& star, const Point& w) {

@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Judges collapses: each must keep the error, the sides and the shape, and must not let the surface
-// cross itself. BlockMesh judges whether the surface stays a manifold.
+// Judges collapses: each must keep the shape, what is asked for, be it the error and the sides or a
+// distance, and must not let the surface cross itself. BlockMesh judges whether the surface stays a
+// manifold.
 #pragma once
 
 #include <nestgrid/algorithms/collapse.hpp>
 
 #include <collapses/block_mesh.hpp>
+#include <collapses/distance_check.hpp>
 #include <collapses/field_check.hpp>
 #include <collapses/strong_nodes.hpp>
 #include <collapses/triangle_cells.hpp>
@@ -16,9 +18,10 @@ namespace nestgrid::engine {
 
 /// The checks and limits that hold in all blocks. Borrows the checks.
 struct CollapseRules {
-    const FieldCheck* field;
-    const StrongNodes* strong;
-    Point middle;  ///< of the surface, from which positions in blocks are taken
+    const FieldCheck* field;        ///< null where no error is kept
+    const StrongNodes* strong;      ///< likewise
+    const DistanceCheck* distance;  ///< null where none is kept
+    Point middle;                   ///< of the surface, from which positions in blocks are taken
     double least_cosine;
     double least_shape;
 
@@ -38,14 +41,20 @@ public:
     /// Judges the collapse of an edge into w.
     /// \param star of the edge
     Refusal refuse(std::uint32_t u, std::uint32_t v, const BlockMesh::Star& star, const Point& w);
-    /// Tells that the triangles around a vertex have changed.
-    void note_changed(std::uint32_t vertex);
+    /// Tells that a collapse into a vertex was done, which refuse() was asked for last.
+    /// \param mesh that of the constructor
+    void note_done(const BlockMesh::Star& star, std::uint32_t vertex, BlockMesh& mesh);
 
 private:
+    using Swept = boost::container::small_vector<Tetrahedron, 24>;
+
     bool keeps_off_boundary(const Freedom& freedom, const BlockMesh::Star& star) const;
     bool keeps_shape(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_field(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_sides(const BlockMesh::Star& star, const Point& w) const;
+    bool keeps_distance(const BlockMesh::Star& star, const Point& w);
+    bool keeps_domain(const BlockMesh::Star& star, const Point& w) const;
+    Swept swept(const BlockMesh::Star& star, const Point& w) const;
     bool crosses_nothing(const BlockMesh::Star& star, const Point& w);
     void sort_into_cells();
     bool new_star_is_embedded(const BlockMesh::Star& star, const Point& w) const;
@@ -53,6 +62,7 @@ private:
     const BlockMesh* mesh_;
     const CollapseRules* rules_;
     Box region_;
+    std::optional<DistanceJudge> distance_;
     TriangleCells cells_;
     std::size_t most_entries_ = 0;       // of the cells, before they are made anew
     std::vector<std::uint8_t> in_star_;  // by triangle

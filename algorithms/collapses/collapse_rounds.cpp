@@ -29,8 +29,9 @@ std::vector<OrientedSide> open_sides(std::span<const BlockMesh::Corners> triangl
 class BlockTask {
 public:
     BlockTask(std::span<const CollapsingVertex> vertices,
-              std::span<const BlockMesh::Corners> triangles, std::span<const std::uint32_t> own,
-              std::span<const std::uint32_t> obstacles, const std::vector<std::uint8_t>& stays)
+              std::span<const BlockMesh::Corners> triangles, std::span<std::vector<NearPart>> parts,
+              std::span<const std::uint32_t> own, std::span<const std::uint32_t> obstacles,
+              const std::vector<std::uint8_t>& stays)
         : triangle_(own.begin(), own.end()) {
         for (const auto& list : {own, obstacles}) {
             for (const std::uint32_t t : list) {
@@ -51,6 +52,9 @@ public:
             }
         }
         mesh_.own = own.size();
+        if (!parts.empty()) {
+            for (const std::uint32_t t : own) mesh_.parts.push_back(std::move(parts[t]));
+        }
         mesh_.connect();
     }
 
@@ -60,8 +64,8 @@ public:
         counts_ = work.counts();
     }
     /// Writes what has changed, which no other block reads.
-    void put_back(std::span<CollapsingVertex> vertices,
-                  std::span<BlockMesh::Corners> triangles) const {
+    void put_back(std::span<CollapsingVertex> vertices, std::span<BlockMesh::Corners> triangles,
+                  std::span<std::vector<NearPart>> parts) {
         for (std::size_t v = 0; v < vertex_.size(); ++v) {
             if (mesh_.vertices[v].moves) vertices[vertex_[v]] = mesh_.vertices[v];
         }
@@ -71,6 +75,7 @@ public:
                 for (std::uint32_t& v : corners) v = vertex_[v];
             }
             triangles[triangle_[t]] = corners;
+            if (!parts.empty()) parts[triangle_[t]] = std::move(mesh_.parts[t]);
         }
     }
     const Collapsed& counts() const { return counts_; }
@@ -88,9 +93,10 @@ private:
 };
 
 void add_counts(Collapsed& sum, const Collapsed& part) {
-    for (const auto count : {&Collapsed::collapses, &Collapsed::refused_by_manifold,
-                             &Collapsed::refused_by_shape, &Collapsed::refused_by_field,
-                             &Collapsed::refused_by_sides, &Collapsed::refused_by_crossing}) {
+    for (const auto count :
+         {&Collapsed::collapses, &Collapsed::refused_by_manifold, &Collapsed::refused_by_shape,
+          &Collapsed::refused_by_field, &Collapsed::refused_by_sides,
+          &Collapsed::refused_by_distance, &Collapsed::refused_by_crossing}) {
         sum.*count += part.*count;
     }
 }
@@ -194,12 +200,12 @@ void CollapseRounds::run_round(const Blocks& blocks, Collapsed& counts) {
     executor_->run(
         blocks.count(),
         [&](std::size_t i) {
-            tasks[i] =
-                std::make_unique<BlockTask>(vertices_, triangles_, own[i], obstacles[i], stays);
+            tasks[i] = std::make_unique<BlockTask>(vertices_, triangles_, parts_, own[i],
+                                                   obstacles[i], stays);
             tasks[i]->run(*rules_, blocks.region(i));
         },
         [&](std::size_t i) {
-            tasks[i]->put_back(vertices_, triangles_);
+            tasks[i]->put_back(vertices_, triangles_, parts_);
             add_counts(counts, tasks[i]->counts());
             tasks[i].reset();
         });
@@ -207,7 +213,14 @@ void CollapseRounds::run_round(const Blocks& blocks, Collapsed& counts) {
 
 /// Leaves out triangles and vertices that are gone, and keeps the order of the others.
 void CollapseRounds::erase_gone() {
-    std::erase_if(triangles_, [](const Corners& c) { return c[0] == BlockMesh::gone; });
+    std::size_t left = 0;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        if (triangles_[t][0] == BlockMesh::gone) continue;
+        if (!parts_.empty()) parts_[left].swap(parts_[t]);
+        triangles_[left++] = triangles_[t];
+    }
+    triangles_.resize(left);
+    if (!parts_.empty()) parts_.resize(left);
     std::vector<std::uint32_t> number(vertices_.size(), 0);
     for (const Corners& c : triangles_) {
         for (const std::uint32_t v : c) number[v] = 1;

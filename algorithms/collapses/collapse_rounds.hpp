@@ -23,6 +23,8 @@ public:
     CollapseRounds(Surface<3>& surface, const NearLeaves& leaves, const CollapseRules& rules,
                    const Executor& executor);
 
+    /// The parts of another surface that are near to each triangle; none at first.
+    std::vector<std::vector<NearPart>>& parts() { return parts_; }
     /// Fastens the vertices of a triangle for good.
     void fasten(std::size_t triangle) {
         for (const std::uint32_t v : triangles_[triangle]) vertices_[v].moves = false;
@@ -45,6 +47,7 @@ private:
     const Executor* executor_;
     std::vector<CollapsingVertex> vertices_;
     std::vector<Corners> triangles_;
+    std::vector<std::vector<NearPart>> parts_;  // by triangle, or empty
 };
 
 }  // namespace nestgrid::engine

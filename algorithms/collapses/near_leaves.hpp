@@ -12,7 +12,7 @@
 #include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/hierarchy.hpp>
 
-#include <distances/box_tree.hpp>
+#include <distances/closest_points.hpp>
 
 namespace nestgrid::engine {
 
@@ -31,6 +31,13 @@ public:
     template <class Real>
     static NearLeaves find(const Hierarchy<Real>& hierarchy, double isovalue, double error,
                            const Bounds& bounds);
+
+    /// Walks to the leaves at the boundary of the domain that come within a distance of a surface.
+    /// \param bounds of the same grid
+    template <class Real>
+    static NearLeaves find_at_boundary(const Hierarchy<Real>& hierarchy,
+                                       const ClosestPoints& surface, double distance,
+                                       const Bounds& bounds);
 
     double error() const { return error_; }
     /// Whether leaves may be missing because they are hidden.
@@ -57,6 +64,9 @@ public:
 private:
     template <class Real>
     class Search;
+    template <class Real, class Wants>
+    static NearLeaves collect(const Hierarchy<Real>& hierarchy, double isovalue, double error,
+                              const Bounds& bounds, const Wants& wants);
 
     double error_ = 0;
     bool may_hide_ = false;

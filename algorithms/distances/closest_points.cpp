@@ -50,17 +50,21 @@ ClosestPoints::ClosestPoints(const Surface<3>& surface) : surface_{&surface} {
     tree_.finish();
 }
 
-double ClosestPoints::distance(const Point& x, double bound) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+ClosestPoints::Nearest ClosestPoints::nearest(const Point& x, double bound) const {
     double least = infinity;
+    std::uint32_t triangle = 0;
     double limit = bound < infinity ? bound * bound * (1 + 1e-9) : infinity;  // more than rounding
     const auto meets = [&](const Box& box) { return box.square_distance(x) <= limit; };
     tree_.for_each(meets, [&](std::size_t i) {
-        least = std::min(least, square_distance(x, triangle(order_[i])));
+        const double square = square_distance(x, this->triangle(order_[i]));
+        if (square < least) {
+            least = square;
+            triangle = order_[i];
+        }
         limit = std::min(limit, least);
         return true;
     });
-    return std::sqrt(least);
+    return {std::sqrt(least), triangle};
 }
 
 bool ClosestPoints::is_within(const Point& x, double limit, std::uint32_t& near) const {

@@ -22,14 +22,24 @@ public:
     /// \param surface borrowed
     explicit ClosestPoints(const Surface<3>& surface);
 
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    /// A triangle and its distance; infinite where there is none.
+    struct Nearest {
+        double distance = infinity;
+        std::uint32_t triangle = 0;
+    };
+    /// The triangle nearest to a point: of several, the first that is met.
+    /// \param bound which its distance is known not to exceed: makes the search short
+    Nearest nearest(const Point& x, double bound = infinity) const;
     /// The distance of a point from the surface; infinite where that is empty.
-    /// \param bound which it is known not to exceed: makes the search short
-    double distance(const Point& x, double bound = std::numeric_limits<double>::infinity()) const;
+    double distance(const Point& x, double bound = infinity) const {
+        return nearest(x, bound).distance;
+    }
     /// Whether the distance of a point is at most a limit, which is not negative: faster than the
     /// distance.
     /// \param near a triangle that is looked at first, and afterwards one that is near enough; 0
-    /// for
-    ///        the first point
+    ///        for the first point
     bool is_within(const Point& x, double limit, std::uint32_t& near) const;
 
 private:

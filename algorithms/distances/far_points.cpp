@@ -3,8 +3,6 @@
 #include <distances/far_points.hpp>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 
 namespace nestgrid::engine {
 
@@ -12,33 +10,33 @@ namespace {
 
 constexpr std::size_t most_of_a_task = 4096;  // triangles
 
-/// A point of a triangle that is farther than the distance, if there is one. From its middle no
-/// point of a triangle is farther than its farthest corner: what is nearer there by that much is
-/// near as a whole. Other triangles are looked at by quarters.
-/// \param near as ClosestPoints::is_within() has it
-/// \param stack emptied
-std::optional<Point> far_point(const Triangle& whole, const ClosestPoints& to, double distance,
-                               std::uint32_t& near, std::vector<Triangle>& stack) {
-    stack.assign({whole});
-    while (!stack.empty()) {
-        const Triangle t = stack.back();
-        stack.pop_back();
+}  // namespace
+
+std::array<Triangle, 4> quarters(const Triangle& whole) {
+    const auto& [a, b, c] = whole;
+    const Point off_a = 0.5 * (b + c);
+    const Point off_b = 0.5 * (c + a);
+    const Point off_c = 0.5 * (a + b);
+    return {{{off_a, off_b, off_c}, {a, off_c, off_b}, {off_c, b, off_a}, {off_b, off_a, c}}};
+}
+
+// From its middle no point of a triangle is farther than its farthest corner: what is nearer there
+// by that much is near as a whole. Other triangles are looked at by quarters.
+std::optional<Point> FarSearch::far_point(const Triangle& whole) {
+    parts_.assign({whole});
+    while (!parts_.empty()) {
+        const Triangle t = parts_.back();
+        parts_.pop_back();
         const Point middle = (1.0 / 3) * (t[0] + t[1] + t[2]);
         double reach = 0;
         for (const Point& x : t) reach = std::max(reach, norm(x - middle));
-        if (reach <= distance && to.is_within(middle, distance - reach, near)) continue;
-        if (reach < 1e-3 * distance || !to.is_within(middle, distance, near)) return middle;
-        const std::array<Point, 3> half{0.5 * (t[1] + t[2]), 0.5 * (t[2] + t[0]),
-                                        0.5 * (t[0] + t[1])};
-        stack.push_back({half[0], half[1], half[2]});
-        stack.push_back({t[0], half[2], half[1]});
-        stack.push_back({half[2], t[1], half[0]});
-        stack.push_back({half[1], half[0], t[2]});
+        if (reach <= distance_ && to_->is_within(middle, distance_ - reach, near_)) continue;
+        if (reach < 1e-3 * distance_ || !is_near(middle)) return middle;
+        const auto parts = quarters(t);
+        parts_.insert(parts_.end(), parts.begin(), parts.end());
     }
     return std::nullopt;
 }
-
-}  // namespace
 
 std::vector<Point> far_points(const Surface<3>& from, const ClosestPoints& to, double distance,
                               const Executor& executor) {
@@ -48,14 +46,13 @@ std::vector<Point> far_points(const Surface<3>& from, const ClosestPoints& to, d
     executor.run(
         of_tasks.size(),
         [&](std::size_t task) {
-            std::vector<Triangle> stack;
-            std::uint32_t near = 0;
+            FarSearch search(to, distance);
             const std::size_t first = task * most_of_a_task;
             const std::size_t last = std::min(count, first + most_of_a_task);
             for (std::size_t t = first; t < last; ++t) {
                 const auto& [a, b, c] = from.simplices[t];
-                const auto far = far_point({from.vertices[a], from.vertices[b], from.vertices[c]},
-                                           to, distance, near, stack);
+                const auto far =
+                    search.far_point({from.vertices[a], from.vertices[b], from.vertices[c]});
                 if (far) of_tasks[task].push_back(*far);
             }
         },

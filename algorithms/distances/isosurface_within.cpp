@@ -86,9 +86,7 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
                                    const Executor& executor) {
     const Surface<3>& whole = nearness.whole;
     const double distance = nearness.distance;
-    if (!(distance > 0 && std::isfinite(distance))) {
-        throw InvalidInput("the distance to keep is not a positive number");
-    }
+    nearness.require();
     IsosurfaceOptions searched = options;
     searched.normals = searched.cap = searched.elements = searched.reference = false;
     const engine::ClosestPoints to_whole(whole);

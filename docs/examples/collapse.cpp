@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
@@ -19,7 +19,7 @@
 using namespace nestgrid;
 
 int main() {
-    constexpr int n = 65;
+    constexpr int n = 33;
     constexpr double isovalue = 0.275;
     const LatticeBisection<3> grid({.samples = {n, n, n}});
     const std::vector<float> samples = bucky_ball(n);
@@ -54,8 +54,27 @@ int main() {
     std::printf("%zu of %zu triangles, distances %.4f there, %.4f back\n",
                 within.isosurface.surface.simplices.size(), finest.simplices.size(),
                 off.distance.greatest, off.back.greatest);
+    // [nearness]
+    const Nearness near{finest, distance};
+    Surface<3> fewer =
+        isosurface_within(grid, field, isovalue, {finest, distance / 2},
+                          Threshold(&slopes, distance / 2), deviations, {.cuts = Cuts::finest})
+            .isosurface.surface;
+    collapse(fewer, grid, field, isovalue, deviations, {.nearness = near});
+    // [nearness]
+    const MeasuredError left = measure_error(fewer, finest, grid, field, isovalue);
+    std::printf("%zu of them left, distances %.4f there, %.4f back\n", fewer.simplices.size(),
+                left.distance.greatest, left.back.greatest);
+    // [budget]
+    const auto at = [&](double threshold) { return Threshold(&deviations, threshold); };
+    const TriangleBudget found = find_collapse_error(grid, field, isovalue, at, deviations, 2000);
+    // [budget]
+    std::printf("%zu triangles at an error of %.4f\n", static_cast<std::size_t>(found.triangles),
+                found.threshold);
     const SurfaceReport report = surface_report(surface);
     const bool keeps = measured.value.greatest <= error && collapsed.error <= error &&
-                       std::max(off.distance.greatest, off.back.greatest) <= distance;
+                       std::max(off.distance.greatest, off.back.greatest) <= distance &&
+                       std::max(left.distance.greatest, left.back.greatest) <= distance &&
+                       found.triangles <= 2000;
     return report.closed() && report.manifold() && keeps ? 0 : 1;
 }

@@ -59,6 +59,11 @@ void expect_no_new_crossing() {
             EXPECT_LT(surface.simplices.size(), drawn.simplices.size());
             EXPECT_EQ(crossing_pairs(surface), 0U);
         }
+        Surface<3> surface = drawn;
+        collapse(surface, grid, field, data.isovalue, indicator,
+                 {.nearness = Nearness{drawn, 0.7}});
+        EXPECT_LT(surface.simplices.size(), drawn.simplices.size());
+        EXPECT_EQ(crossing_pairs(surface), 0U);
     }
 }
 

@@ -17,43 +17,13 @@
 #include "same_surface.hpp"
 #include "sample_fields.hpp"
 #include "thread_executor.hpp"
+#include "triangle_samples.hpp"
 
 using namespace nestgrid_test;
 
 namespace collapse_test {
 
 constexpr double rounding = 1e-9;
-
-/// Points of a triangle, corners and sides included.
-std::vector<Point> samples_of(const engine::Triangle& x, int steps) {
-    std::vector<Point> points;
-    for (int i = 0; i <= steps; ++i) {
-        for (int j = 0; i + j <= steps; ++j) {
-            const double a = static_cast<double>(i) / steps;
-            const double b = static_cast<double>(j) / steps;
-            points.push_back(a * x[0] + b * x[1] + (1 - a - b) * x[2]);
-        }
-    }
-    return points;
-}
-
-engine::Triangle corners_of(const Surface<3>& s, std::size_t triangle) {
-    const auto& [a, b, c] = s.simplices[triangle];
-    return {s.vertices[a], s.vertices[b], s.vertices[c]};
-}
-
-/// Every vertex on the boundary that lay on a face of the unit cube still does.
-void expect_borders_on_cube(const Surface<3>& s) {
-    for (const auto& edge : s.boundary) {
-        for (const std::uint32_t v : edge) {
-            double nearest = 1;
-            for (const double at : s.vertices[v]) {
-                nearest = std::min({nearest, std::abs(at), std::abs(1 - at)});
-            }
-            EXPECT_LE(nearest, rounding);
-        }
-    }
-}
 
 template <class Real>
 void expect_error_kept(const Surface<3>& s, const Hierarchy<Real>& h, double isovalue, double error,

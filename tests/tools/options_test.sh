@@ -193,10 +193,15 @@ for option in "--lens 0,0,0,1" "--box 0,1,0,1,0,1 --box-threshold 1"; do
     refused 2 'distance-field excludes|excludes --distance-field' isosurface $raw --value 130 --distance 1 --distance-field $option
 done
 effect isosurface "$raw --value 130 --error 20" --collapse
-refused 2 'collapse requires --error' isosurface $raw --value 130 --collapse
+refused 1 'collapse needs an --error, a --distance or --max-triangles' isosurface $raw --value 130 --collapse
 for option in --cap --at-nodes '--lens ball:5,5,5,4' '--box 0,9,0,9,0,9'; do
     refused 2 'collapse excludes|excludes --collapse' isosurface $raw --value 130 --error 9 --collapse $option
 done
+for option in '--threshold 1' '--max-triangles 900 --indicator visual'; do
+    refused 2 'collapse excludes|excludes --collapse' isosurface $raw --value 130 --collapse $option
+done
+effect isosurface "$raw --value 130 --distance 6" --collapse
+effect isosurface "$raw --value 130 --max-triangles 300" --collapse
 effect isosurface "$raw --value 130 --error 20" --measure
 refused 2 'measure excludes|excludes --measure' isosurface $raw --value 130 --measure --cap
 for option in --collapse --measure; do

@@ -69,6 +69,21 @@ done
 awk -v d="$(value distance)" -v b="$(value distance_back)" -v t="$(value threshold)" \
     'BEGIN { exit !(0 < d && d <= t && b <= t) }' || fail "distance: $(cat out)"
 grep -q 'no point of the surface is farther' out || fail "distance: $(cat out)"
+triangles=$(value triangles)
+"$program" isosurface v.vti --value 130 --distance 3 --collapse --measure >out || fail "distance: $(cat out)"
+awk -v d="$(value distance)" -v b="$(value distance_back)" -v t="$(value threshold)" \
+    'BEGIN { exit !(0 < d && d <= t && b <= t) }' || fail "collapses, distance: $(cat out)"
+[ "$(value triangles)" -lt $((triangles / 2)) ] && [ "$(value open_edges)" = 0 ] &&
+    [ "$(value exceeding)" = 0 ] && grep -q 'no point of the surface is farther' out ||
+    fail "collapses, distance: $(value triangles) triangles in the place of $triangles"
+# Collapses to a number of triangles have the least error, and are those within that error.
+"$program" isosurface v.vti --value 130 --max-triangles 300 --collapse >out || fail "budget: $(cat out)"
+triangles=$(value triangles)
+[ "$triangles" -le 300 ] && grep -q '^surface within .* of the isovalue' out || fail "budget: $(cat out)"
+"$program" isosurface v.vti --value 130 --error "$(value threshold)" --collapse >out || fail "budget: $(cat out)"
+[ "$(value triangles)" = "$triangles" ] || fail "$(value triangles) triangles of the error of a budget"
+"$program" isosurface v.vti --value 130 --max-triangles 999999 --collapse >out || fail "budget: $(cat out)"
+[ "$(value threshold)" = 0 ] && grep -q 'nothing is left out' out || fail "a budget for all: $(cat out)"
 # All data are nowhere away from themselves, but for cuts that are kept off nodes.
 "$program" isosurface v.vti --value 130 --measure >out || fail "measure: $(cat out)"
 awk -v d="$(value distance)" -v b="$(value distance_back)" -v m="$(value measured_error)" \

@@ -51,11 +51,18 @@ FineBox fine_box(const IsosurfaceArguments& o) {
     return box;
 }
 
+/// How many options ask for an error, be it the least one of collapses to a number of triangles.
+std::size_t errors_asked(const IsosurfaceArguments& o) {
+    const CLI::App& command = *o.surface.command;
+    return command.count("--error") + (o.collapses ? command.count("--max-triangles") : 0);
+}
+
 ExtractionRequest request_of(const IsosurfaceArguments& o) {
     ExtractionRequest request{
         .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
     request.collapses = o.collapses;
-    request.keeps_distances = o.keeps_distances;
+    request.keeps_distances =
+        o.keeps_distances || (o.collapses && o.surface.command->count("--distance") > 0);
     request.measures = o.measures;
     const SurfaceOptions& s = o.surface;
     if (!o.cuts.empty()) {
@@ -65,6 +72,11 @@ ExtractionRequest request_of(const IsosurfaceArguments& o) {
     request.threads = s.threads;
     request.projection = s.projection;
     request.projection.isovalue = o.value;
+    if (o.collapses && s.command->count("--distance") + errors_asked(o) == 0) {
+        throw nestgrid::InvalidInput(
+            "--collapse needs an --error, a --distance or --max-triangles to keep");
+    }
+    if (o.collapses && !s.budgets.empty()) request.projection.indicator = "deviation";
     if (!o.box.empty() && s.projection.blend != 1) {
         throw nestgrid::InvalidInput("--box has two thresholds: leave out --blend");
     }
@@ -180,9 +192,7 @@ void run_isosurface(IsosurfaceArguments& o, Report& report) {
     const fs::path path = o.input.path;
     const InputField field = read_field(o.input, o.time.more, o.time.times, o.time.wanted());
     check_for(o, field);
-    if (o.surface.command->count("--error") > 0 && suits_cuts(field)) {
-        request.projection.indicator = "cut";
-    }
+    if (errors_asked(o) > 0 && suits_cuts(field)) request.projection.indicator = "cut";
     seconds.read = now() - start;
     const ExtractionRun run = extract(field, o.time, path, request);
     if (film) film->finish(report);
@@ -260,11 +270,10 @@ Command add_isosurface(CLI::App& program) {
                    "keep the --distance there and back: look where the surfaces are farther from "
                    "each other, and draw more there")
         ->needs(isosurface->get_option("--distance"));
-    isosurface
-        ->add_flag("--collapse", o->collapses,
-                   "take edges away while the --error is kept: some times fewer triangles, some "
-                   "times the time")
-        ->needs(isosurface->get_option("--error"));
+    isosurface->add_flag("--collapse", o->collapses,
+                         "take edges away while the --error, or the --distance there and back, is "
+                         "kept, or down to --max-triangles of the least error: some times fewer "
+                         "triangles, some times the time");
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume")
         ->group("Surface");
     isosurface
@@ -283,7 +292,7 @@ Command add_isosurface(CLI::App& program) {
         ->check(CLI::IsMember({"linear", "finest"}))
         ->group("Surface")
         ->excludes("--at-nodes");
-    for (const char* const other : {"--cap", "--at-nodes"}) {
+    for (const char* const other : {"--cap", "--at-nodes", "--threshold", "--indicator"}) {
         isosurface->get_option("--collapse")->excludes(other);
     }
     isosurface

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include <nestgrid/adapters/vtk_surface.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/error.hpp>
@@ -21,8 +22,8 @@ std::string millions(std::uint64_t count) {
 /// \param counting whether elements are told, where no share of the work is known
 nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool counting) {
     const std::string& indicator = request.projection.indicator;
-    const bool finest =
-        indicator == "slope" || (!request.budgets.empty() && indicator != "deviation");
+    const bool finest = indicator == "slope" || (!request.budgets.empty() && !request.collapses &&
+                                                 indicator != "deviation");
     nestgrid::IsosurfaceOptions options{
         .cuts = request.cuts.value_or(finest ? nestgrid::Cuts::finest : nestgrid::Cuts::linear),
         .normals = request.normals,
@@ -39,12 +40,19 @@ nestgrid::IsosurfaceOptions options_of(const ExtractionRequest& request, bool co
 
 /// Collapses edges of a surface, and tells what is left and its bounds.
 template <class Real>
-void collapse_one(nestgrid::Surface<3>& surface, const nestgrid::Hierarchy<Real>& hierarchy,
-                  const nestgrid::Bounds& bounds, const nestgrid::Executor& executor,
-                  const ExtractionRequest& request, Extraction& e) {
+void collapse_one(nestgrid::Surface<3>& surface, const nestgrid::Surface<3>& whole,
+                  const nestgrid::Hierarchy<Real>& hierarchy, const nestgrid::Bounds& bounds,
+                  const nestgrid::Executor& executor, const ExtractionRequest& request,
+                  Extraction& e) {
+    if (request.progress) request.progress("collapsing");
     const double start = now();
-    const nestgrid::Collapsed done = nestgrid::collapse(surface, hierarchy, request.isovalue,
-                                                        bounds, {.error = e.threshold}, executor);
+    nestgrid::CollapseOptions options;
+    if (request.keeps_distances)
+        options.nearness.emplace(nestgrid::Nearness{whole, e.threshold});
+    else
+        options.error = e.threshold;
+    const nestgrid::Collapsed done =
+        nestgrid::collapse(surface, hierarchy, request.isovalue, bounds, options, executor);
     e.collapse_seconds = now() - start;
     e.collapsed = done;
     done.hand_to(e.bounds, e.surface_error);
@@ -61,6 +69,11 @@ void measure_one(const nestgrid::Surface<3>& surface, const nestgrid::Surface<3>
     e.measured =
         nestgrid::measure_error(surface, whole, hierarchy, request.isovalue, points, executor);
     e.measure_seconds = now() - start;
+}
+
+/// The threshold of what is drawn before edges are collapsed.
+double first_threshold(const ExtractionRequest& request, double threshold) {
+    return request.collapses ? threshold / 2 : threshold;
 }
 
 /// Draws one surface.
@@ -84,8 +97,9 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const S& criterion,
     nestgrid::Isosurface<dimension> result;
     if constexpr (dimension == 3) {
         if (request.keeps_distances) {
+            const double distance = first_threshold(request, e.threshold);
             nestgrid::IsosurfaceWithin within =
-                nestgrid::isosurface_within(hierarchy, request.isovalue, {whole, e.threshold},
+                nestgrid::isosurface_within(hierarchy, request.isovalue, {whole, distance},
                                             criterion, bounds, options, executor);
             e.far_points = within.points;
             result = std::move(within.isosurface);
@@ -100,8 +114,8 @@ void extract_one(const nestgrid::Hierarchy<Real>& hierarchy, const S& criterion,
     e.surface_error = result.surface_error;
     e.stack_bytes = result.stack_bytes;
     if constexpr (dimension == 3) {
-        if (request.collapses) {
-            collapse_one(result.surface, hierarchy, bounds, executor, request, e);
+        if (request.collapses && e.threshold > 0) {
+            collapse_one(result.surface, whole, hierarchy, bounds, executor, request, e);
         }
         if (request.measures) measure_one(result.surface, whole, hierarchy, executor, request, e);
         e.report = nestgrid::surface_report(result.surface);
@@ -136,6 +150,24 @@ void with_criteria(const ChosenIndicator& indicators, const std::optional<nestgr
     });
 }
 
+/// The least threshold whose surface keeps within a number of triangles, after collapses where
+/// there are any.
+template <int dimension, class Real, class CriterionAt, class Offsets>
+nestgrid::TriangleBudget find_fitting(const nestgrid::Hierarchy<Real>& hierarchy,
+                                      const CriterionAt& criterion_at, const Offsets& offsets,
+                                      std::uint64_t budget, const nestgrid::Executor& executor,
+                                      const ExtractionRequest& request) {
+    const nestgrid::IsosurfaceOptions options = options_of(request, true);
+    if constexpr (dimension == 3) {
+        if (request.collapses) {
+            return nestgrid::find_collapse_error(hierarchy, request.isovalue, criterion_at, offsets,
+                                                 budget, options, executor);
+        }
+    }
+    return nestgrid::find_threshold<dimension>(hierarchy, request.isovalue, criterion_at, offsets,
+                                               budget, options, executor);
+}
+
 void tell_share(const ExtractionRun& run, const ExtractionRequest& request) {
     if (request.share) request.share(run.surfaces.size(), run.expected);
 }
@@ -151,9 +183,8 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
     run.preroll_seconds += now() - begin;
     const auto draw = [&](const auto& criterion_at, Extraction e) {
         e.time = moment.time();
-        const double threshold = request.collapses ? e.threshold / 2 : e.threshold;
-        extract_one<dimension>(hierarchy, criterion_at(threshold), indicators.bounds(), executor,
-                               request, e);
+        extract_one<dimension>(hierarchy, criterion_at(first_threshold(request, e.threshold)),
+                               indicators.bounds(), executor, request, e);
         if (e.surface)
             describe(e.surface, field.length_unit, field.space, {{field.name, request.isovalue}});
         run.surfaces.push_back(std::move(e));
@@ -165,9 +196,8 @@ void extract_moment(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& mo
             Extraction e;
             const double start = now();
             e.search = indicators.with_offsets([&](const auto& offsets) {
-                return nestgrid::find_threshold<dimension>(hierarchy, request.isovalue,
-                                                           criterion_at, offsets, budget,
-                                                           options_of(request, true), executor);
+                return find_fitting<dimension>(hierarchy, criterion_at, offsets, budget, executor,
+                                               request);
             });
             e.search_seconds = now() - start;
             e.threshold = e.search.threshold;

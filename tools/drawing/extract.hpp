@@ -29,7 +29,7 @@ struct ExtractionRequest {
     double isovalue = 0;
     std::vector<ThresholdText> thresholds{};
     ProjectionChoice projection{};
-    /// Triangles at most, beside which there are no thresholds.
+    /// Triangles at most, after collapses, beside which there are no thresholds.
     std::vector<std::uint64_t> budgets{};
     std::optional<FineBox> box{};
     std::optional<LensRequest> lens{};
@@ -38,13 +38,13 @@ struct ExtractionRequest {
     bool normals = true;
     bool at_nodes = false;
     /// Where edges are cut; nothing: on their finest pieces where `budgets` are asked for, but for
-    /// deviations, whose error linear cuts keep.
+    /// deviations and collapses, whose error linear cuts keep.
     std::optional<nestgrid::Cuts> cuts{};
-    /// Whether edges are collapsed while the error keeps within the thresholds. What is drawn first
-    /// has half the error.
-    bool collapses = false;
     /// Whether thresholds are distances that are kept there and back.
     bool keeps_distances = false;
+    /// Whether edges are collapsed while the error, or where distances are kept these, keep within
+    /// the thresholds. What is drawn first has half of them.
+    bool collapses = false;
     bool measures = false;       ///< against the surface of all data
     bool keep_surfaces = false;  ///< for files and pictures
     std::function<void(const std::string&)> progress{};

@@ -119,7 +119,8 @@ class Field:
         distance_field  whether to keep distance, which must be given: no point of what is drawn is
                   farther from the surface of all data, and none of that from what is drawn. Some
                   times the time
-        collapse  whether to take edges away while error is kept, which must be given: some times
+        collapse  whether to take edges away while error, or distance there and back, is kept, or
+                  down to max_triangles of the least error, one of which must be given: some times
                   fewer triangles, some times the time
         cap       whether to close the surface along the boundary of the domain, around what is at
                   least the level
@@ -133,18 +134,24 @@ class Field:
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
         """
         projection = _surface_projection(
-            threshold, max_triangles, indicator, blend, lens, error, distance
+            threshold, max_triangles, indicator, blend, lens, error, distance, collapse
         )
-        if collapse and (error is None or cap or at_nodes or lens is not None):
-            raise InvalidInput("collapse needs an error, and neither cap, at_nodes nor lens")
+        if collapse:
+            kept = error is not None or distance is not None or max_triangles is not None
+            if not kept or cap or at_nodes or lens is not None or indicator != "offset":
+                raise InvalidInput(
+                    "collapse needs an error, a distance or max_triangles, and neither cap, "
+                    "at_nodes, lens nor indicator"
+                )
         if distance_field and (distance is None or lens is not None):
             raise InvalidInput("distance_field needs a distance, and no lens")
         if cuts is None:
-            nearer = distance is not None or max_triangles is not None
+            nearer = distance is not None or (max_triangles is not None and not collapse)
             finest = nearer and indicator != "deviation"
         else:
             finest = cuts == "finest"
-        options = (normals, cap, elements, at_nodes, finest, collapse, distance_field)
+        keeps_distance = distance_field or (collapse and distance is not None)
+        options = (normals, cap, elements, at_nodes, finest, collapse, keeps_distance)
         return Surface._of(
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
         )
@@ -300,8 +307,11 @@ def _surface_projection(
     lens: LensLike | None,
     error: float | None,
     distance: float | None,
+    collapse: bool,
 ) -> _nestgrid.Projection:
     """The projection of an isosurface, which has an error and a distance of its own."""
+    if collapse and max_triangles is not None and (threshold, error, distance) == (None,) * 3:
+        return _nestgrid.Projection(None, max_triangles, "error", blend, None)
     if error is None and distance is None:
         return _projection(threshold, max_triangles, indicator, blend, lens, None)
     name = "distance" if error is None else "error"

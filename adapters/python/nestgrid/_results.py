@@ -197,7 +197,7 @@ class Surface(_Result):
 
         On every triangle |data - level| is at most this. Where nothing was collapsed, no part of
         the surface of all data differs more from what is drawn. Infinite where nothing is
-        promised: where no error was asked for.
+        promised: where neither an error nor, with collapses, a number of triangles was asked for.
         """
         return self._data.surface_error
 

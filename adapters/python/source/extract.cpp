@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <nestgrid/algorithms/blended.hpp>
-#include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/lens.hpp>
@@ -116,33 +116,38 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
             .progress = progress_of(call)};
 }
 
-/// Draws with half the threshold, and collapses edges while that is kept.
+/// Draws one isosurface. Where edges are collapsed, what is drawn first has half the threshold.
 template <class Real, class CriterionAt>
-Isosurface<3> draw_collapsed(const Hierarchy<Real>& hierarchy, double isovalue,
-                             const CriterionAt& criterion_at, double error, const Bounds& bounds,
-                             const IsosurfaceOptions& options, const Call& call) {
-    Isosurface<3> drawn = isosurface<3>(hierarchy, isovalue, criterion_at(error / 2), bounds,
-                                        options, call.executor());
-    if (drawn.cancelled) return drawn;
+Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue,
+                       const CriterionAt& criterion_at, double threshold, const Bounds& bounds,
+                       const SurfaceRequest& request, const Call& call) {
+    const IsosurfaceOptions options = options_of(request, call);
+    const auto draw = [&](const Criterion& by, const IsosurfaceOptions& how) {
+        return isosurface<3>(hierarchy, isovalue, by, bounds, how, call.executor());
+    };
+    const double first = request.collapses ? threshold / 2 : threshold;
+    const auto criterion = criterion_at(first);
+    CollapseOptions kept;
+    Isosurface<3> whole;
+    Isosurface<3> drawn;
+    if (request.keeps_distance) {
+        whole =
+            draw(Exact{},
+                 {.elements = false, .at_nodes = options.at_nodes, .progress = options.progress});
+        if (whole.cancelled) return whole;
+        drawn = isosurface_within(hierarchy, isovalue, {whole.surface, first}, criterion, bounds,
+                                  options, call.executor())
+                    .isosurface;
+        kept.nearness.emplace(Nearness{whole.surface, threshold});
+    } else {
+        drawn = draw(criterion, options);
+        kept.error = threshold;
+    }
+    if (!request.collapses || threshold == 0 || drawn.cancelled) return drawn;
     const Collapsed done =
-        collapse(drawn.surface, hierarchy, isovalue, bounds, {.error = error}, call.executor());
+        collapse(drawn.surface, hierarchy, isovalue, bounds, kept, call.executor());
     done.hand_to(drawn, drawn.surface_error);
     return drawn;
-}
-
-/// Draws within the distance of the surface of all data, and that within the distance of it.
-template <class Real, class S>
-Isosurface<3> draw_within(const Hierarchy<Real>& hierarchy, double isovalue, const S& criterion,
-                          double distance, const Bounds& bounds, const IsosurfaceOptions& options,
-                          const Call& call) {
-    const IsosurfaceOptions of_whole{
-        .elements = false, .at_nodes = options.at_nodes, .progress = options.progress};
-    Isosurface<3> whole =
-        isosurface<3>(hierarchy, isovalue, Exact{}, bounds, of_whole, call.executor());
-    if (whole.cancelled) return whole;
-    return isosurface_within(hierarchy, isovalue, {whole.surface, distance}, criterion, bounds,
-                             options, call.executor())
-        .isosurface;
 }
 
 /// \param search of the threshold; its max_triangles is 0 where the threshold was given
@@ -167,27 +172,22 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
     return call.with(source.hierarchy(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(3);
         const Criteria criteria(source, projection, call, isovalue);
-        const IsosurfaceOptions options = options_of(request, call);
         return criteria.with_criteria([&](const auto& criterion_at) {
             TriangleBudget search{.threshold = criteria.threshold()};
-            if (request.collapses) {
-                return drawn_of(draw_collapsed(hierarchy, isovalue, criterion_at, search.threshold,
-                                               criteria.bounds(), options, call),
-                                search);
-            }
-            if (request.keeps_distance) {
-                return drawn_of(draw_within(hierarchy, isovalue, criterion_at(search.threshold),
-                                            search.threshold, criteria.bounds(), options, call),
-                                search);
-            }
             if (projection.max_triangles > 0) {
-                search = criteria.with_offsets([&](const auto& offsets) {
-                    return find_threshold<3>(hierarchy, isovalue, criterion_at, offsets,
-                                             projection.max_triangles, options, call.executor());
-                });
+                const auto find = [&](const auto& function) {
+                    return criteria.with_offsets([&](const auto& offsets) {
+                        return function(hierarchy, isovalue, criterion_at, offsets,
+                                        projection.max_triangles, options_of(request, call),
+                                        call.executor());
+                    });
+                };
+                search = request.collapses
+                             ? find([](const auto&... a) { return find_collapse_error(a...); })
+                             : find([](const auto&... a) { return find_threshold<3>(a...); });
             }
-            return drawn_of(isosurface<3>(hierarchy, isovalue, criterion_at(search.threshold),
-                                          criteria.bounds(), options, call.executor()),
+            return drawn_of(draw_one(hierarchy, isovalue, criterion_at, search.threshold,
+                                     criteria.bounds(), request, call),
                             search);
         });
     });

@@ -60,7 +60,7 @@ struct SurfaceRequest {
     bool elements = false;
     bool at_nodes = false;
     bool finest_cuts = false;
-    bool collapses = false;       ///< needs the indicator "error"
+    bool collapses = false;       ///< needs the indicator "error", or a distance that is kept
     bool keeps_distance = false;  ///< needs the indicator "slope"
 };
 

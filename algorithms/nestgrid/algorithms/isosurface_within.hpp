@@ -21,14 +21,9 @@
 
 #include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/nearness.hpp>
 
 namespace nestgrid {
-
-/// A surface, and how near to it another one is to be.
-struct Nearness {
-    const Surface<3>& whole;  ///< the isosurface of all data: isosurface() under Exact
-    double distance;          ///< positive, in units of length
-};
 
 /// An isosurface, and what it took to keep the distance.
 struct IsosurfaceWithin {

@@ -277,7 +277,19 @@ def test_an_error_that_is_asked_for_is_kept(gyroid):
                 volume.isosurface(0.5, **{asked: wrong})
     with refused("error is given alone"):
         volume.isosurface(0.5, error=0.1, distance=0.1)
-    for wrong in ({}, {"error": 0.1, "cap": True}, {"error": 0.1, "at_nodes": True}):
+    few = volume.isosurface(0.5, max_triangles=600, collapse=True)
+    assert 500 < len(few.triangles) <= 600
+    assert few.error_bound == few.surface_error <= few.threshold
+    again = volume.isosurface(0.5, error=few.threshold, collapse=True)
+    assert np.array_equal(few.vertices, again.vertices)
+    assert volume.isosurface(0.5, max_triangles=10**6, collapse=True).threshold == 0
+    for wrong in (
+        {},
+        {"error": 0.1, "cap": True},
+        {"error": 0.1, "at_nodes": True},
+        {"threshold": 0.1},
+        {"max_triangles": 600, "indicator": "visual"},
+    ):
         with refused("collapse needs an error"):
             volume.isosurface(0.5, collapse=True, **wrong)
 
@@ -320,6 +332,11 @@ def test_a_distance_is_kept_there_and_back():
     assert farthest(whole.vertices, kept) <= 1 + 1e-6
     assert farthest(kept.vertices, whole) <= 1 + 1e-6
     assert len(estimated.triangles) < len(kept.triangles) < len(whole.triangles)
+    collapsed = volume.isosurface(0.4, distance=1, collapse=True)
+    assert farthest(whole.vertices, collapsed) <= 1 + 1e-6
+    assert farthest(collapsed.vertices, whole) <= 1 + 1e-6
+    assert len(collapsed.triangles) < len(kept.triangles) / 4
+    assert collapsed.report()["open_edges"] == 0
     for wrong in ({}, {"distance": 1, "lens": nestgrid.Lens(nestgrid.ball((8, 8, 8), 2), 1)}):
         with refused("distance_field needs a distance"):
             volume.isosurface(0.4, distance_field=True, **wrong)

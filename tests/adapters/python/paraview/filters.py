@@ -68,6 +68,11 @@ def check_image_data():
     same(fetch(filter), volume.isosurface(157, error=20, collapse=True))
     filter.Error = 0
     filter.Distance = 0.5
+    same(fetch(filter), volume.isosurface(157, distance=0.5, collapse=True))
+    filter.Distance, filter.MaxTriangles = 0, 2000
+    same(fetch(filter), volume.isosurface(157, max_triangles=2000, collapse=True))
+    filter.Collapse, filter.MaxTriangles = 0, 0
+    filter.Distance = 0.5
     same(fetch(filter), volume.isosurface(157, distance=0.5))
     filter.Distance = 0
     filter.Cap = 1

@@ -90,8 +90,9 @@ COLLAPSE = """
 <IntVectorProperty name="Collapse" command="SetCollapse" number_of_elements="1"
     default_values="0">
   <BooleanDomain name="bool"/>
-  <Documentation>Take edges away while the error is kept: fewer triangles, in more
-  time. Without an error, and with a cap, nothing is taken away.</Documentation>
+  <Documentation>Take edges away while the error, or the distance there and back, is kept, or
+  down to the triangles asked for: fewer triangles, in more time. With a threshold or a cap
+  nothing is taken away.</Documentation>
 </IntVectorProperty>
 """
 MAX_TRIANGLES = """
@@ -208,8 +209,10 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def isosurface(self, field):
         options = {**self.fineness(), **self._surface_options}
-        if "error" in options and not options["cap"]:
+        if "threshold" not in options and not options["cap"]:
             options.update(self._collapse)
+            if options["collapse"]:
+                options.pop("indicator", None)
         return field.isosurface(self._isovalue, **options)
 
     def slice(self, field):
