@@ -365,6 +365,14 @@ def test_labels():
         shells = 2 if label == 3 else 1
         if row.get("components") != shells or row.get("open_edges") != 0:
             fail(f"label {label}: {row} {done.stderr}")
+    cases += 1
+    both = ["labels.nii.gz", "--label", 3, "--label", 7]
+    done = program("isosurface", *both, "--value", 0.5, "--json", "-o", "part.obj")
+    rows = json.loads(done.stdout)["surfaces"] if done.returncode == 0 else []
+    parts = [(row["label"], row["components"]) for row in rows]
+    if parts != [(3, 2), (7, 1)] or not (os.path.exists("part-1.obj") and os.path.exists("part-2.obj")):
+        fail(f"labels 3 and 7: {parts} {done.stderr}")
+    refused("labels.nii.gz", "--label is given several times", *both[1:])
 
 
 def test_holes():

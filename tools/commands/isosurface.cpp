@@ -165,6 +165,47 @@ void say_what_distances_are(const ExtractionRequest& request, const std::string&
     report.say(text);
 }
 
+/// The field of an input, or those of its parts where it has several labels.
+std::vector<InputField> read_parts(IsosurfaceArguments& o) {
+    const auto read = [&](Input& input) {
+        return read_field(input, o.time.more, o.time.times, o.time.wanted());
+    };
+    std::vector<InputField> parts;
+    if (o.input.labels.size() < 2 || o.time.in_use()) {
+        parts.push_back(read(o.input));
+        return parts;
+    }
+    refuse_options(*o.surface.command, {"--against-vtk"}, "is for one part");
+    for (const double label : o.input.labels) {
+        Input input = o.input;
+        input.labels = {label};
+        parts.push_back(read(input));
+    }
+    return parts;
+}
+
+/// Draws the surfaces of all parts, one part after the other.
+ExtractionRun extract_all(const std::vector<InputField>& parts, const IsosurfaceArguments& o,
+                          const fs::path& path, const ExtractionRequest& request) {
+    ExtractionRun all = extract(parts.front(), o.time, path, request);
+    if (parts.size() == 1) return all;
+    for (Extraction& e : all.surfaces) e.label = o.input.labels.front();
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        ExtractionRun run = extract(parts[i], o.time, path, request);
+        all.preroll_seconds += run.preroll_seconds;
+        all.preroll_peak_bytes = std::max(all.preroll_peak_bytes, run.preroll_peak_bytes);
+        all.preroll_kept_bytes = std::max(all.preroll_kept_bytes, run.preroll_kept_bytes);
+        for (Extraction& e : run.surfaces) {
+            e.label = o.input.labels[i];
+            all.surfaces.push_back(std::move(e));
+        }
+    }
+    for (const Extraction& e : all.surfaces) {
+        if (e.surface) describe(e.surface, "", "", {{"label", *e.label}});
+    }
+    return all;
+}
+
 void run_isosurface(IsosurfaceArguments& o, Report& report) {
     check(o.surface);
     check(o.time);
@@ -190,11 +231,12 @@ void run_isosurface(IsosurfaceArguments& o, Report& report) {
         };
     }
     const fs::path path = o.input.path;
-    const InputField field = read_field(o.input, o.time.more, o.time.times, o.time.wanted());
+    const std::vector<InputField> parts = read_parts(o);
+    const InputField& field = parts.front();
     check_for(o, field);
     if (errors_asked(o) > 0 && suits_cuts(field)) request.projection.indicator = "cut";
     seconds.read = now() - start;
-    const ExtractionRun run = extract(field, o.time, path, request);
+    const ExtractionRun run = extract_all(parts, o, path, request);
     if (film) film->finish(report);
     keep(run, o.surface, *progress, seconds, report);
     std::optional<Contour> contour;

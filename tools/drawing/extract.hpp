@@ -60,7 +60,8 @@ struct ExtractionRequest {
 
 /// One surface and what it cost.
 struct Extraction {
-    std::optional<double> time;  ///< where it is between frames
+    std::optional<double> label;  ///< of the part, where there are several
+    std::optional<double> time;   ///< where it is between frames
     double threshold = 0;
     nestgrid::TriangleBudget search;  ///< of the threshold; max_triangles is 0 where none was
     double search_seconds = 0;

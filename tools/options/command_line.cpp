@@ -77,11 +77,12 @@ void add_read_options(CLI::App& command, Input& input) {
     command.add_flag("--magnitude", input.choice.magnitude, "or the norm of all of them")
         ->group("Input");
     command
-        .add_option("--label", input.choice.label,
+        .add_option("--label", input.labels,
                     "take samples for 1 where they have this value, else for 0: the surface of 0.5 "
-                    "is that of a segmented part")
+                    "is that of a segmented part; isosurface takes several, one surface each")
         ->type_name("NUMBER")
-        ->group("Input");
+        ->group("Input")
+        ->take_all();
     command
         .add_option("--missing", input.choice.missing,
                     "samples with this value have none, as those that are not a number (NaN): "
@@ -188,6 +189,12 @@ std::vector<Volume> read_volumes(Input& input, bool all_frames) {
     input.raw.big_endian = input.endian == "big";
     VolumeChoice choice = input.choice;
     choice.array = input.array;
+    if (input.labels.size() > 1) {
+        throw nestgrid::InvalidInput(
+            "--label is given several times: only an isosurface of one "
+            "moment is drawn of several parts");
+    }
+    if (!input.labels.empty()) choice.label = input.labels.front();
     choice.all_frames = all_frames && !choice.frame;
     return read_volumes(input.path, choice, input.raw, input.read_limit);
 }

@@ -36,7 +36,8 @@ struct Input {
     std::filesystem::path path;
     std::string array;
     std::string by{};       ///< where it names another field of a .nestgrid, that is component 1
-    VolumeChoice choice{};  ///< its array aside
+    VolumeChoice choice{};  ///< its array and its label aside
+    std::vector<double> labels{};  ///< of parts; at most one where a field is read
     RawFormat raw;
     std::string endian = "little";
     double read_limit = 0;
@@ -50,6 +51,7 @@ void add_read_limit(CLI::App& command, double& seconds);
 /// \throw nestgrid::InvalidInput for an option that means nothing for a file of this format
 void check(const Input& input);
 /// \param all_frames whether all of them are read, unless one is chosen
+/// \throw nestgrid::InvalidInput for several labels
 std::vector<Volume> read_volumes(Input& input, bool all_frames);
 
 /// How finely a surface is drawn, and where it goes.

@@ -30,7 +30,9 @@ void say_what_is_promised(const ExtractionRun& run, Report& report) {
 /// What everybody wants to know of a surface comes first.
 Row row_of(const Extraction& e, bool in_space) {
     const nestgrid::SurfaceReport& r = e.report;
-    Row row = begin_row(e.time, e.search.max_triangles, e.threshold);
+    Row row;
+    if (e.label) row.add("label", *e.label);
+    row.append(begin_row(e.time, e.search.max_triangles, e.threshold));
     row.add(in_space ? "triangles" : "segments", r.triangles).add("vertices", r.vertices);
     row.add("error_bound", bound_of(e.bounds));
     if (is_promised(e)) row.add("surface_error", e.surface_error);
@@ -124,7 +126,10 @@ std::string caption(const Extraction& e) {
     char text[200];
     std::snprintf(text, sizeof(text), "threshold %.4g\n%zu triangles, %zu open edges", e.threshold,
                   e.report.triangles, e.report.open_edges);
-    return text;
+    if (!e.label) return text;
+    std::array<char, 40> label{};
+    std::snprintf(label.data(), label.size(), "label %.10g, ", *e.label);
+    return std::string(label.data()) + text;
 }
 
 Row begin_row(const std::optional<double>& time, std::uint64_t budget, double threshold) {
@@ -200,7 +205,8 @@ void report_surfaces(const ExtractionRun& run, double isovalue, const Seconds& s
     std::vector<nestgrid::TriangleBudget> searches;
     for (const Extraction& e : run.surfaces) {
         searches.push_back(e.search);
-        report.add_row("surfaces", row_of(e, in_space), keys_of(e.time, e.search.max_triangles));
+        const std::size_t keys = keys_of(e.time, e.search.max_triangles) + (e.label ? 1 : 0);
+        report.add_row("surfaces", row_of(e, in_space), keys);
         simplices += e.report.triangles;
         drawing += e.seconds;
     }

@@ -29,6 +29,10 @@ public:
         cells_.emplace_back(std::move(column), std::move(cell));
         return *this;
     }
+    Row& append(const Row& more) {
+        cells_.insert(cells_.end(), more.cells_.begin(), more.cells_.end());
+        return *this;
+    }
     const std::vector<std::pair<std::string, Cell>>& cells() const { return cells_; }
 
 private:
