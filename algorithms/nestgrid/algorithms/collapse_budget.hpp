@@ -31,8 +31,9 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
 
 /// The least error such that the isosurface that is drawn with half of it, and then collapsed
 /// within it, has at most max_triangles. It is the `threshold` of the result; where that is 0, all
-/// data have no more triangles, and nothing is to be collapsed. \param criterion_at of an error,
-/// such as a Threshold on deviations \param bounds of the same grid and field, for collapse(), too
+/// data have no more triangles, and nothing is to be collapsed.
+/// \param criterion_at of an error, such as a Threshold on deviations
+/// \param bounds of the same grid and field, for collapse(), too
 /// \param options of the surface without a cap; progress is told while surfaces are drawn
 /// \throw InvalidInput where collapses leave more triangles at any error, and as isosurface()
 template <class Real, MakesCriterion Make, RangedBounds Ranged>
