@@ -50,6 +50,7 @@ public:
         for (const Real nan_or_zero : unusable_.numbers()) {
             if (nan_or_zero != 0) facts.add_value(static_cast<double>(nan_or_zero), limit);
         }
+        if (least_.template number<0>() > greatest_.template number<0>()) return;  // no values
         for (const Real v : least_.numbers()) facts.add_value(static_cast<double>(v), limit);
         for (const Real v : greatest_.numbers()) facts.add_value(static_cast<double>(v), limit);
     }

@@ -78,8 +78,6 @@ class Volume(Field):
         missing = 0
         if self._array.dtype.kind == "f":
             missing = np.count_nonzero(np.isnan(self._array))
-        if missing == self._array.size:
-            return "without any value"
         least, greatest = np.nanmin(self._array), np.nanmax(self._array)
         if not np.isfinite(float(least)) or not np.isfinite(float(greatest)):
             return "with values that are not finite"

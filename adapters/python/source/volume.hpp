@@ -45,11 +45,17 @@ LatticeField<Grid, Sample> lattice_field(const Grid& grid, const Samples& sample
 }
 
 /// Whether a sample has no value: is not a number (NaN).
+/// \throw InvalidInput where none has a value
 template <class Sample>
 bool any_missing(const Samples& samples, std::size_t count) {
     if constexpr (std::is_floating_point_v<Sample>) {
         const std::span all(static_cast<const Sample*>(samples.data), count);
-        return std::ranges::any_of(all, [](Sample value) { return std::isnan(value); });
+        const auto missing =
+            std::ranges::count_if(all, [](Sample value) { return std::isnan(value); });
+        if (static_cast<std::size_t>(missing) == count) {
+            throw InvalidInput("no sample has a value");
+        }
+        return missing > 0;
     }
     return false;
 }
@@ -91,7 +97,7 @@ std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) 
     const auto memory = std::make_shared<std::vector<std::shared_ptr<const void>>>();
     bool missing = false;
     for (const Samples& frame : frames) {
-        missing = missing || any_missing<Sample>(frame, grid->sample_count());
+        missing = any_missing<Sample>(frame, grid->sample_count()) || missing;
         fields.push_back(lattice_field<Sample>(*grid, frame));
         memory->push_back(frame.memory);
     }

@@ -54,9 +54,9 @@ def test_wrong_volumes():
 def test_values_that_are_no_numbers():
     broken = CUBE.copy()
     broken[1, 1, 1] = np.inf
-    with refused("inf"):
+    with refused("not a usable number"):
         nestgrid.Volume(broken).isosurface(3)
-    with refused("inf"):
+    with refused("not a usable number"):
         nestgrid.Volume(broken).range
 
 
@@ -69,7 +69,7 @@ def test_holes():
     expected = nestgrid.Volume(holes).isosurface(95)
     whole = nestgrid.Volume(ball).isosurface(95)
     assert 0 < len(expected.triangles) < len(whole.triangles)
-    assert expected.vertices[:, 0].max() <= 9 and expected.open_edges > 0
+    assert expected.vertices[:, 0].max() <= 9
     integers = np.rint(ball * 8).astype(np.int16)
     masked = nestgrid.Volume(np.ma.masked_array(integers, outside))
     assert masked.array.dtype == np.float32 and np.isnan(masked.array).sum() == outside.sum()

@@ -184,4 +184,5 @@ def test_what_things_say_of_themselves():
     assert "&lt;b&gt;heat" in volume._repr_html_() and "mm" in volume._repr_html_()
     broken = nestgrid.Volume(np.full((2, 2, 2), np.inf))
     assert "not finite" in repr(broken)
-    assert "without any value" in repr(nestgrid.Volume(np.full((2, 2, 2), np.nan)))
+    with pytest.raises(nestgrid.InvalidInput, match="no sample has a value"):
+        nestgrid.Volume(np.full((2, 2, 2), np.nan))
