@@ -239,7 +239,7 @@ def _with_holes(array: np.ma.MaskedArray) -> np.ndarray:
     if array.dtype.kind not in "iuf":
         return np.ma.getdata(array)  # which is refused
     small = array.dtype.itemsize <= (4 if array.dtype.kind == "f" else 2)
-    return array.astype(np.float32 if small else np.float64).filled(np.nan)
+    return np.ma.filled(array.astype(np.float32 if small else np.float64), np.nan)
 
 
 def samples(value: Any) -> np.ndarray:

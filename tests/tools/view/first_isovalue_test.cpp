@@ -226,14 +226,20 @@ TEST(FirstIsovalue, IsReadableAndStillBetweenTheValues) {
     EXPECT_TRUE(readable({1, next}) == 1 || readable({1, next}) == next);
 }
 
-TEST(FirstIsovalue, OfValuesThatAreNotFiniteIsRefused) {
-    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-        for (const std::size_t place : {std::size_t{0}, std::size_t{7}, std::size_t{199}}) {
-            std::vector<double> values(200, 1.0);
-            values[place] = bad;
-            EXPECT_THROW(isovalue_of(values), nestgrid::InvalidInput);
-        }
+TEST(FirstIsovalue, OfInfiniteValuesIsRefused) {
+    for (const std::size_t place : {std::size_t{0}, std::size_t{7}, std::size_t{199}}) {
+        std::vector<double> values(200, 1.0);
+        values[place] = std::numeric_limits<double>::infinity();
+        EXPECT_THROW(isovalue_of(values), nestgrid::InvalidInput);
     }
+}
+
+TEST(FirstIsovalue, DoesNotDependOnValuesThatAreMissing) {
+    std::vector<double> values;
+    for (int i = 0; i < 200; ++i) values.push_back(i < 150 ? 0.01 * (i % 7) : 5 + 0.1 * (i % 13));
+    const double expected = isovalue_of(values);
+    for (int i = 0; i < 200; ++i) values.insert(values.begin() + 2 * i, std::nan(""));
+    EXPECT_EQ(isovalue_of(values), expected);
 }
 
 }  // namespace
