@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <levels/bfloat16_search.hpp>
 #include <levels/draw.hpp>
@@ -65,13 +66,12 @@ class CollapseTrials {
 public:
     CollapseTrials(const Hierarchy<Real>& hierarchy, double isovalue,
                    const MakeCriterion& criterion_at, const SearchBounds& bounds,
-                   std::uint64_t max_triangles, const IsosurfaceOptions& options,
-                   const Executor& executor)
+                   std::uint64_t max_triangles, IsosurfaceOptions options, const Executor& executor)
         : hierarchy_{hierarchy},
           isovalue_{isovalue},
           criterion_at_{criterion_at},
           bounds_{bounds},
-          options_{options},
+          options_{std::move(options)},
           executor_{executor},
           levels_{engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1))} {
         best_.max_triangles = max_triangles;
