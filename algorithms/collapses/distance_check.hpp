@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What keeps a collapsing surface within a distance of the surface of all data, and that within the
-// distance of it.
+// Collapses that keep a surface within a distance of the surface of all data, and all of the latter
+// within the same distance of what is left.
 //
 // There, each new triangle is looked at as a whole (FarSearch). Back, each part of the surface of
 // all data is near to one triangle, its owner; where triangles are replaced, each of their parts

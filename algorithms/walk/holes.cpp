@@ -141,7 +141,8 @@ std::shared_ptr<const HiddenElements> HiddenElements::of_all(
     };
     std::size_t found = look();
     const bool conforming = fields.front()->facts().conforming;
-    // What one field hides may make nodes hang no longer at which another one has no value.
+    // Nodes hang no longer where one field hides the leaf they hung on. Another field may have no
+    // value of its own there, so all are looked at again until nothing is added.
     for (std::size_t before = 0; !conforming && fields.size() > 1 && found > before;) {
         before = std::exchange(found, look());
     }
@@ -162,8 +163,7 @@ HierarchyFacts Holes<Real>::facts_with_hidden(const Hierarchy<Real>& inner) {
 
 template <class Real>
 Holes<Real>::Holes(const Hierarchy<Real>& inner, std::shared_ptr<const HiddenElements> hidden)
-    : Hierarchy<Real>(facts_with_hidden(inner)),
-      inner_{&inner},
+    : detail::ForwardingHierarchy<Real>(inner, facts_with_hidden(inner)),
       hidden_{std::move(hidden)},
       made_for_{inner} {
     if (dynamic_cast<const Holes<Real>*>(&inner) != nullptr) {
@@ -175,7 +175,8 @@ template <class Real>
 NodeMask Holes<Real>::enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                             Real* values, NodeMask wanted, Family& children) const {
     const HiddenElements::Mark mark = element.mark;
-    const NodeMask missing = inner_->enter(task, element, rule, which, values, wanted, children);
+    const NodeMask missing =
+        this->inner().enter(task, element, rule, which, values, wanted, children);
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         hide(children, c, hidden_->child(mark, c));
     }
@@ -184,7 +185,7 @@ NodeMask Holes<Real>::enter(Task* task, const Handle& element, const Rule& rule,
 
 template <class Real>
 void Holes<Real>::row_values(NodeKey first, std::size_t stride, std::span<Real> out) const {
-    inner_->row_values(first, stride, out);
+    this->inner().row_values(first, stride, out);
     for (std::size_t i = 0; i < out.size(); ++i) {
         if (hidden_->unseen().contains(first + static_cast<NodeKey>(i * stride))) {
             out[i] = std::numeric_limits<Real>::quiet_NaN();

@@ -7,7 +7,7 @@
 
 #include <atomic>
 
-#include <nestgrid/hierarchy.hpp>
+#include <nestgrid/detail/forwarding_hierarchy.hpp>
 
 namespace nestgrid::python {
 
@@ -16,16 +16,11 @@ struct Stopped {};
 
 /// Hands every question on to another hierarchy, and throws Stopped once the flag is set.
 template <class Real>
-class Stoppable final : public Hierarchy<Real> {
+class Stoppable final : public detail::ForwardingHierarchy<Real> {
 public:
     /// \param inner and the flag are borrowed
     Stoppable(const Hierarchy<Real>& inner, const std::atomic<bool>& stopped)
-        : Hierarchy<Real>(inner.facts()), inner_{inner}, stopped_{stopped} {}
-
-    std::size_t coarse_count() const override { return inner_.coarse_count(); }
-    std::uint64_t epoch() const override { return inner_.epoch(); }
-    Elements make_elements() const override { return inner_.make_elements(); }
-    std::unique_ptr<Task> open() const override { return inner_.open(); }
+        : detail::ForwardingHierarchy<Real>(inner, inner.facts()), stopped_{stopped} {}
 
     void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const override {
         asked().coarse(task, i, coarse, family);
@@ -53,11 +48,8 @@ public:
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         asked().corner_gradients(task, element, out);
     }
-    std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
-        return inner_.hanging_parents(node);
-    }
     void star_rows(const std::function<void(const StarRow&)>& function) const override {
-        inner_.star_rows([&](const StarRow& row) {
+        this->inner().star_rows([&](const StarRow& row) {
             asked();
             function(row);
         });
@@ -86,10 +78,9 @@ public:
 private:
     const Hierarchy<Real>& asked() const {
         if (stopped_.load(std::memory_order_relaxed)) throw Stopped();
-        return inner_;
+        return this->inner();
     }
 
-    const Hierarchy<Real>& inner_;
     const std::atomic<bool>& stopped_;
 };
 

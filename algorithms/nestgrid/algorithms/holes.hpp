@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/detail/forwarding_hierarchy.hpp>
 #include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/detail/node_set.hpp>
 #include <nestgrid/hierarchy.hpp>
@@ -44,7 +45,7 @@ public:
     static std::shared_ptr<const HiddenElements> of_all(
         std::span<const Hierarchy<Real>* const> fields);
 
-    /// What stands for an element: how it and all below it is hidden.
+    /// Tells of an element how it and all below it are hidden.
     using Mark = std::uint32_t;
     Mark coarse(std::size_t i) const { return coarse_[i]; }
     Mark child(Mark of, std::size_t c) const {
@@ -68,7 +69,8 @@ private:
     template <class Real>
     void find(const Hierarchy<Real>& hierarchy);
 
-    // Of an element that is hidden in part: behind these, where the marks of its children begin.
+    // Marks from partly_ on are of elements that are hidden in part: partly_ and the place in
+    // marks_ at which the marks of the children begin.
     static constexpr Mark shown_ = 0;
     static constexpr Mark wholly_ = 1;
     static constexpr Mark partly_ = 2;
@@ -87,9 +89,9 @@ private:
 NESTGRID_HIDDEN_ELEMENTS(extern, float)
 NESTGRID_HIDDEN_ELEMENTS(extern, double)
 
-/// A hierarchy with hidden elements, and beside that another one.
+/// Another hierarchy with elements of it hidden.
 template <class Real>
-class Holes final : public Hierarchy<Real> {
+class Holes final : public detail::ForwardingHierarchy<Real> {
 public:
     /// Hides the elements at which the field has no values.
     /// \param inner is borrowed, and is none with holes itself
@@ -103,47 +105,20 @@ public:
 
     const std::shared_ptr<const HiddenElements>& hidden() const { return hidden_; }
 
-    std::size_t coarse_count() const override { return inner_->coarse_count(); }
-    std::uint64_t epoch() const override { return inner_->epoch(); }
-    Elements make_elements() const override { return inner_->make_elements(); }
     std::unique_ptr<Task> open() const override {
-        made_for_.require_same(*inner_, "the list of hidden elements");
-        return inner_->open();
+        made_for_.require_same(this->inner(), "the list of hidden elements");
+        return this->inner().open();
     }
     void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const override {
-        inner_->coarse(task, i, coarse, family);
+        this->inner().coarse(task, i, coarse, family);
         hide(family, 0, hidden_->coarse(i));
-    }
-    NodeMask coarse_values(Task* task, std::size_t i, std::size_t corners,
-                           Real* out) const override {
-        return inner_->coarse_values(task, i, corners, out);
     }
     NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                    Real* values, NodeMask wanted, Family& children) const override;
-    NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
-                        Real* values) const override {
-        return inner_->new_values(task, element, rule, which, values);
-    }
-    void corners(Task* task, const Handle& element, std::size_t count, NodeKey* keys,
-                 Point* positions, unsigned* boundary) const override {
-        inner_->corners(task, element, count, keys, positions, boundary);
-    }
-    void new_positions(Task* task, const Handle& element, NodeMask which,
-                       std::span<Point> out) const override {
-        inner_->new_positions(task, element, which, out);
-    }
-    void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
-        inner_->corner_gradients(task, element, out);
-    }
-    std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
-        return inner_->hanging_parents(node);
-    }
-    void star_rows(const std::function<void(const StarRow&)>& function) const override {
-        inner_->star_rows(function);
-    }
     /// Not a number at nodes of hidden leaves alone.
     void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const override;
-    Point node_position(NodeKey node) const override { return inner_->node_position(node); }
+    /// None: bisections in rows are not told which elements are hidden.
+    const detail::BisectionRows<Real>* bisection_rows() const override { return nullptr; }
 
 private:
     static HierarchyFacts facts_with_hidden(const Hierarchy<Real>& inner);
@@ -154,7 +129,6 @@ private:
         if (member.hidden == Hidden::wholly) family.hidden |= NodeMask{1} << c;
     }
 
-    const Hierarchy<Real>* inner_;
     std::shared_ptr<const HiddenElements> hidden_;
     detail::MadeFor made_for_;
 };
