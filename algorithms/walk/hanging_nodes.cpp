@@ -62,6 +62,15 @@ void refuse_crossed_face(const Hierarchy<Real>& hierarchy, detail::HangingProbe&
     });
 }
 
+template <class Real>
+[[noreturn]] void refuse_weights(const ElementView<Real>& view) {
+    throw GridError("on an edge of a leaf on level " + std::to_string(view.level) +
+                    " below coarse element " + std::to_string(view.coarse) +
+                    " a node hangs that is not in its middle, as where a neighbour is divided by "
+                    "three or graded: which nodes hang must be told by the operation constrained "
+                    "of the grid");
+}
+
 }  // namespace
 
 template <class Real>
@@ -91,6 +100,7 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
         } else if (view.member->hidden != Hidden::wholly) {
             walk.corners(view, keys.data(), nullptr);
             probe.probe_leaf(view.shape, keys);
+            if (probe.hangs_at_weights()) refuse_weights(view);
         }
     });
     if (crossed) refuse_crossed_face(hierarchy, probe);

@@ -11,7 +11,8 @@ namespace nestgrid::engine {
 /// The hanging nodes of a hierarchy, by hanging_probe.hpp, with its crossing nodes where it gives
 /// parents (crossing_nodes.hpp). Hidden leaves constrain no node.
 /// \throw GridError where refinement is anisotropic, and nodes hang on others than their parents,
-///        which the grid does not give; or where a node hangs on two edges in two directions
+///        which the grid does not give; where a node hangs on two edges in two directions; or
+///        where it hangs on an edge and is not in its middle
 template <class Real>
 HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy);
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
+#include <nestgrid/detail/coarse_boundary.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
-#include <walk/coarse_boundary.hpp>
 #include <walk/crossing_nodes.hpp>
 
 namespace nestgrid::engine {
@@ -84,7 +84,7 @@ Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const Han
       carries_keys_{needs.keys && !own_keys_},
       carries_positions_{needs.positions && !own_positions_},
       carries_placed_{needs.placed && new_positions_} {
-    if (!boundary_faces_) boundary_ = coarse_boundary(hierarchy);
+    if (!boundary_faces_) boundary_ = detail::coarse_boundary(hierarchy);
     if (hanging != nullptr && hanging->crossing() != nullptr) {
         fixed_ = std::make_unique<FixedNodes<Real>>(hierarchy, *hanging->crossing(), needs.values,
                                                     functions);

@@ -25,6 +25,7 @@ enum class Law : std::uint8_t {
     coarse_element,  ///< finite, not flat, oriented as said, distinct ids, right dimension
     coarse_node,     ///< one id, one place
     coarse_face,     ///< a face belongs to at most two coarse elements
+    coarse_contact,  ///< coarse elements that touch in a part of a face share its nodes
     key_place,       ///< one key, one place
     one_stencil,     ///< one node, one key, one set of parents and weights
     stable_key,      ///< own keys do not change from father to child
@@ -66,9 +67,13 @@ struct CheckOptions {
     /// Demand that coarse corners at one place have one id: for grids without slits. Ids that each
     /// element counts for itself look like slits everywhere.
     bool one_id_a_place = false;
+    /// Coarse elements may touch in parts of faces without sharing nodes, as bodies in contact do:
+    /// such places are noted. Surfaces are open there.
+    bool contacts = false;
     /// Where not null, check_grid appends sentences about what is legal and may yet not be meant:
-    /// which optional operations it found, so that a misspelt name is seen to be missing, and
-    /// coarse corners that lie at one place under different ids.
+    /// which optional operations it found, so that a misspelt name is seen to be missing, coarse
+    /// corners and faces that lie at one place under different ids, and pieces of the grid that
+    /// share no face.
     std::vector<std::string>* notes = nullptr;
 };
 

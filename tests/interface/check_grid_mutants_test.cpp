@@ -5,6 +5,7 @@
 // than a thousand mutants, each named by the right law and a sentence.
 #include <map>
 #include <numeric>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -35,6 +36,43 @@ std::uint32_t random_refined(const MutantGrid<dim>& grid, std::mt19937& random) 
         if (grid.forest.cells[e].rule != nullptr) refined.push_back(e);
     }
     return refined[random() % refined.size()];
+}
+
+/// Adds the mirror image of a coarse element, half as large, in the middle of one of its faces on
+/// the boundary; false where it has none.
+template <int dim>
+bool put_half_beside(Forest<dim>& forest, std::mt19937& random) {
+    const auto c = forest.coarse(random() % forest.coarse_count());
+    const Topology& t = topology(c.shape);
+    const FaceTopology& f = t.face[random() % t.faces];
+    const auto ids_of = [](const auto& coarse, const FaceTopology& face) {
+        std::set<std::uint64_t> ids;
+        for (std::size_t k = 0; k < face.corners; ++k) ids.insert(coarse.ids[face.corner[k]]);
+        return ids;
+    };
+    int uses = 0;
+    for (std::size_t i = 0; i < forest.coarse_count(); ++i) {
+        const auto other = forest.coarse(i);
+        for (std::size_t k = 0; k < topology(other.shape).faces; ++k) {
+            uses += ids_of(other, topology(other.shape).face[k]) == ids_of(c, f) ? 1 : 0;
+        }
+    }
+    if (uses != 1) return false;
+    const auto at = [&](std::size_t k) { return c.corners[f.corner[k]]; };
+    Point middle{};
+    for (std::size_t k = 0; k < f.corners; ++k) middle = middle + (1.0 / f.corners) * at(k);
+    Point normal = cross(at(1) - at(0), dim == 2 ? Point{0, 0, 1} : at(2) - at(0));
+    if (f.corners == 4) normal = cross(at(2) - at(0), at(3) - at(1));
+    normal = (1 / norm(normal)) * normal;
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t k = 0; k < t.corners; ++k) {
+        const Point x = c.corners[k] - middle;
+        nodes.push_back(forest.add_node(middle + 0.5 * (x - 2 * dot(x, normal) * normal)));
+    }
+    if (dim == 2) std::swap(nodes[0], nodes[1]);
+    if (c.shape == Shape::quadrilateral) std::swap(nodes[2], nodes[3]);
+    forest.add_coarse(c.shape, nodes, dim == 2 ? 1 : -c.orientation, 0);
+    return true;
 }
 
 /// A refined element and one of its new nodes that another element makes, too.
@@ -157,6 +195,9 @@ std::map<Law, Mutator<dim>> mutators() {
         }
         (void)f;
         return true;
+    };
+    m[Law::coarse_contact] = [](Grid& g, Field&, Random& r) {
+        return put_half_beside(g.forest, r);
     };
     m[Law::key_place] = [=](Grid& g, Field&, Random& r) {
         g.features = feature(Feature::own_keys);

@@ -15,6 +15,7 @@
 
 #include "closedness.hpp"
 #include "forest.hpp"
+#include "refusal.hpp"
 
 using namespace nestgrid_test;
 
@@ -264,6 +265,59 @@ void expect_linear_functions_kept() {
 TEST(Graded, LinearFunctionsHaveNoOffsets) {
     expect_linear_functions_kept<2>();
     expect_linear_functions_kept<3>();
+}
+
+/// An element divided into n equal parts along each axis, by one rule without steps.
+const Rule& divided_by(int n) {
+    const auto make = [](int parts) {
+        std::vector<PlacedChild> children;
+        for (int j = 0; j < parts; ++j) {
+            for (int i = 0; i < parts; ++i) {
+                PlacedChild child{Shape::quadrilateral, {}};
+                for (std::size_t k = 0; k < 4; ++k) {
+                    child.corners[k] = {double(i + int(k & 1U)) / parts,
+                                        double(j + int(k >> 1U)) / parts, 0};
+                }
+                children.push_back(child);
+            }
+        }
+        static RuleTable table;
+        return &table.add(Shape::quadrilateral, children);
+    };
+    static const std::array<const Rule*, 2> rules{make(3), make(4)};
+    return *rules.at(static_cast<std::size_t>(n - 3));
+}
+
+/// Where nodes hang at weighted means and the grid does not say so, nothing is drawn; where none
+/// hang, everything is.
+template <int dim>
+void expect_refused_untold(const GradedGrid<dim>& grid) {
+    const Forest<dim>& untold = grid;
+    const ForestField<dim> field(grid, [](const Point& x) { return x[0] + x[1] - 0.7; });
+    const std::string sentence = refusal<GridError>(
+        [&] { isosurface(untold, field, 0.0, HierarchicalIndicator(untold, field)); });
+    EXPECT_EQ(sentence.find("operation constrained") != std::string::npos, grid.hanging_count() > 0)
+        << sentence;
+    EXPECT_EQ(check_grid(untold, field).has_value(), grid.hanging_count() > 0);
+}
+
+TEST(Graded, NodesThatHangAtWeightsMustBeTold) {
+    on_graded_grids<2>(expect_refused_untold<2>);
+    on_graded_grids<3>(expect_refused_untold<3>);
+    for (const int parts : {3, 4}) {
+        for (unsigned seed = 0; seed < 24; ++seed) {
+            std::mt19937 random(seed);
+            GradedGrid<2> grid = coarse_grid<2>(false, 2);
+            grid.refine_randomly(divided_by(parts), random, seed % 8);
+            expect_refused_untold(grid);
+            const ForestField<2> field(grid, [](const Point& x) { return x[0] * x[1] - 0.2; });
+            const HierarchicalIndicator indicator(grid, field);
+            for (const double threshold : {0.0, 0.05, 0.2}) {
+                expect_closed(
+                    isosurface(grid, field, 0.0, indicator, {.threshold = threshold}).surface);
+            }
+        }
+    }
 }
 
 }  // namespace graded_test

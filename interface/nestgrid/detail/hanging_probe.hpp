@@ -13,6 +13,8 @@
 // finds the quadrilaterals where this does not hold: nodes there hang on others than their parents.
 // Where the grid gives the parents of nodes that hang on edges (optional.hpp), the probe relies on
 // these instead, and crossed_face() finds the quadrilaterals where they are missing.
+// Nodes at weighted means are not looked for: where one hangs on an edge of a leaf, the grid must
+// name its hanging nodes (hangs_at_weights()).
 // Costs O(nodes) memory while it runs, and keeps the keys of hanging nodes.
 #pragma once
 
@@ -97,7 +99,12 @@ public:
             mixed[count + n] = mix(nodes[n]);
             nodes_.prefetch(parents[n]);
         }
-        for (std::size_t n = 0; n < nodes.size(); ++n) nodes_.insert(parents[n], nodes[n]);
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            nodes_.insert(parents[n], nodes[n]);
+            const Stencil& s = rule.new_nodes[n];
+            if (s.mean != Mean::weighted || s.count != 2) continue;
+            weighted_.insert(mean_key(mixed[s.parent[0]] + mixed[s.parent[1]], 2), {});
+        }
         divides_one_way_ = divides_one_way_ || !faces_of(rule).empty();
     }
 
@@ -152,6 +159,10 @@ public:
     /// A node that hangs on an edge of a leaf between others than its given parents.
     const std::optional<NodeKey>& contradiction() const { return contradiction_; }
 
+    /// Whether a node hangs on an edge of a leaf that was probed, or on a part of one, that is no
+    /// mean of its ends with equal weights.
+    bool hangs_at_weights() const { return hangs_at_weights_; }
+
     /// Whether some split divides a quadrilateral in one direction first; else no face is crossed.
     bool divides_one_way() const { return divides_one_way_; }
 
@@ -198,6 +209,9 @@ private:
     }
     /// \param m the node in the middle of the edge, or null
     void probe_parts(NodeKey a, NodeKey b, Found m, bool of_leaf) {
+        if (weighted_.size() > 0 && weighted_.find(parents_key(a, b)) != nullptr) {
+            hangs_at_weights_ = true;
+        }
         if (m == nullptr) return;
         hanging_.insert(*m);
         if (of_leaf) note_on_edge(a, b, *m);
@@ -305,6 +319,8 @@ private:
     KeyTable<NodeKey, NodeKey> nodes_;  // by their parents
     KeyFilter parents_;
     KeyTable<NodeKey, Present> triangles_;
+    KeyTable<NodeKey, Present> weighted_;  // edges with nodes at weighted means, by their ends
+    bool hangs_at_weights_ = false;
     HangingNodes hanging_;
     const std::vector<OneWayFace> none_{};
     std::map<const Rule*, std::vector<OneWayFace>> one_way_;

@@ -42,6 +42,10 @@ private:
     struct Found {
         GridViolation violation;
     };
+    struct FaceUse {
+        int count;            // of coarse elements that have the face
+        std::size_t element;  // the first one
+    };
     struct Corner {
         Weights weights{};
         NodeKey place = 0;  // hash of the weights over coarse ids
@@ -120,10 +124,16 @@ private:
         return frames_[static_cast<std::size_t>(level)];
     }
 
-    // Coarse elements and nodes (grid_checker.cpp).
+    // Coarse elements (check_coarse.cpp).
     void check_coarse(std::size_t i);
     void check_corners(const std::string& who);
     void check_ids() const;
+    std::size_t piece_of(std::size_t element);
+    void join_pieces(std::size_t a, std::size_t b);
+    void note_pieces();
+    void check_contacts();
+
+    // Coarse elements on the way down, and nodes (grid_checker.cpp).
     State coarse_state(std::size_t i);
     void walk_coarse(std::size_t i);
     NodeKey place_of(const Weights& weights) const;
@@ -185,7 +195,8 @@ private:
     std::map<std::uint64_t, std::pair<Point, std::size_t>> coarse_nodes_;
     std::map<Point, std::uint64_t> id_at_;  // of the first coarse corner there
     std::set<Point> several_ids_at_;
-    KeyTable<NodeKey, int> coarse_faces_;
+    KeyTable<NodeKey, FaceUse> coarse_faces_;
+    std::vector<std::size_t> piece_of_;  // of each coarse element, an earlier one of its piece
     KeyTable<NodeKey, Node> nodes_;      // by place
     std::vector<double> values_;         // all components of each node
     KeyTable<NodeKey, Origin> origins_;  // of new nodes, by place

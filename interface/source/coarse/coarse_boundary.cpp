@@ -1,16 +1,14 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <walk/coarse_boundary.hpp>
-
-#include <string>
+#include <nestgrid/detail/coarse_boundary.hpp>
 
 #include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/error.hpp>
 
-namespace nestgrid::engine {
+namespace nestgrid::detail {
 
 template <class Real>
-std::vector<std::uint8_t> coarse_boundary(const Hierarchy<Real>& hierarchy) {
+std::vector<std::uint8_t> single_faces(const Hierarchy<Real>& hierarchy) {
     struct Use {
         std::size_t element;
         std::uint8_t face;
@@ -18,11 +16,11 @@ std::vector<std::uint8_t> coarse_boundary(const Hierarchy<Real>& hierarchy) {
     };
     const std::unique_ptr<Task> task = hierarchy.open();
     const int dimension = hierarchy.facts().dimension;
-    std::vector<std::uint8_t> boundary(hierarchy.coarse_count(), 0);
+    std::vector<std::uint8_t> single(hierarchy.coarse_count(), 0);
     KeyTable<NodeKey, Use> faces;
     Coarse coarse;
     Family family;
-    for (std::size_t i = 0; i < boundary.size(); ++i) {
+    for (std::size_t i = 0; i < single.size(); ++i) {
         hierarchy.coarse(task.get(), i, coarse, family);
         const Topology& t = topology(coarse.shape);
         if (t.dimension != dimension) {
@@ -39,12 +37,26 @@ std::vector<std::uint8_t> coarse_boundary(const Hierarchy<Real>& hierarchy) {
         }
     }
     faces.for_each([&](const NodeKey&, const Use& use) {
-        if (use.once) boundary[use.element] |= static_cast<std::uint8_t>(1U << use.face);
+        if (use.once) single[use.element] |= static_cast<std::uint8_t>(1U << use.face);
     });
+    return single;
+}
+
+template <class Real>
+std::vector<std::uint8_t> coarse_boundary(const Hierarchy<Real>& hierarchy) {
+    std::vector<std::uint8_t> boundary = single_faces(hierarchy);
+    for (const FaceContact& contact : face_contacts<Real>(hierarchy, boundary)) {
+        for (std::size_t side = 0; side < 2 && !contact.is_slit; ++side) {
+            boundary[contact.element[side]] &=
+                static_cast<std::uint8_t>(~(1U << contact.face[side]));
+        }
+    }
     return boundary;
 }
 
+template std::vector<std::uint8_t> single_faces(const Hierarchy<float>&);
+template std::vector<std::uint8_t> single_faces(const Hierarchy<double>&);
 template std::vector<std::uint8_t> coarse_boundary(const Hierarchy<float>&);
 template std::vector<std::uint8_t> coarse_boundary(const Hierarchy<double>&);
 
-}  // namespace nestgrid::engine
+}  // namespace nestgrid::detail
