@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -95,6 +98,21 @@ void count_vertices(const Surface<3>& surface, SurfaceReport& report) {
     }
 }
 
+/// Whether the corners of a triangle are on a line, or at one place, up to the rounding of their
+/// positions.
+/// \param corner relative to the origin
+bool is_degenerate(const Point& origin, const std::array<Point, 3>& corner, double doubled_area) {
+    double longest = 0;
+    double greatest = 0;  // of the coordinates
+    for (std::size_t i = 0; i < 3; ++i) {
+        longest = std::max(longest, norm(corner[i] - corner[(i + 1) % 3]));
+        for (std::size_t d = 0; d < 3; ++d) {
+            greatest = std::max(greatest, std::abs(corner[i][d] + origin[d]));
+        }
+    }
+    return doubled_area <= 4 * std::numeric_limits<double>::epsilon() * greatest * longest;
+}
+
 /// Fills in the areas and the degenerate triangles, and returns the volume.
 double measure(const Surface<3>& surface, SurfaceReport& report) {
     const bool has_normals = surface.normals.size() == surface.vertices.size();
@@ -106,7 +124,7 @@ double measure(const Surface<3>& surface, SurfaceReport& report) {
         const Point c = surface.vertices[t[2]] - origin;
         const Point n = cross(b - a, c - a);
         const double area = norm(n) / 2;
-        if (area == 0) ++report.degenerate_triangles;
+        if (is_degenerate(origin, {a, b, c}, 2 * area)) ++report.degenerate_triangles;
         report.area += area;
         for (const std::uint32_t v : t) {
             const bool behind = has_normals && dot(surface.normals[v], n) < 0;

@@ -48,7 +48,7 @@ template <class Grid>
 std::vector<Point> corners_of(const Grid& grid, const typename Grid::Element& e, Shape shape) {
     static const void* of = nullptr;
     static std::vector<Point> nodes;
-    if (of != &grid) nodes = grid.node_positions();
+    if (of != &grid || nodes.size() != grid.node_count()) nodes = grid.node_positions();
     of = &grid;
     std::array<NodeKey, max_corners> keys;
     const std::size_t n = topology(shape).corners;
@@ -393,6 +393,43 @@ TYPED_TEST(Uses, RegionsHaveTheirOwnThreshold) {
             EXPECT_GT(within, 10U);
             EXPECT_LT(mixed.surface.simplices.size(), fine.surface.simplices.size());
             EXPECT_GT(mixed.surface.simplices.size(), coarse.surface.simplices.size());
+        }
+    }
+}
+
+/// Corners on a line and at one place, as rounding leaves them, wherever the surface is; thin
+/// triangles are none of these.
+TEST(Report, CountsTrianglesOnALine) {
+    std::mt19937 random(5);
+    for (const double distance : {0.0, 1.0, 1e6}) {
+        for (const double size : {1.0, 1e-3}) {
+            std::size_t sound = 0;
+            std::size_t on_a_line = 0;
+            std::size_t at_one_place = 0;
+            for (int i = 0; i < 1000; ++i) {
+                const auto anywhere = [&] {
+                    return Point{nestgrid_test::uniform(random), nestgrid_test::uniform(random),
+                                 nestgrid_test::uniform(random)};
+                };
+                const Point a = distance * Point{0.3, 0.7, 0.1} + anywhere();
+                const Point along = size * (anywhere() - Point{0.5, 0.5, 0.5});
+                const double s = nestgrid_test::uniform(random);
+                const double height = 1e-15 * std::max(distance, 1.0) * 20;
+                Point across = cross(along, anywhere());
+                across = (height / norm(across)) * across;
+                const auto count = [&](const Point& c) {
+                    Surface<3> surface;
+                    surface.vertices = {a, a + along, c};
+                    surface.simplices = {{0, 1, 2}};
+                    return surface_report(surface).degenerate_triangles;
+                };
+                on_a_line += count(a + s * along);
+                at_one_place += count(a);
+                sound += count(a + s * along + across);
+            }
+            EXPECT_EQ(on_a_line, 1000U) << distance << ' ' << size;
+            EXPECT_EQ(at_one_place, 1000U) << distance << ' ' << size;
+            EXPECT_EQ(sound, 0U) << distance << ' ' << size;
         }
     }
 }

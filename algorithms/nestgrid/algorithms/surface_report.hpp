@@ -19,7 +19,9 @@ struct SurfaceReport {
     std::size_t nonmanifold_edges = 0;     ///< of more than two triangles
     std::size_t misoriented_edges = 0;     ///< of two triangles that disagree about the outside
     std::size_t nonmanifold_vertices = 0;  ///< whose triangles do not form one fan
-    std::size_t degenerate_triangles = 0;  ///< without area in double precision
+    /// Whose corners are on a line, or at one place, up to the rounding of their positions. The
+    /// data make them where they are constant around the isovalue.
+    std::size_t degenerate_triangles = 0;
     std::size_t components = 0;
     long long euler = 0;  ///< vertices - edges + triangles
     double area = 0;
