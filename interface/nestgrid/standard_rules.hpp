@@ -30,6 +30,12 @@ const Rule& red_tetrahedron_rule(int diagonal = 0);
 /// the quadrilateral faces in the order of the topology, then the centre.
 const Rule& dyadic_rule(Shape shape);
 
+/// Refinement of any shape that divides all edges and faces alike: every edge at its midpoint,
+/// every triangle into four, every quadrilateral into four around the mean of its corners. A
+/// pyramid becomes six pyramids and four tetrahedra, a prism eight prisms. \throw InvalidInput for
+/// a point
+const Rule& red_rule(Shape shape);
+
 /// How a prism, triangle times segment, is refined.
 enum class PrismSplit : std::uint8_t { isotropic, horizontal, vertical };
 

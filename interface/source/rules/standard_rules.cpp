@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <initializer_list>
+#include <span>
 #include <utility>
 
+#include <nestgrid/error.hpp>
 #include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {
@@ -93,15 +96,18 @@ struct PrismNodes {
     /// layer[h][v]: the nodes of the triangle at height h; v < 3 its corners, then 01, 02, 12.
     std::array<std::array<int, 6>, 3> layer{};
 
-    /// Adds the mean of two nodes and returns its number.
-    int add(int a, int b) {
-        stencils.push_back(mean_of({a, b}));
+    /// Adds the mean of nodes and returns its number.
+    int add(std::initializer_list<int> parents) {
+        stencils.push_back(mean_of(parents));
         return 5 + static_cast<int>(stencils.size());
     }
 };
 
 /// \param across, along whether the triangles and whether the segments are divided
-PrismNodes prism_nodes(bool across, bool along) {
+/// \param at_once whether the middles of quadrilaterals are means of their corners, not of the
+///        midpoints below and above
+PrismNodes prism_nodes(bool across, bool along, bool at_once) {
+    constexpr std::array<std::array<int, 2>, 3> side{{{0, 1}, {0, 2}, {1, 2}}};
     PrismNodes nodes;
     auto& layer = nodes.layer;
     for (int v = 0; v < 3; ++v) {
@@ -111,18 +117,23 @@ PrismNodes prism_nodes(bool across, bool along) {
     for (const std::size_t h : {0U, 2U}) {
         if (!across) continue;
         const auto [a, b, c] = std::array{layer[h][0], layer[h][1], layer[h][2]};
-        layer[h] = {a, b, c, nodes.add(a, b), nodes.add(a, c), nodes.add(b, c)};
+        layer[h] = {a, b, c, nodes.add({a, b}), nodes.add({a, c}), nodes.add({b, c})};
     }
     for (std::size_t v = 0; along && v < (across ? 6U : 3U); ++v) {
-        layer[1][v] = nodes.add(layer[0][v], layer[2][v]);
+        if (at_once && v >= 3) {
+            const auto [a, b] = side[v - 3];
+            layer[1][v] = nodes.add({a, b, a + 3, b + 3});
+        } else {
+            layer[1][v] = nodes.add({layer[0][v], layer[2][v]});
+        }
     }
     return nodes;
 }
 
-Rule make_prism(PrismSplit split) {
+Rule make_prism(PrismSplit split, bool at_once = false) {
     const bool across = split != PrismSplit::vertical;
     const bool along = split != PrismSplit::horizontal;
-    const PrismNodes nodes = prism_nodes(across, along);
+    const PrismNodes nodes = prism_nodes(across, along, at_once);
     std::vector<std::array<std::size_t, 3>> triangles{{0, 1, 2}};
     if (across) triangles = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}, {5, 4, 3}};
     std::vector<Child> children;
@@ -138,8 +149,31 @@ Rule make_prism(PrismSplit split) {
             children.push_back(child);
         }
     }
-    const std::string name = !across ? "vertical" : !along ? "horizontal" : "isotropic";
+    const std::string name = at_once   ? "red"
+                             : !across ? "vertical"
+                             : !along  ? "horizontal"
+                                       : "isotropic";
     return make_rule(name + " refinement of a prism", Shape::prism, nodes.stencils, children);
+}
+
+Rule make_red_pyramid() {
+    // 5: 01, 6: 02, 7: 13, 8: 23, 9 to 12: from the base to the apex, 13: the middle of the base
+    std::vector<Stencil> nodes;
+    for (const auto& [a, b] : std::span(topology(Shape::pyramid).edge).first(8)) {
+        nodes.push_back(mean_of({a, b}));
+    }
+    nodes.push_back(mean_of({0, 1, 2, 3}));
+    return make_rule("red refinement of a pyramid", Shape::pyramid, nodes,
+                     {{Shape::pyramid, {0, 5, 6, 13, 9}, 1, {}},
+                      {Shape::pyramid, {5, 1, 13, 7, 10}, 1, {}},
+                      {Shape::pyramid, {6, 13, 2, 8, 11}, 1, {}},
+                      {Shape::pyramid, {13, 7, 8, 3, 12}, 1, {}},
+                      {Shape::pyramid, {9, 10, 11, 12, 4}, 1, {}},
+                      {Shape::pyramid, {9, 11, 10, 12, 13}, 1, {}},
+                      {Shape::tetrahedron, {5, 13, 9, 10}, 1, {}},
+                      {Shape::tetrahedron, {6, 13, 11, 9}, 1, {}},
+                      {Shape::tetrahedron, {7, 13, 10, 12}, 1, {}},
+                      {Shape::tetrahedron, {8, 13, 12, 11}, 1, {}}});
 }
 
 }  // namespace
@@ -188,6 +222,28 @@ const Rule& dyadic_rule(Shape shape) {
     return shape == Shape::segment         ? segment
            : shape == Shape::quadrilateral ? quadrilateral
                                            : hexahedron;
+}
+
+const Rule& red_rule(Shape shape) {
+    static const Rule prism = make_prism(PrismSplit::isotropic, true);
+    static const Rule pyramid = make_red_pyramid();
+    switch (shape) {
+        case Shape::point:
+            throw InvalidInput("a point has no refinement");
+        case Shape::triangle:
+            return red_triangle_rule();
+        case Shape::tetrahedron:
+            return red_tetrahedron_rule();
+        case Shape::pyramid:
+            return pyramid;
+        case Shape::prism:
+            return prism;
+        case Shape::segment:
+        case Shape::quadrilateral:
+        case Shape::hexahedron:
+            break;
+    }
+    return dyadic_rule(shape);
 }
 
 const Rule& prism_rule(PrismSplit split) {
