@@ -12,12 +12,13 @@
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/hanging_nodes.hpp>
+#include <walk/unusable_values.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {
 
 void NodeEtas::refuse(double eta) {
-    throw InvalidInput("the measure of a node is not a usable number: " + std::to_string(eta));
+    throw UnusableValue("the measure of a node is not a usable number: " + std::to_string(eta));
 }
 
 detail::NodeTable<std::uint16_t> NodeEtas::saturate(const Spread& spread) {
@@ -27,7 +28,7 @@ detail::NodeTable<std::uint16_t> NodeEtas::saturate(const Spread& spread) {
 
 double finite_offset(double offset) {
     if (std::isfinite(offset)) return std::abs(offset);
-    throw InvalidInput("a value of the field is not a usable number");
+    throw UnusableValue("a value of the field is not a usable number");
 }
 
 double trace_of(double offset) {
@@ -119,8 +120,10 @@ SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
     const bool in_rows = hierarchy.facts().knows_star_positions;
     const Kept for_splits = spread.slope > 0 ? Kept::nodes_and_reach : Kept::nodes;
     SourceVisitor<Real> visitor(walk, source, in_rows ? Kept::nothing : for_splits, etas);
-    walk.run(visitor);
-    source.finish(etas);
+    with_places(hierarchy, [&] {
+        walk.run(visitor);
+        source.finish(etas);
+    });
     if (!in_rows) return {etas.saturate(spread), spread};
     auto table = etas.take();
     sweep_rows(hierarchy, spread, table.dense);

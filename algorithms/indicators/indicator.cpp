@@ -13,6 +13,7 @@
 #include <nestgrid/error.hpp>
 #include <walk/crossing_nodes.hpp>
 #include <walk/hanging_nodes.hpp>
+#include <walk/unusable_values.hpp>
 
 namespace nestgrid {
 
@@ -39,7 +40,8 @@ void IndicatorEntries::resize(std::size_t from, std::size_t to) {
 }
 
 void PrerollFacts::refuse(double value) {
-    throw InvalidInput("a value of the field is not a usable number: " + std::to_string(value));
+    throw engine::UnusableValue("a value of the field is not a usable number: " +
+                                std::to_string(value));
 }
 
 }  // namespace detail
@@ -63,26 +65,26 @@ HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy,
                                              const LeafErrors& leaf_errors,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread} {
-    prepare(hierarchy, leaf_errors, executor);
+    engine::with_places(hierarchy, [&] { prepare(hierarchy, leaf_errors, executor); });
 }
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy,
                                              const LeafErrors& leaf_errors,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread} {
-    prepare(hierarchy, leaf_errors, executor);
+    engine::with_places(hierarchy, [&] { prepare(hierarchy, leaf_errors, executor); });
 }
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy, NodeError error,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread}, error_{error} {
-    prepare(hierarchy, {}, executor);
+    engine::with_places(hierarchy, [&] { prepare(hierarchy, {}, executor); });
 }
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy, NodeError error,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread}, error_{error} {
-    prepare(hierarchy, {}, executor);
+    engine::with_places(hierarchy, [&] { prepare(hierarchy, {}, executor); });
 }
 
 template <class Real>
@@ -163,12 +165,12 @@ void HierarchicalIndicator::update_dirty(const Hierarchy<Real>& hierarchy,
 
 void HierarchicalIndicator::update(const Hierarchy<float>& hierarchy, const ChangedPlaces& changed,
                                    const LeafErrors& leaf_errors) {
-    update_dirty(hierarchy, changed, leaf_errors);
+    engine::with_places(hierarchy, [&] { update_dirty(hierarchy, changed, leaf_errors); });
 }
 
 void HierarchicalIndicator::update(const Hierarchy<double>& hierarchy, const ChangedPlaces& changed,
                                    const LeafErrors& leaf_errors) {
-    update_dirty(hierarchy, changed, leaf_errors);
+    engine::with_places(hierarchy, [&] { update_dirty(hierarchy, changed, leaf_errors); });
 }
 
 std::size_t HierarchicalIndicator::memory_bytes() const {

@@ -9,6 +9,8 @@
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/error.hpp>
 
+#include <walk/unusable_values.hpp>
+
 namespace nestgrid {
 
 namespace engine {
@@ -163,8 +165,12 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     const Walk<Real> walk(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
     const LevelSearch<Real> search(walk, levels.levels, criterion, bounds);
     Drawing drawing(walk, search, builders, options, levels.first_attribute);
-    const bool cancelled = run_until_cancelled(drawing, executor);
-    drawing.flush();
+    const auto run = [&] {
+        const bool stopped = run_until_cancelled(drawing, executor);
+        drawing.flush();
+        return stopped;
+    };
+    const bool cancelled = with_places(*levels.hierarchy, run, walk.function_count());
     std::vector<Isosurface<dimension>> results(count);
     for (std::size_t i = 0; i < count; ++i) {
         drawing.report(i, results[i]);

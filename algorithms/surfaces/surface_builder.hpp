@@ -13,6 +13,7 @@
 #include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/detail/inlining.hpp>
 #include <nestgrid/keys.hpp>
+#include <walk/unusable_values.hpp>
 
 namespace nestgrid::engine {
 
@@ -199,6 +200,7 @@ public:
     /// no vertices.
     void hand_over(const Target& part) {
         flush();
+        require_numbers(part.attributes);
         if (!part.simplices.empty()) soup_->take(part);
     }
     void add_boundary(const typename Target::Ridge& vertices) {
@@ -209,8 +211,10 @@ public:
         if (surface_->simplices.size() >= chunk_) flush();
     }
     /// Hands the rest to the sink where there is one.
+    /// \throw UnusableValue where an attribute is no number
     void flush() {
         if (surface_->vertices.empty() && surface_->simplices.empty()) return;
+        require_numbers(surface_->attributes);
         if (mesh_ != nullptr) {
             mesh_->take(*surface_);
             taken_ = next_vertex();
