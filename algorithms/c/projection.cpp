@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <thread>
+
+#include <nestgrid/algorithms/cut_indicator.hpp>
+#include <nestgrid/algorithms/geometry_indicator.hpp>
+#include <nestgrid/algorithms/numerical_indicator.hpp>
+#include <nestgrid/algorithms/visual_indicator.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
+#include <nestgrid/error.hpp>
+
+#include "thread_executor.hpp"
+
+namespace nestgrid {
+
+namespace {
+
+constexpr int most_threads = 1024;
+
+void require_range(const nestgrid_options& options) {
+    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
+    if (!(options.error >= 0)) throw InvalidInput("the error is negative or not a number");
+    if (options.indicator < NESTGRID_OFFSET || options.indicator > NESTGRID_SLOPE) {
+        throw InvalidInput("the indicator " + std::to_string(options.indicator) +
+                           " does not exist");
+    }
+    if (options.threads < NESTGRID_ALL_THREADS || options.threads > most_threads) {
+        throw InvalidInput(std::to_string(options.threads) + " threads are asked for, not -1 to " +
+                           std::to_string(most_threads));
+    }
+    if (options.attribute_count > 0 && options.attributes == nullptr) {
+        throw InvalidInput("there are attributes, but the list of their tables is NULL");
+    }
+}
+
+void require_one_wish(const nestgrid_options& options) {
+    if (options.error > 0 && options.threshold > 0) {
+        throw InvalidInput("an error and a threshold are asked for: give one of them");
+    }
+    if (options.error > 0 && options.indicator != NESTGRID_OFFSET) {
+        throw InvalidInput("an error is asked for, which has an indicator of its own");
+    }
+    if (options.max_triangles > 0 && (options.error > 0 || options.threshold > 0)) {
+        throw InvalidInput(
+            "a number of triangles is asked for beside an error or a threshold: give one of them");
+    }
+}
+
+std::size_t thread_count(int threads) {
+    if (threads != NESTGRID_ALL_THREADS) return static_cast<std::size_t>(std::max(threads, 1));
+    return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_threads);
+}
+
+/// The indicator that is to be compared with the threshold.
+int indicator_for(const nestgrid_options& options, const HierarchyFacts& facts, bool level_sets) {
+    if (options.error == 0) return options.indicator;
+    return level_sets && cuts_are_errors(facts) ? NESTGRID_CUT : NESTGRID_DEVIATION;
+}
+
+template <class Real>
+SweptIndicator make_swept(int indicator, const Hierarchy<Real>& hierarchy, const Bounds& bounds,
+                          std::span<const double> isovalues, const Executor& executor) {
+    switch (indicator) {
+        case NESTGRID_NUMERICAL:
+            return numerical_indicator(hierarchy);
+        case NESTGRID_WAVELET:
+            return wavelet_indicator(hierarchy);
+        case NESTGRID_VISUAL:
+            return visual_indicator(hierarchy);
+        case NESTGRID_GEOMETRY:
+            if (hierarchy.offers(Feature::new_positions)) return geometry_indicator(hierarchy);
+            throw InvalidInput("NESTGRID_GEOMETRY is for curved grids: on this one it is 0");
+        default:
+            break;
+    }
+    if (isovalues.empty()) {
+        throw InvalidInput("NESTGRID_CUT and NESTGRID_SLOPE are for isosurfaces and isolines");
+    }
+    return indicator == NESTGRID_CUT ? cut_deviations(hierarchy, isovalues, bounds, {}, executor)
+                                     : slope_deviations(hierarchy, isovalues, bounds, {}, executor);
+}
+
+}  // namespace
+
+Asked::Asked(const nestgrid_options* given) {
+    if (given != nullptr) {
+        if (given->size < sizeof(given->size)) {
+            throw InvalidInput("the size of the options says " + std::to_string(given->size) +
+                               " bytes: set it to that of the struct");
+        }
+        std::memcpy(&options_, given, std::min(given->size, sizeof(options_)));
+    }
+    require_range(options_);
+    require_one_wish(options_);
+    const std::size_t threads = thread_count(options_.threads);
+    if (threads == 1) {
+        executor_ = std::make_unique<SequentialExecutor>();
+    } else {
+        executor_ = std::make_unique<ThreadExecutor>(threads);
+    }
+}
+
+IsosurfaceOptions Asked::how_to_draw() const {
+    IsosurfaceOptions how{.cuts = options_.finest_cuts != 0 ? Cuts::finest : Cuts::linear,
+                          .normals = options_.normals != 0,
+                          .cap = options_.cap != 0,
+                          .elements = options_.elements != 0 || options_.reference != 0,
+                          .reference = options_.reference != 0,
+                          .at_nodes = options_.at_nodes != 0};
+    if (options_.progress != nullptr) {
+        how.progress = [this](const TraversalCounts& counts) {
+            return options_.progress(options_.progress_data, counts.visited, counts.extracted) == 0;
+        };
+    }
+    return how;
+}
+
+template <class Real>
+Projection::Projection(const Hierarchy<Real>& hierarchy, const Asked& asked,
+                       std::span<const double> isovalues)
+    : threshold_{asked.options().error > 0 ? asked.options().error : asked.options().threshold} {
+    const int indicator = indicator_for(asked.options(), hierarchy.facts(), !isovalues.empty());
+    const bool deviations = indicator == NESTGRID_DEVIATION;
+    bounds_.emplace(hierarchy, deviations ? NodeError::deviation : NodeError::offset,
+                    asked.executor());
+    if (deviations || indicator == NESTGRID_OFFSET) return;
+    swept_.emplace(make_swept(indicator, hierarchy, *bounds_, isovalues, asked.executor()));
+}
+template Projection::Projection(const Hierarchy<float>&, const Asked&, std::span<const double>);
+template Projection::Projection(const Hierarchy<double>&, const Asked&, std::span<const double>);
+
+}  // namespace nestgrid

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Makes what the algorithms need of the options of a C code: a criterion, bounds and threads.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <nestgrid/algorithms/options.h>
+#include <nestgrid/algorithms/executor.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
+#include <nestgrid/algorithms/swept_indicator.hpp>
+
+namespace nestgrid {
+
+/// Options of one call, complete and in range.
+class Asked {
+public:
+    /// \param given may be NULL
+    /// \throw InvalidInput where a number is out of range, or two contradict each other
+    explicit Asked(const nestgrid_options* given);
+
+    const nestgrid_options& options() const { return options_; }
+    std::span<const nestgrid_field* const> attributes() const {
+        return {options_.attributes, options_.attribute_count};
+    }
+    const Executor& executor() const { return *executor_; }
+    /// Whether all of the data are asked for.
+    bool everything() const {
+        return options_.threshold == 0 && options_.error == 0 && options_.max_triangles == 0;
+    }
+    /// But for the threshold and the number of triangles.
+    IsosurfaceOptions how_to_draw() const;
+
+private:
+    nestgrid_options options_{};
+    std::unique_ptr<const Executor> executor_;
+};
+
+/// The indicator that was asked for, and the bounds beside it.
+class Projection {
+public:
+    /// \param isovalues of the level sets; none for other drawings
+    /// \throw InvalidInput where the indicator is not for the drawing or for the grid
+    template <class Real>
+    Projection(const Hierarchy<Real>& hierarchy, const Asked& asked,
+               std::span<const double> isovalues);
+
+    double threshold() const { return threshold_; }
+    const HierarchicalIndicator& bounds() const { return *bounds_; }
+    Threshold at(double threshold) const {
+        if (swept_) return {&*swept_, threshold};
+        return {&*bounds_, threshold};
+    }
+
+private:
+    double threshold_;
+    std::optional<HierarchicalIndicator> bounds_;
+    std::optional<SweptIndicator> swept_;  // where another indicator than the bounds' was asked for
+};
+
+}  // namespace nestgrid
