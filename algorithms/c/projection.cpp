@@ -57,10 +57,27 @@ std::size_t thread_count(int threads) {
     return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_threads);
 }
 
+bool is_simplex(int shape) { return shape == NESTGRID_TRIANGLE || shape == NESTGRID_TETRAHEDRON; }
+
+template <class Real>
+bool coarse_simplices(const Hierarchy<Real>& hierarchy) {
+    const auto task = hierarchy.open();
+    Coarse coarse;
+    Family family;
+    for (std::size_t i = 0; i < hierarchy.coarse_count(); ++i) {
+        hierarchy.coarse(task.get(), i, coarse, family);
+        if (!is_simplex(static_cast<int>(coarse.shape))) return false;
+    }
+    return true;
+}
+
 /// The indicator that is to be compared with the threshold.
-int indicator_for(const nestgrid_options& options, const HierarchyFacts& facts, bool level_sets) {
-    if (options.error == 0) return options.indicator;
-    return level_sets && cuts_are_errors(facts) ? NESTGRID_CUT : NESTGRID_DEVIATION;
+template <class Real>
+int indicator_for(const Asked& asked, const Hierarchy<Real>& hierarchy, bool level_sets) {
+    if (asked.options().error == 0) return asked.options().indicator;
+    return level_sets && asked.rules_of_simplices() && coarse_simplices(hierarchy)
+               ? NESTGRID_CUT
+               : NESTGRID_DEVIATION;
 }
 
 template <class Real>
@@ -88,7 +105,7 @@ SweptIndicator make_swept(int indicator, const Hierarchy<Real>& hierarchy, const
 
 }  // namespace
 
-Asked::Asked(const nestgrid_options* given) {
+Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid) : grid_{grid} {
     if (given != nullptr) {
         if (given->size < sizeof(given->size)) {
             throw InvalidInput("the size of the options says " + std::to_string(given->size) +
@@ -104,6 +121,16 @@ Asked::Asked(const nestgrid_options* given) {
     } else {
         executor_ = std::make_unique<ThreadExecutor>(threads);
     }
+}
+
+bool Asked::rules_of_simplices() const {
+    const std::span rules(grid_->rules, static_cast<std::size_t>(grid_->rule_count));
+    return std::all_of(rules.begin(), rules.end(), [](const nestgrid_rule& rule) {
+        const std::span children(rule.children, static_cast<std::size_t>(rule.child_count));
+        return is_simplex(rule.shape) &&
+               std::all_of(children.begin(), children.end(),
+                           [](const nestgrid_child& child) { return is_simplex(child.shape); });
+    });
 }
 
 IsosurfaceOptions Asked::how_to_draw() const {
@@ -125,7 +152,7 @@ template <class Real>
 Projection::Projection(const Hierarchy<Real>& hierarchy, const Asked& asked,
                        std::span<const double> isovalues)
     : threshold_{asked.options().error > 0 ? asked.options().error : asked.options().threshold} {
-    const int indicator = indicator_for(asked.options(), hierarchy.facts(), !isovalues.empty());
+    const int indicator = indicator_for(asked, hierarchy, !isovalues.empty());
     const bool deviations = indicator == NESTGRID_DEVIATION;
     bounds_.emplace(hierarchy, deviations ? NodeError::deviation : NodeError::offset,
                     asked.executor());

@@ -19,8 +19,9 @@ namespace nestgrid {
 class Asked {
 public:
     /// \param given may be NULL
+    /// \param grid that is drawn on, borrowed; looked at once it is known to be in order
     /// \throw InvalidInput where a number is out of range, or two contradict each other
-    explicit Asked(const nestgrid_options* given);
+    Asked(const nestgrid_options* given, const nestgrid_grid* grid);
 
     const nestgrid_options& options() const { return options_; }
     std::span<const nestgrid_field* const> attributes() const {
@@ -31,11 +32,14 @@ public:
     bool everything() const {
         return options_.threshold == 0 && options_.error == 0 && options_.max_triangles == 0;
     }
+    /// Whether the rules of the grid know simplices alone.
+    bool rules_of_simplices() const;
     /// But for the threshold and the number of triangles.
     IsosurfaceOptions how_to_draw() const;
 
 private:
     nestgrid_options options_{};
+    const nestgrid_grid* grid_;
     std::unique_ptr<const Executor> executor_;
 };
 
