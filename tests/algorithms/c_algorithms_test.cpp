@@ -101,6 +101,7 @@ std::vector<Forest<dim>> forests() {
     std::vector<Forest<dim>> all;
     std::mt19937 random(5);
     all.push_back(boxes<dim>(random, 2));
+    all.push_back(boxes<dim>(random, 1));
     all.push_back(kuhn<dim>(dim == 2 ? 2 : 0));  // bisected, or red
     for (Forest<dim>& forest : all) refine_randomly(forest, random, dim == 3 ? 150 : 300);
     return all;
@@ -264,15 +265,20 @@ TEST(IsosurfacesForC, KeepAnError) {
         const auto cuts = cut_deviations(scene.grid, scene.first, std::span(&level, 1), offsets);
         const bool simplices = scene.grid.cells[0].shape == Shape::triangle ||
                                scene.grid.cells[0].shape == Shape::tetrahedron;
-        nestgrid_surface surface = draw(scene);
-        nestgrid_surface_details d{};
-        d.size = sizeof(d);
-        ASSERT_EQ(nestgrid_details(&surface, &d, nullptr, 0), 0);
-        EXPECT_EQ(d.threshold, 0.1);
-        EXPECT_EQ(d.surface_error <= 0.1, simplices);
-        expect_same(surface, simplices
-                                 ? draw_directly(scene, Threshold(&cuts, 0.1), offsets)
-                                 : draw_directly(scene, Threshold(&deviations, 0.1), deviations));
+        const auto direct = simplices
+                                ? draw_directly(scene, Threshold(&cuts, 0.1), offsets)
+                                : draw_directly(scene, Threshold(&deviations, 0.1), deviations);
+        for (const int threads : {1, 3}) {
+            scene.options.threads = threads;
+            nestgrid_surface surface = draw(scene);
+            nestgrid_surface_details d{};
+            d.size = sizeof(d);
+            ASSERT_EQ(nestgrid_details(&surface, &d, nullptr, 0), 0);
+            EXPECT_EQ(d.threshold, 0.1);
+            EXPECT_EQ(d.surface_error, direct.surface_error);
+            EXPECT_EQ(d.surface_error <= 0.1, simplices);
+            expect_same(surface, direct);
+        }
     });
 }
 
