@@ -217,23 +217,15 @@ TEST(IsosurfacesForC, KeepWhatOptionsAskFor) {
     });
 }
 
-TEST(IsosurfacesForC, CutAndMergeAsOptionsAskFor) {
-    for_each_scene([](auto& scene) {
-        scene.options.threshold = 0.1;
-        scene.options.finest_cuts = 1;
-        nestgrid_surface surface = draw(scene);
-        expect_same(surface,
-                    isosurface(scene.grid, scene.first, isovalue,
-                               {.threshold = 0.1, .cuts = Cuts::finest, .elements = false}));
-        if (std::remove_cvref_t<decltype(scene.grid)>::dimension == 2) return;
-        scene.options = {};
-        scene.options.size = sizeof(scene.options);
+TEST(IsosurfacesForC, HaveVerticesAtNodes) {
+    for (const auto& forest : forests<3>()) {
+        Scene<3> scene(forest);
         scene.options.at_nodes = 1;
         for (double& v : scene.first.values) v = std::round(5 * v) / 5;  // often the isovalue
-        surface = draw(scene);
+        nestgrid_surface surface = draw(scene);
         expect_same(surface, isosurface(scene.grid, scene.first, isovalue,
                                         {.elements = false, .at_nodes = true}));
-    });
+    }
 }
 
 TEST(IsosurfacesForC, HaveEveryIndicator) {
