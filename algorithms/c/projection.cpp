@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <string>
-#include <thread>
 
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
@@ -54,7 +53,7 @@ void require_one_wish(const nestgrid_options& options) {
 
 std::size_t thread_count(int threads) {
     if (threads != NESTGRID_ALL_THREADS) return static_cast<std::size_t>(std::max(threads, 1));
-    return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_threads);
+    return std::min<std::size_t>(ThreadExecutor::all_threads(), most_threads);
 }
 
 bool is_simplex(int shape) { return shape == NESTGRID_TRIANGLE || shape == NESTGRID_TETRAHEDRON; }

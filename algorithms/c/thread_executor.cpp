@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "thread_executor.hpp"
 
+#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -81,6 +82,10 @@ private:
 };
 
 }  // namespace
+
+std::size_t ThreadExecutor::all_threads() {
+    return std::max<std::size_t>(std::thread::hardware_concurrency(), 1);
+}
 
 void ThreadExecutor::run(std::size_t count, const std::function<void(std::size_t)>& work,
                          const std::function<void(std::size_t)>& consume) const {

@@ -18,6 +18,9 @@ public:
     void run(std::size_t count, const std::function<void(std::size_t)>& work,
              const std::function<void(std::size_t)>& consume) const override;
 
+    /// How many threads the machine runs at a time; 1 where this is not known.
+    static std::size_t all_threads();
+
 private:
     std::size_t threads_;
 };
