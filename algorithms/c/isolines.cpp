@@ -63,7 +63,7 @@ extern "C" int nestgrid_isolines(const nestgrid_grid* grid, const nestgrid_field
     return without_exceptions(message, message_size, [&] {
         begin_result(out);
         const auto isovalues = values_of(values, count);
-        const Asked asked(options, grid);
+        const Asked asked(options, grid, field);
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return hand_over(draw(hierarchy, isovalues, asked), out);
         });

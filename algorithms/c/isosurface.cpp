@@ -115,7 +115,7 @@ extern "C" int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_fie
         nestgrid_options options{};
         options.size = sizeof(options);
         options.threshold = threshold;
-        const Asked asked(&options, grid);
+        const Asked asked(&options, grid, field);
         return with_tables(grid, field, {}, [&](const auto& hierarchy) {
             const int components = hierarchy.facts().components;
             if (components != 1) {
@@ -132,7 +132,7 @@ extern "C" int nestgrid_isosurface_with(const nestgrid_grid* grid, const nestgri
                                         nestgrid_surface* out, char* message, size_t message_size) {
     *out = {};
     return without_exceptions(message, message_size, [&] {
-        const Asked asked(options, grid);
+        const Asked asked(options, grid, field);
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return draw(hierarchy, isovalue, asked, *out);
         });
@@ -144,7 +144,7 @@ extern "C" int nestgrid_height_field(const nestgrid_grid* grid, const nestgrid_f
                                      nestgrid_surface* out, char* message, size_t message_size) {
     *out = {};
     return without_exceptions(message, message_size, [&] {
-        const Asked asked(options, grid);
+        const Asked asked(options, grid, field);
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return draw_height_field(hierarchy, scale, asked, *out);
         });

@@ -63,7 +63,7 @@ extern "C" int nestgrid_probe(const nestgrid_grid* grid, const nestgrid_field* f
     return without_exceptions(message, message_size, [&] {
         begin_result(out);
         const std::vector<Point> at = points_of(points, count);
-        const Asked asked(options, grid);
+        const Asked asked(options, grid, field);
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return hand_over(ask(hierarchy, at, asked), out);
         });

@@ -14,6 +14,7 @@
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
 
+#include "prerolls.hpp"
 #include "thread_executor.hpp"
 
 namespace nestgrid {
@@ -104,7 +105,8 @@ SweptIndicator make_swept(int indicator, const Hierarchy<Real>& hierarchy, const
 
 }  // namespace
 
-Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid) : grid_{grid} {
+Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid, const nestgrid_field* field)
+    : grid_{grid}, field_{field} {
     if (given != nullptr) {
         if (given->size < sizeof(given->size)) {
             throw InvalidInput("the size of the options says " + std::to_string(given->size) +
@@ -132,6 +134,11 @@ bool Asked::rules_of_simplices() const {
     });
 }
 
+nestgrid_prerolls* Asked::prerolls() const {
+    if (options_.prerolls != nullptr) options_.prerolls->require_same(*grid_, *field_);
+    return options_.prerolls;
+}
+
 IsosurfaceOptions Asked::how_to_draw() const {
     IsosurfaceOptions how{.cuts = options_.finest_cuts != 0 ? Cuts::finest : Cuts::linear,
                           .normals = options_.normals != 0,
@@ -152,11 +159,22 @@ Projection::Projection(const Hierarchy<Real>& hierarchy, const Asked& asked,
                        std::span<const double> isovalues)
     : threshold_{asked.options().error > 0 ? asked.options().error : asked.options().threshold} {
     const int indicator = indicator_for(asked, hierarchy, !isovalues.empty());
+    nestgrid_prerolls* const kept = asked.prerolls();
     const bool deviations = indicator == NESTGRID_DEVIATION;
-    bounds_.emplace(hierarchy, deviations ? NodeError::deviation : NodeError::offset,
-                    asked.executor());
-    if (deviations || indicator == NESTGRID_OFFSET) return;
-    swept_.emplace(make_swept(indicator, hierarchy, *bounds_, isovalues, asked.executor()));
+    const auto make_bounds = [&] {
+        const NodeError error = deviations ? NodeError::deviation : NodeError::offset;
+        return std::make_shared<const HierarchicalIndicator>(hierarchy, error, asked.executor());
+    };
+    const int measured = deviations ? NESTGRID_DEVIATION : NESTGRID_OFFSET;
+    bounds_ = kept == nullptr ? make_bounds() : kept->kept(kept->of_nodes, measured, make_bounds);
+    if (indicator == measured) return;
+    const auto make_own = [&] {
+        return std::make_shared<const SweptIndicator>(
+            make_swept(indicator, hierarchy, *bounds_, isovalues, asked.executor()));
+    };
+    const bool of_isovalues = indicator == NESTGRID_CUT || indicator == NESTGRID_SLOPE;
+    swept_ =
+        kept == nullptr || of_isovalues ? make_own() : kept->kept(kept->swept, indicator, make_own);
 }
 template Projection::Projection(const Hierarchy<float>&, const Asked&, std::span<const double>);
 template Projection::Projection(const Hierarchy<double>&, const Asked&, std::span<const double>);

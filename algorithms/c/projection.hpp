@@ -5,7 +5,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 
 #include <nestgrid/algorithms/options.h>
@@ -19,9 +18,9 @@ namespace nestgrid {
 class Asked {
 public:
     /// \param given may be NULL
-    /// \param grid that is drawn on, borrowed; looked at once it is known to be in order
+    /// \param grid that is drawn on, borrowed like its field; looked at once they are in order
     /// \throw InvalidInput where a number is out of range, or two contradict each other
-    Asked(const nestgrid_options* given, const nestgrid_grid* grid);
+    Asked(const nestgrid_options* given, const nestgrid_grid* grid, const nestgrid_field* field);
 
     const nestgrid_options& options() const { return options_; }
     std::span<const nestgrid_field* const> attributes() const {
@@ -34,12 +33,16 @@ public:
     }
     /// Whether the rules of the grid know simplices alone.
     bool rules_of_simplices() const;
+    /// Prerolls of this grid and field that the caller keeps, or null.
+    /// \throw InvalidInput where they are of others
+    nestgrid_prerolls* prerolls() const;
     /// But for the threshold and the number of triangles.
     IsosurfaceOptions how_to_draw() const;
 
 private:
     nestgrid_options options_{};
     const nestgrid_grid* grid_;
+    const nestgrid_field* field_;
     std::unique_ptr<const Executor> executor_;
 };
 
@@ -61,8 +64,9 @@ public:
 
 private:
     double threshold_;
-    std::optional<HierarchicalIndicator> bounds_;
-    std::optional<SweptIndicator> swept_;  // where another indicator than the bounds' was asked for
+    std::shared_ptr<const HierarchicalIndicator> bounds_;
+    std::shared_ptr<const SweptIndicator>
+        swept_;  // where another indicator than the bounds' was asked for
 };
 
 }  // namespace nestgrid

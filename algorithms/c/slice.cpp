@@ -84,7 +84,7 @@ extern "C" int nestgrid_slice(const nestgrid_grid* grid, const nestgrid_field* f
             throw InvalidInput("the point or the normal of the plane is NULL");
         }
         const Plane plane({through[0], through[1], through[2]}, {normal[0], normal[1], normal[2]});
-        const Asked asked(options, grid);
+        const Asked asked(options, grid, field);
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             draw(hierarchy, plane, asked, *out);
             return 0;
@@ -99,7 +99,7 @@ extern "C" int nestgrid_slice_along(const nestgrid_grid* grid, const nestgrid_fi
     *out = {};
     return without_exceptions(message, message_size, [&] {
         const FunctionInC in_c(function);
-        const Asked asked(options, grid);
+        const Asked asked(options, grid, field);
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             draw(hierarchy, in_c, asked, *out);
             return 0;

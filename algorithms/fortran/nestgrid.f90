@@ -134,6 +134,7 @@ module nestgrid
         integer(c_size_t) :: attribute_count = 0_c_size_t
         type(c_funptr) :: progress = c_null_funptr
         type(c_ptr) :: progress_data = c_null_ptr
+        type(c_ptr) :: prerolls = c_null_ptr
     end type nestgrid_options
 
     type, bind(c) :: nestgrid_surface
@@ -211,6 +212,19 @@ module nestgrid
     end type nestgrid_probed
 
     interface
+        integer(c_int) function nestgrid_prerolls_make(out, message, message_size) &
+                bind(c, name="nestgrid_prerolls_make")
+            import
+            type(c_ptr), intent(out) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_prerolls_make
+
+        subroutine nestgrid_prerolls_free(prerolls) bind(c, name="nestgrid_prerolls_free")
+            import
+            type(c_ptr), value :: prerolls
+        end subroutine nestgrid_prerolls_free
+
         integer(c_int) function nestgrid_isosurface(grid, field, isovalue, threshold, &
                 out, message, message_size) bind(c, name="nestgrid_isosurface")
             import

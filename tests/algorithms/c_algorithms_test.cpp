@@ -331,6 +331,40 @@ TEST(IsosurfacesForC, HaveAttributesOfAnotherType) {
     expect_same(surface, isosurface(scene.grid, scene.both, isovalue, {.elements = false}));
 }
 
+TEST(PrerollsForC, ServeSeveralCalls) {
+    Scene<3> scene(forests<3>()[0]);
+    ASSERT_EQ(nestgrid_prerolls_make(&scene.options.prerolls, nullptr, 0), 0);
+    scene.options.threshold = 0.1;
+    const HierarchicalIndicator offsets(scene.grid, scene.first);
+    const HierarchicalIndicator deviations(scene.grid, scene.first, NodeError::deviation);
+    const SweptIndicator visual = visual_indicator(scene.grid, scene.first);
+    for (int i = 0; i < 2; ++i) {
+        scene.options.indicator = NESTGRID_OFFSET;
+        nestgrid_surface surface = draw(scene);
+        expect_same(surface, draw_directly(scene, Threshold(&offsets, 0.1), offsets));
+        scene.options.indicator = NESTGRID_DEVIATION;
+        surface = draw(scene);
+        expect_same(surface, draw_directly(scene, Threshold(&deviations, 0.1), deviations));
+        scene.options.indicator = NESTGRID_VISUAL;
+        surface = draw(scene);
+        expect_same(surface, draw_directly(scene, Threshold(&visual, 0.1), offsets));
+    }
+    // Nothing is walked anew: values that changed meanwhile are not seen by the indicator.
+    for (double& v : scene.first.values) v *= 100;
+    scene.options.indicator = NESTGRID_OFFSET;
+    nestgrid_surface surface = draw(scene);
+    expect_same(surface, draw_directly(scene, Threshold(&offsets, 0.1), offsets));
+
+    scene.field = scene.second_field;
+    nestgrid_surface none;
+    EXPECT_EQ(nestgrid_isosurface_with(&scene.in_c.table, &scene.field, isovalue, &scene.options,
+                                       &none, scene.message.data(), 200),
+              1);
+    EXPECT_STREQ(scene.message.data(), "the prerolls were made for another grid or field");
+    nestgrid_prerolls_free(scene.options.prerolls);
+    nestgrid_prerolls_free(nullptr);
+}
+
 TEST(IsosurfacesForC, EndWhereTheCallerSaysSo) {
     Scene<3> scene(forests<3>()[0]);
     int calls = 0;

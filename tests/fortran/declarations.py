@@ -37,7 +37,7 @@ def read_module(text):
         structs[name] = re.findall(r":: (\w+)", body)
     declared = r"(?:function|subroutine) (\w+)\(([^)]*)\) *bind\(c, name=\"(\w+)\"\)(.*?)end (?:function|subroutine)"
     for name, arguments, bound, body in re.findall(declared, text, re.S):
-        by_value = set(re.findall(r", value :: (\w+)", body))
+        by_value = set(re.findall(r"^(?!.*c_ptr).*, value :: (\w+)", body, re.M))
         functions[bound] = [(a.strip(), a.strip() in by_value) for a in arguments.split(",")]
         if name != bound:
             sys.exit(f"the function {name} of the module is bound to {bound}")

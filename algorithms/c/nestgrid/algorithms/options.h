@@ -27,6 +27,12 @@ enum {
 /** As many threads as the machine runs at a time. */
 #define NESTGRID_ALL_THREADS (-1)
 
+/** Indicators that are kept from one call to the next, by all calls that have them among their
+ * options: further isosurfaces, slices or probes then need no walk over all of the grid before.
+ * They belong to one grid and one field, told apart by `self`, whose values do not change
+ * meanwhile. */
+typedef struct nestgrid_prerolls nestgrid_prerolls;
+
 /** The options of all algorithms. A member that is 0 or NULL has its default, and so have all of
  * them where NULL is given in the place of the options. `size` is sizeof the struct as the caller
  * compiled it, so that it can grow. */
@@ -60,7 +66,15 @@ typedef struct nestgrid_options {
      * number than 0 ends the drawing, whose result is then a part. */
     int (*progress)(void* progress_data, uint64_t visited, uint64_t extracted);
     void* progress_data;
+    nestgrid_prerolls* prerolls; /* that are used and added to, but for NESTGRID_CUT and SLOPE */
 } nestgrid_options;
+
+/** Makes empty prerolls. Returns 0, or another number and a sentence, as isosurface.h says. Free
+ * them with nestgrid_prerolls_free. */
+int nestgrid_prerolls_make(nestgrid_prerolls** out, char* message, size_t message_size);
+
+/** Frees prerolls; NULL is allowed. */
+void nestgrid_prerolls_free(nestgrid_prerolls* prerolls);
 
 #ifdef __cplusplus
 }
