@@ -48,8 +48,9 @@ Split PathRows<Real>::split_of(const View& view, SplitKeys& keys) {
     split.rule = view.member->rule;
     const std::size_t corners = view.corner_count();
     const Frame<Real>& frame = view.stack->frame(view.level);
-    split.keys = view.family->new_keys(*view.member);
-    if (split.keys.empty()) {
+    if (!view.family->keys.empty()) {
+        split.keys = view.family->new_keys(*view.member);
+    } else {  // the grid has no keys of its own
         std::copy_n(frame.key.begin() + static_cast<std::ptrdiff_t>(corners),
                     split.rule->new_nodes.size(), keys.begin());
         split.keys = std::span(keys).first(split.rule->new_nodes.size());

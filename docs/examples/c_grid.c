@@ -134,8 +134,9 @@ int main(void) {
         fprintf(stderr, "the grid is wrong: %s\n", message);
         return 1;
     }
+    nestgrid_options options = {.size = sizeof options, .error = 1e-4, .threads = 2};
     nestgrid_surface line;
-    if (nestgrid_isosurface(&grid, &field, 0.3, 0.0, &line, message, sizeof message) != 0) {
+    if (nestgrid_isosurface_with(&grid, &field, 0.3, &options, &line, message, sizeof message)) {
         fprintf(stderr, "no isoline: %s\n", message);
         return 1;
     }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include <nestgrid/nestgrid.h>
 #include <nestgrid/hierarchy.hpp>
@@ -20,6 +21,16 @@ namespace nestgrid {
 template <class Real>
 std::unique_ptr<const Hierarchy<Real>> open_table(const nestgrid_grid& grid,
                                                   const nestgrid_field& field);
+
+/// The grid of a table with several fields, whose components stand behind each other.
+/// \param more fields behind the first one, of float or double each; their values become Real.
+/// Their
+///        gradients are not asked for
+/// \throw InvalidInput also where one of them is NULL
+template <class Real>
+std::unique_ptr<const Hierarchy<Real>> open_table(const nestgrid_grid& grid,
+                                                  const nestgrid_field& field,
+                                                  std::span<const nestgrid_field* const> more);
 
 /// The grid of a table, with a field that is zero.
 std::unique_ptr<const Hierarchy<float>> open_table(const nestgrid_grid& grid);

@@ -70,6 +70,34 @@ TEST(IsosurfaceForC, IsTheSame) {
     expect_same(image, distance, 4.5, 0.1);
 }
 
+TEST(IsosurfaceForC, IsCutWhereTheFinestDataAre) {
+    const Samples n{13, 18, 21};
+    const LatticeBisection<3> grid({.samples = n});
+    const SampledField data = sampled_fields(n)[1];
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const TableInC in_c(grid);
+    const nestgrid_field f = field_in_c(grid, field);
+    nestgrid_options options{};
+    options.size = sizeof(options);
+    options.threshold = 0.1;
+    options.finest_cuts = 1;
+    nestgrid_surface surface;
+    std::array<char, 100> message{};
+    ASSERT_EQ(nestgrid_isosurface_with(&in_c.table, &f, data.isovalue, &options, &surface,
+                                       message.data(), 100),
+              0)
+        << message.data();
+    const auto direct =
+        isosurface(grid, field, data.isovalue, {.threshold = 0.1, .cuts = Cuts::finest});
+    ASSERT_EQ(surface.vertex_count, direct.surface.vertices.size());
+    for (std::size_t v = 0; v < surface.vertex_count; ++v) {
+        for (std::size_t d = 0; d < 3; ++d) {
+            ASSERT_EQ(surface.vertices[3 * v + d], direct.surface.vertices[v][d]);
+        }
+    }
+    nestgrid_surface_free(&surface);
+}
+
 class FailuresForC : public ::testing::Test {
 protected:
     std::string isosurface_says(double isovalue = 0.5, double threshold = 0) {

@@ -1,5 +1,6 @@
 # Every "<!-- file [part] -->" in the README, docs/*.md and docs/tutorial/*.md stands before a block of code: it must be what
-# lies between the lines "// [part]" ("# [part]" in Python) of the file, up to indentation. Behind "<!-- file -->" it must be a
+# lies between the lines "// [part]" ("# [part]" in Python, "! [part]"
+# in Fortran) of the file, up to indentation. Behind "<!-- file -->" it must be a
 # part of the file.
 cmake_policy(SET CMP0007 NEW)
 file(GLOB pages ${source}/README.md ${source}/docs/*.md ${source}/docs/tutorial/*.md)
@@ -17,6 +18,13 @@ foreach(page IN LISTS pages)
       set(mark "#${part}")
       set(fence "```python\n")
     endif()
+    if(file MATCHES "\\.c$")
+      set(fence "```c\n")
+    endif()
+    if(file MATCHES "\\.f90$")
+      set(mark "!${part}")
+      set(fence "```fortran\n")
+    endif()
     string(LENGTH "${fence}" width)
     string(FIND "${text}" "${quote}" at)
     string(SUBSTRING "${text}" ${at} -1 rest)
@@ -27,7 +35,7 @@ foreach(page IN LISTS pages)
     string(SUBSTRING "${rest}" 0 ${end} quoted)
 
     file(READ ${source}/${file} code)
-    if(mark STREQUAL "//" OR mark STREQUAL "#")
+    if(mark STREQUAL "//" OR mark STREQUAL "#" OR mark STREQUAL "!")
       set(original "${code}")
     else()
       string(FIND "${code}" "${mark}" first)

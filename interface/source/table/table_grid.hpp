@@ -7,6 +7,8 @@
 
 #include <deque>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include <nestgrid/nestgrid.h>
 #include <nestgrid/error.hpp>
@@ -225,5 +227,41 @@ private:
 
 extern template class TableField<float>;
 extern template class TableField<double>;
+
+/// The fields of several tables, their components one behind the other.
+template <class Real>
+class TableFields {
+public:
+    /// \throw InvalidInput as checked_table(), and where a table is NULL
+    TableFields(const nestgrid_field& first, std::span<const nestgrid_field* const> more);
+
+    const TableField<Real>& first() const { return first_; }
+    int components() const { return components_; }
+
+    NodeMask coarse_values(std::size_t i, std::span<Real> out, TableContext& c) const {
+        if (more_.empty()) return first_.coarse_values(i, out, c);
+        return gather(
+            out, [&](const auto& field, auto values) { return field.coarse_values(i, values, c); });
+    }
+    NodeMask new_values(const nestgrid_element& e, NodeMask which, std::span<Real> out,
+                        TableContext& c) const {
+        if (more_.empty()) return first_.new_values(e, which, out, c);
+        return gather(out, [&](const auto& field, auto values) {
+            return field.new_values(e, which, values, c);
+        });
+    }
+
+private:
+    using AnyField = std::variant<TableField<float>, TableField<double>>;
+
+    /// Sets `out` from all fields, by ask(field, values) of each.
+    /// \return the nodes that one of them could not give
+    template <class Ask>
+    NodeMask gather(std::span<Real> out, const Ask& ask) const;
+
+    TableField<Real> first_;
+    std::vector<AnyField> more_;
+    int components_;
+};
 
 }  // namespace nestgrid::detail

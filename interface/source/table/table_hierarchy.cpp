@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <limits>
+
+#include <boost/container/small_vector.hpp>
 
 #include <nestgrid/detail/erase.hpp>
 #include <nestgrid/table.hpp>
@@ -10,6 +13,49 @@
 namespace nestgrid {
 
 namespace detail {
+
+template <class Real>
+TableFields<Real>::TableFields(const nestgrid_field& first,
+                               std::span<const nestgrid_field* const> more)
+    : first_{first}, components_{first_.table().components} {
+    for (const nestgrid_field* field : more) {
+        if (field == nullptr) throw InvalidInput("the table of an attribute is NULL");
+        if (field->value_type == NESTGRID_FLOAT) {
+            more_.emplace_back(TableField<float>(*field));
+        } else {
+            more_.emplace_back(TableField<double>(*field));
+        }
+        const int components =
+            std::visit([](const auto& f) { return f.table().components; }, more_.back());
+        if (components > std::numeric_limits<int>::max() - components_) {
+            throw InvalidInput("the fields have too many components");
+        }
+        components_ += components;
+    }
+}
+
+template <class Real>
+template <class Ask>
+NodeMask TableFields<Real>::gather(std::span<Real> out, const Ask& ask) const {
+    const auto all = static_cast<std::size_t>(components_);
+    const std::size_t nodes = out.size() / all;
+    std::size_t begin = 0;
+    NodeMask missing = 0;
+    const auto put = [&]<class Value>(const TableField<Value>& field) {
+        const auto own = static_cast<std::size_t>(field.table().components);
+        boost::container::small_vector<Value, 64> values(nodes * own);
+        missing |= ask(field, std::span<Value>(values.data(), values.size()));
+        for (std::size_t n = 0; n < nodes; ++n) {
+            for (std::size_t c = 0; c < own; ++c) {
+                out[n * all + begin + c] = static_cast<Real>(values[n * own + c]);
+            }
+        }
+        begin += own;
+    };
+    put(first_);
+    for (const AnyField& field : more_) std::visit(put, field);
+    return missing;
+}
 
 namespace {
 
@@ -21,14 +67,15 @@ class TableHierarchy final : public Hierarchy<Real>, private BisectionRows<Real>
     static_assert(fits_handle<nestgrid_element>);
 
 public:
-    TableHierarchy(const nestgrid_grid& grid, const nestgrid_field& field)
-        : Hierarchy<Real>({}), grid_{grid}, field_{field}, made_for_{grid_} {
+    TableHierarchy(const nestgrid_grid& grid, const nestgrid_field& field,
+                   std::span<const nestgrid_field* const> more)
+        : Hierarchy<Real>({}), grid_{grid}, field_{field, more}, made_for_{grid_} {
         HierarchyFacts& facts = this->facts_;
         facts.dimension = grid_.table().dimension;
-        facts.components = field_.table().components;
+        facts.components = field_.components();
         for (unsigned bit = 1; bit <= static_cast<unsigned>(last_feature); bit <<= 1U) {
             const auto feature = static_cast<Feature>(bit);
-            if (grid_.offers(feature) || field_.offers(feature)) facts.features |= bit;
+            if (grid_.offers(feature) || field_.first().offers(feature)) facts.features |= bit;
         }
         if (facts.offers(Feature::dense_keys)) facts.node_count = grid_.node_count();
         facts.conforming = grid_.conforming();
@@ -96,7 +143,7 @@ public:
     }
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         if (!this->offers(Feature::gradients)) return;
-        field_.corner_gradients(of(element), out, context_of(task));
+        field_.first().corner_gradients(of(element), out, context_of(task));
     }
 
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
@@ -114,8 +161,8 @@ private:
         TableContext context;
     };
     bool tells_rows() const {
-        return grid_.tells_bisections() && field_.table().components == 1 &&
-               field_.table().node_values != nullptr;
+        return grid_.tells_bisections() && field_.components() == 1 &&
+               field_.first().table().node_values != nullptr;
     }
     static TableContext& context_of(Task* task) { return static_cast<OpenTask*>(task)->context; }
     static const nestgrid_element& of(const Handle& element) {
@@ -142,11 +189,11 @@ private:
     }
     void values(std::span<const Node> nodes, std::span<const NodeKey> keys,
                 std::span<Real> out) const override {
-        field_.node_values(nodes, keys, out);
+        field_.first().node_values(nodes, keys, out);
     }
 
     TableGrid grid_;
-    TableField<Real> field_;
+    TableFields<Real> field_;
     MadeFor made_for_;
 };
 
@@ -178,12 +225,24 @@ nestgrid_field zero_field() {
 template <class Real>
 std::unique_ptr<const Hierarchy<Real>> open_table(const nestgrid_grid& grid,
                                                   const nestgrid_field& field) {
-    return std::make_unique<const detail::TableHierarchy<Real>>(grid, field);
+    return open_table<Real>(grid, field, {});
 }
 template std::unique_ptr<const Hierarchy<float>> open_table(const nestgrid_grid&,
                                                             const nestgrid_field&);
 template std::unique_ptr<const Hierarchy<double>> open_table(const nestgrid_grid&,
                                                              const nestgrid_field&);
+
+template <class Real>
+std::unique_ptr<const Hierarchy<Real>> open_table(const nestgrid_grid& grid,
+                                                  const nestgrid_field& field,
+                                                  std::span<const nestgrid_field* const> more) {
+    return std::make_unique<const detail::TableHierarchy<Real>>(grid, field, more);
+}
+template std::unique_ptr<const Hierarchy<float>> open_table(const nestgrid_grid&,
+                                                            const nestgrid_field&,
+                                                            std::span<const nestgrid_field* const>);
+template std::unique_ptr<const Hierarchy<double>> open_table(
+    const nestgrid_grid&, const nestgrid_field&, std::span<const nestgrid_field* const>);
 
 std::unique_ptr<const Hierarchy<float>> open_table(const nestgrid_grid& grid) {
     return open_table<float>(grid, detail::zero_field());

@@ -1,18 +1,23 @@
 /* SPDX-FileCopyrightText: the nestgrid authors
  * SPDX-License-Identifier: BSD-3-Clause
  *
- * Isosurfaces and check_grid for C and Fortran codes; link nestgrid::c.
+ * Isosurfaces, height fields and check_grid for C and Fortran codes; link nestgrid::c.
+ *
+ * All functions here and in the headers beside return 0, or another number and a sentence in
+ * `message`, which has room for message_size characters and may be NULL; the result is then empty.
  */
 #ifndef NESTGRID_ALGORITHMS_ISOSURFACE_H
 #define NESTGRID_ALGORITHMS_ISOSURFACE_H
 
+#include <nestgrid/algorithms/options.h>
 #include <nestgrid/nestgrid.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** An indexed surface: triangles on grids of dimension 3, segments on those of dimension 2. */
+/** An indexed surface: triangles on grids of dimension 3, segments on those of dimension 2. What
+ * more is known of it, nestgrid_details tells: this struct has no size and cannot grow. */
 typedef struct nestgrid_surface {
     size_t vertex_count;
     const double* vertices; /* 3 per vertex */
@@ -28,15 +33,55 @@ typedef struct nestgrid_surface {
     void* owner;
 } nestgrid_surface;
 
+/** What else is known of a surface. Pointers are NULL where options did not ask for what they point
+ * to, and are valid as long as the surface. The caller sets `size` to sizeof the struct, and no
+ * more of it is written. */
+typedef struct nestgrid_surface_details {
+    size_t size;
+    const double* normals; /* 3 per vertex, of unit length */
+    size_t attribute_count;
+    const double* attributes; /* attribute_count per vertex */
+    size_t element_count;
+    const nestgrid_element* elements; /* the grid's own */
+    const uint8_t* shapes;            /* one per element: NESTGRID_TRIANGLE ... */
+    const uint16_t* levels;           /* one per element; 0 on the coarse grid */
+    const uint32_t* element_of;       /* one per simplex, an index into elements from 0 */
+    /* 3 per corner of a simplex: its place in the reference element (shape.hpp). Not a number for
+     * the few that fill a gap in a face. */
+    const double* reference;
+    size_t boundary_count;
+    const uint32_t* boundary; /* `dimension` - 1 vertices per edge (point) on the boundary */
+    double threshold;         /* that was kept, in units of the indicator */
+    /* NESTGRID_CUT: the error that was kept, there and back. Infinity with other indicators. */
+    double surface_error;
+    int cancelled;           /* 1 where progress ended it: the surface is a part */
+    const char* budget_text; /* why there are fewer than max_triangles, a sentence or "" */
+} nestgrid_surface_details;
+
 /** The isosurface of a field of one component under the hierarchical indicator with the given
- * threshold, in units of the data. Returns 0, or another number and a sentence in `message`, which
- * has room for message_size characters and may be NULL; the surface is then empty. Free the result
- * with nestgrid_surface_free. */
+ * threshold, in units of the data. Free the result with nestgrid_surface_free. */
 int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_field* field, double isovalue,
                         double threshold, nestgrid_surface* out, char* message,
                         size_t message_size);
 
-/** Frees what nestgrid_isosurface has returned. */
+/** The isosurface of component 0 of a field. Vertices carry the other components and those of
+ * options->attributes. */
+int nestgrid_isosurface_with(const nestgrid_grid* grid, const nestgrid_field* field,
+                             double isovalue, const nestgrid_options* options,
+                             nestgrid_surface* out, char* message, size_t message_size);
+
+/** The graph of component 0 of a field on a grid of dimension 2, lifted along z by `scale` times
+ * the component: triangles, whatever the dimension. `scale` 0 gives the plane itself. Vertices
+ * carry all components. On the graph the data differ from what is drawn by error_bound at most. */
+int nestgrid_height_field(const nestgrid_grid* grid, const nestgrid_field* field, double scale,
+                          const nestgrid_options* options, nestgrid_surface* out, char* message,
+                          size_t message_size);
+
+/** Tells what else is known of a surface that one of these functions has returned. */
+int nestgrid_details(const nestgrid_surface* surface, nestgrid_surface_details* out, char* message,
+                     size_t message_size);
+
+/** Frees what nestgrid_isosurface, nestgrid_slice and others have returned. */
 void nestgrid_surface_free(nestgrid_surface* surface);
 
 /** Walks the hierarchy: 0 where it keeps the contract, else another number and the first violation

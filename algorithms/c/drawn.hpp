@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Surfaces that C codes own.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <nestgrid/algorithms/isosurface.h>
+#include <nestgrid/algorithms/isosurface_options.hpp>
+#include <nestgrid/algorithms/least_threshold.hpp>
+
+namespace nestgrid {
+
+/// What `owner` of a nestgrid_surface points to.
+template <int dimension>
+struct Drawn {
+    Isosurface<dimension> result;
+    double threshold;
+    std::string budget_text;
+};
+
+/// Hands a surface to a C code, which frees it.
+/// \param search of the threshold; its max_triangles is 0 where the threshold was given
+template <int dimension>
+void hand_over(Isosurface<dimension> result, const TriangleBudget& search, nestgrid_surface& out) {
+    auto drawn = std::make_unique<Drawn<dimension>>(Drawn<dimension>{
+        std::move(result), search.threshold, search.max_triangles > 0 ? search.reason() : ""});
+    const Isosurface<dimension>& kept = drawn->result;
+    out.vertex_count = kept.surface.vertices.size();
+    out.simplex_count = kept.surface.simplices.size();
+    if (out.vertex_count > 0) out.vertices = kept.surface.vertices.front().data();
+    if (out.simplex_count > 0) out.simplices = kept.surface.simplices.front().data();
+    out.dimension = dimension;
+    out.error_bound = kept.error_bound;
+    out.range_bound = kept.range_bound;
+    out.bound_says_nothing = kept.bound_says_nothing() ? 1 : 0;
+    out.visited = kept.counts.visited;
+    out.extracted = kept.counts.extracted;
+    out.owner = drawn.release();
+}
+
+}  // namespace nestgrid

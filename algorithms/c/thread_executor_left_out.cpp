@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// For machines without threads, such as WebAssembly: the calling thread does everything.
+#include "thread_executor.hpp"
+
+namespace nestgrid {
+
+std::size_t ThreadExecutor::all_threads() { return 1; }
+
+void ThreadExecutor::run(std::size_t count, const std::function<void(std::size_t)>& work,
+                         const std::function<void(std::size_t)>& consume) const {
+    SequentialExecutor{}.run(count, work, consume);
+}
+
+}  // namespace nestgrid
