@@ -497,7 +497,15 @@ template class WalkStack<float>;
 template class WalkStack<double>;
 template struct ClosingSplit<float>;
 template struct ClosingSplit<double>;
-template class Walk<float>;
-template class Walk<double>;
+// One by one: what other files define would be a weak symbol here, which pulls no object out of an
+// archive when the linker optimises.
+template Walk<float>::Walk(const Hierarchy<float>&, const Needs&, const HangingNodes*,
+                           const PositionFunctions*);
+template Walk<double>::Walk(const Hierarchy<double>&, const Needs&, const HangingNodes*,
+                            const PositionFunctions*);
+template void Walk<float>::run(Visitor<float>&, std::size_t, std::size_t) const;
+template void Walk<double>::run(Visitor<double>&, std::size_t, std::size_t) const;
+template void Walk<float>::walk_below(const View&, Visitor<float>&) const;
+template void Walk<double>::walk_below(const View&, Visitor<double>&) const;
 
 }  // namespace nestgrid::engine

@@ -14,21 +14,27 @@ endfunction()
 
 # nestgrid_component(<name> [HEADERS ...] [PARTS ...] [SOURCES ...] [PRIVATE_INCLUDES <folder> ...]
 #                    [DEPENDS <component> ...] [LINK <target> ...]
-#                    [PACKAGES "<find_package arguments>" ...] [FIND_MODULES <file> ...])
+#                    [PACKAGES "<find_package arguments>" ...] [FIND_MODULES <file> ...]
+#                    [COMPLETED_BY <file>])
 #
 # Makes the target nestgrid::<name>, in the tree and installed. Each component is an include root of
 # its own, so a component sees the headers of those it depends on and no others. PARTS are headers
 # that one of HEADERS includes at its end; alone they do not compile. SOURCES become
 # objects of libnestgrid; they alone see PRIVATE_INCLUDES. Without SOURCES the component is
 # header-only. PACKAGES are found again by whoever asks the installed package for the component,
-# with FIND_MODULES where they bring none of their own.
+# with FIND_MODULES where they bring none of their own. COMPLETED_BY is included wherever the target is
+# made, in the tree and by users, with nestgrid_target naming it: for what depends on their machine.
 function(nestgrid_component name)
   cmake_parse_arguments(
-    PARSE_ARGV 1 arg "" "" "HEADERS;PARTS;SOURCES;PRIVATE_INCLUDES;DEPENDS;LINK;PACKAGES;FIND_MODULES")
+    PARSE_ARGV 1 arg "" "COMPLETED_BY" "HEADERS;PARTS;SOURCES;PRIVATE_INCLUDES;DEPENDS;LINK;PACKAGES;FIND_MODULES")
   set(target nestgrid_${name})
   add_library(${target} INTERFACE)
   add_library(nestgrid::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  # To a parent project its own warnings matter, not ours, as with the installed package.
+  if(NOT PROJECT_IS_TOP_LEVEL)
+    set_target_properties(${target} PROPERTIES SYSTEM ON)
+  endif()
   target_compile_features(${target} INTERFACE cxx_std_20)
   if(arg_SOURCES)
     list(PREPEND arg_DEPENDS library)
@@ -59,13 +65,31 @@ function(nestgrid_component name)
   endif()
   nestgrid_install_component(
     ${name} FILE_SETS ${file_sets} DEPENDS ${arg_DEPENDS} PACKAGES ${arg_PACKAGES} FIND_MODULES
-                                                                   ${arg_FIND_MODULES})
+                                                                   ${arg_FIND_MODULES}
+    COMPLETED_BY ${arg_COMPLETED_BY})
+  if(arg_COMPLETED_BY)
+    set(nestgrid_target ${target})
+    include(${CMAKE_CURRENT_SOURCE_DIR}/${arg_COMPLETED_BY})
+  endif()
 endfunction()
 
 # Compiles sources into libnestgrid that include what users of the component do.
 function(nestgrid_objects target sources private_includes)
   set(objects ${target}_objects)
   add_library(${objects} OBJECT ${sources})
+  # What the headers declare is all there for users, whatever a parent project hides of its own.
+  set_target_properties(${objects} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN
+                                                                            OFF)
+  target_compile_options(${objects} PRIVATE -fvisibility=default -fno-visibility-inlines-hidden)
+  # Objects in an archive serve any compiler: those of g++ hold machine code beside what its linker
+  # optimises, those of clang hold one of the two.
+  get_target_property(kind nestgrid_library TYPE)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(
+      ${objects} PRIVATE $<$<BOOL:${CMAKE_INTERPROCEDURAL_OPTIMIZATION}>:-ffat-lto-objects>)
+  elseif(kind STREQUAL "STATIC_LIBRARY")
+    set_target_properties(${objects} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
+  endif()
   # A module of WebAssembly has no other place.
   if(NOT EMSCRIPTEN)
     set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -84,12 +108,13 @@ function(nestgrid_objects target sources private_includes)
   target_sources(nestgrid_library PRIVATE $<TARGET_OBJECTS:${objects}>)
 endfunction()
 
-# nestgrid_install_component(<name> [FILE_SETS ...] [DEPENDS ...] [PACKAGES ...] [FIND_MODULES ...])
+# nestgrid_install_component(<name> [FILE_SETS ...] [DEPENDS ...] [PACKAGES ...] [FIND_MODULES ...]
+#                            [COMPLETED_BY <file>])
 function(nestgrid_install_component name)
   if(NOT NESTGRID_INSTALL)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "FILE_SETS;DEPENDS;PACKAGES;FIND_MODULES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "COMPLETED_BY" "FILE_SETS;DEPENDS;PACKAGES;FIND_MODULES")
   set(headers "")
   foreach(file_set IN LISTS arg_FILE_SETS)
     list(APPEND headers FILE_SET ${file_set})
@@ -102,12 +127,20 @@ function(nestgrid_install_component name)
   # What the installed package needs to know of the component.
   set(text "set(nestgrid_${name}_depends ${arg_DEPENDS})\n")
   set(packages "")
-  if(arg_FIND_MODULES)
-    set(packages "list(PREPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})\n")
-  endif()
   foreach(package IN LISTS arg_PACKAGES)
-    string(APPEND packages "find_dependency(${package})\n")
+    string(APPEND packages "nestgrid_find(${name} ${package})\n")
   endforeach()
+  if(arg_FIND_MODULES)
+    set(packages "list(PREPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})\n${packages}"
+                 "list(POP_FRONT CMAKE_MODULE_PATH)\n")
+    string(CONCAT packages ${packages})
+  endif()
+  if(arg_COMPLETED_BY)
+    install(
+      FILES ${arg_COMPLETED_BY}
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/nestgrid
+      RENAME nestgrid-${name}-completed.cmake)
+  endif()
   file(WRITE ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-depends.cmake "${text}")
   file(WRITE ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-packages.cmake "${packages}")
   install(FILES ${PROJECT_BINARY_DIR}/package/nestgrid-${name}-depends.cmake
@@ -151,6 +184,14 @@ endfunction()
 
 function(nestgrid_install_package)
   include(CMakePackageConfigHelpers)
+  # What a compiler of C does not link of its own accord, and an archive needs.
+  set(nestgrid_cxx_libraries ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
+  list(REMOVE_ITEM nestgrid_cxx_libraries ${CMAKE_C_IMPLICIT_LINK_LIBRARIES})
+  get_target_property(kind nestgrid_library TYPE)
+  if(NOT kind STREQUAL "STATIC_LIBRARY")
+    set(nestgrid_cxx_libraries "")
+  endif()
+  nestgrid_install_pkg_config()
   set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/nestgrid)
   configure_package_config_file(
     ${PROJECT_SOURCE_DIR}/interface/cmake/nestgrid-config.cmake.in
@@ -161,4 +202,31 @@ function(nestgrid_install_package)
                 ${PROJECT_BINARY_DIR}/package/nestgrid-config-version.cmake
           DESTINATION ${destination})
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endfunction()
+
+# Writes nestgrid.pc, which finds what was installed with it wherever both are moved to.
+function(nestgrid_install_pkg_config)
+  set(folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  set(nestgrid_includes ${CMAKE_INSTALL_INCLUDEDIR})
+  set(nestgrid_libraries ${CMAKE_INSTALL_LIBDIR})
+  foreach(name includes libraries)
+    if(NOT IS_ABSOLUTE "${nestgrid_${name}}" AND NOT IS_ABSOLUTE "${folder}")
+      file(RELATIVE_PATH up "/${folder}" "/")
+      string(REGEX REPLACE "/$" "" up "${up}")
+      set(nestgrid_${name} "\${pcfiledir}/${up}/${nestgrid_${name}}")
+    elseif(NOT IS_ABSOLUTE "${nestgrid_${name}}")
+      set(nestgrid_${name} "${CMAKE_INSTALL_PREFIX}/${nestgrid_${name}}")
+    endif()
+  endforeach()
+  string(TOUPPER "CMAKE_${CMAKE_BUILD_TYPE}_POSTFIX" postfix)
+  set(nestgrid_name "nestgrid${${postfix}}")
+  set(nestgrid_definitions "")
+  if(NESTGRID_WIDE_KEYS)
+    set(nestgrid_definitions " -DNESTGRID_WIDE_KEYS")
+  endif()
+  list(TRANSFORM nestgrid_cxx_libraries PREPEND " -l")
+  string(CONCAT nestgrid_cxx_libraries ${nestgrid_cxx_libraries})
+  configure_file(${PROJECT_SOURCE_DIR}/interface/cmake/nestgrid.pc.in
+                 ${PROJECT_BINARY_DIR}/package/nestgrid.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/package/nestgrid.pc DESTINATION ${folder})
 endfunction()

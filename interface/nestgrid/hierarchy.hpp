@@ -203,7 +203,7 @@ public:
                               detail::ErasedBisectionVisitor<3, double>& visitor) const;
 
 protected:
-    explicit Hierarchy(const HierarchyFacts& facts) : facts_{facts} { detail::require_same_keys(); }
+    explicit Hierarchy(const HierarchyFacts& facts) : facts_{facts} {}
 
     HierarchyFacts facts_;
 };

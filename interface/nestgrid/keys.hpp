@@ -33,10 +33,10 @@ namespace detail {
 /// link.
 #ifdef NESTGRID_WIDE_KEYS
 void library_has_keys_of_128_bits();
-inline void require_same_keys() { library_has_keys_of_128_bits(); }
+[[gnu::used]] inline void (*const same_keys)() = &library_has_keys_of_128_bits;
 #else
 void library_has_keys_of_64_bits();
-inline void require_same_keys() { library_has_keys_of_64_bits(); }
+[[gnu::used]] inline void (*const same_keys)() = &library_has_keys_of_64_bits;
 #endif
 
 /// Finaliser of splitmix64 (Steele, Lea, Flood 2014): a bijection with full avalanche.

@@ -19,6 +19,7 @@
 #include <string_view>
 
 #include <nestgrid/detail/geometry.hpp>
+#include <nestgrid/detail/same_library.hpp>
 
 namespace nestgrid {
 

@@ -10,4 +10,6 @@ void library_has_keys_of_128_bits() {}
 void library_has_keys_of_64_bits() {}
 #endif
 
+void NESTGRID_SAME_LIBRARY() {}
+
 }  // namespace nestgrid::detail

@@ -262,7 +262,7 @@ public:
     bool corners_bound_elements() const override { return error_ == NodeError::deviation; }
 
     double offset_bound(NodeKey node) const override {
-        return own_errors_ ? bound(node) : stop(node);
+        return own_errors_ ? double{bound(node)} : stop(node);
     }
     /// The bound of a node, for the intersection test.
     float bound(NodeKey node) const { return bfloat16_value(entries_.at(node).bound); }

@@ -16,8 +16,8 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <string_view>
 #include <type_traits>
-#include <typeinfo>
 #include <vector>
 
 #include <nestgrid/error.hpp>
@@ -66,6 +66,25 @@ const Element& element_of(const Handle& handle) {
     }
 }
 
+/// A type of elements, told apart without std::type_info, which -fno-rtti takes away.
+struct ElementType {
+    const void* mark;       ///< one address a type, and one more where a library hides its own
+    std::string_view name;  ///< the same in all libraries, unless it is anonymous
+
+    friend bool operator==(const ElementType& a, const ElementType& b) {
+        return a.mark == b.mark ||
+               (a.name == b.name && a.name.find("anonymous") == std::string_view::npos);
+    }
+};
+
+template <class Element>
+inline constexpr char element_mark{};
+
+template <class Element>
+ElementType element_type() {
+    return {&element_mark<Element>, std::string_view(__PRETTY_FUNCTION__)};
+}
+
 /// A vector of elements of one type.
 class ElementVector {
 public:
@@ -77,7 +96,7 @@ public:
     virtual std::size_t size() const = 0;
     virtual void clear() = 0;
     virtual std::size_t memory_bytes() const = 0;
-    virtual const std::type_info& type() const = 0;
+    virtual ElementType type() const = 0;
     virtual const void* data() const = 0;
 };
 
@@ -102,7 +121,7 @@ public:
     std::size_t size() const override { return elements_.size(); }
     void clear() override { elements_.clear(); }
     std::size_t memory_bytes() const override { return elements_.capacity() * sizeof(Element); }
-    const std::type_info& type() const override { return typeid(Element); }
+    ElementType type() const override { return element_type<Element>(); }
     const void* data() const override { return elements_.data(); }
 
 private:
@@ -142,7 +161,7 @@ public:
     template <class Element>
     std::span<const Element> as() const {
         if (!all_ || all_->size() == 0) return {};
-        if (all_->type() != typeid(Element)) {
+        if (all_->type() != detail::element_type<Element>()) {
             throw InvalidInput("the elements in the list are of another type than asked for");
         }
         return {static_cast<const Element*>(all_->data()), all_->size()};

@@ -156,7 +156,7 @@ template <class Function>
 void LatticeOctree<dim>::star_rows_of_plane(std::uint32_t step, unsigned odd, std::uint32_t plane,
                                             Function& function) const {
     const typename Lattice<dim>::PlaneOfNodes nodes{step, odd, plane, 2};
-    std::array<std::ptrdiff_t, max_corners> parents{};  // in tensor order
+    std::array<std::ptrdiff_t, static_cast<std::size_t>(max_corners)> parents{};  // in tensor order
     std::size_t parent_count = odd == 0 ? 0 : 1;
     for (std::size_t d = 0; d < size_; ++d) {
         if (!nodes.is_odd(d)) continue;
@@ -168,7 +168,7 @@ void LatticeOctree<dim>::star_rows_of_plane(std::uint32_t step, unsigned odd, st
     }
     this->for_each_row(nodes, [&](const std::array<std::uint32_t, 3>& x, std::size_t stride,
                                   std::size_t count, std::size_t outside) {
-        std::array<std::ptrdiff_t, max_corners> finer;
+        std::array<std::ptrdiff_t, static_cast<std::size_t>(max_corners)> finer;
         const std::size_t found = this->centres_around(x, step, finer.data());
         function(StarRow{.first = this->node_at(x),
                          .stride = stride,
@@ -186,7 +186,7 @@ template <class Function>
 void LatticeOctree<dim>::gather_cells_of_plane(std::uint32_t step, std::uint32_t plane,
                                                Function& function) const {
     constexpr unsigned all_odd = (1U << size_) - 1;
-    std::array<std::ptrdiff_t, max_new_nodes> made;
+    std::array<std::ptrdiff_t, static_cast<std::size_t>(max_new_nodes)> made;
     for (std::size_t k = 0; k < made.size(); ++k) {
         const NodeKey from_centre = half_key_steps_[k] - half_key_steps_[rule_->inside];
         made[k] = static_cast<std::ptrdiff_t>(from_centre) * static_cast<std::ptrdiff_t>(step);

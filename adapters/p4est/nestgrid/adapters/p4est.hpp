@@ -143,7 +143,8 @@ private:
     Map map_;
     Trees trees_;
     const Rule* rule_;
-    std::array<std::array<std::int8_t, 3>, max_new_nodes> new_node_{};  // in half lengths
+    std::array<std::array<std::int8_t, 3>, static_cast<std::size_t>(max_new_nodes)>
+        new_node_{};  // in half lengths
     std::vector<std::int8_t> orientation_;
 };
 

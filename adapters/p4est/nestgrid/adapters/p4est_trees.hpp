@@ -132,7 +132,7 @@ private:
     struct Image {
         std::uint32_t tree;
         /// Of each axis there: an axis here, 3 more where it runs backwards, low_ or high_.
-        std::array<std::uint8_t, dim> from;
+        std::array<std::uint8_t, static_cast<std::size_t>(dim)> from;
     };
 
     static unsigned digit(unsigned part, unsigned d) { return part / power_[d] % 3; }

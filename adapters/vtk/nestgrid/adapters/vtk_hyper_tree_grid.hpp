@@ -80,7 +80,7 @@ public:
         for (std::size_t k = 0; k < out.size(); ++k) out[k] = corner_key(e, k);
     }
     void new_keys(const Element& e, std::span<NodeKey> out) const {
-        std::array<Element, max_children> child;
+        std::array<Element, static_cast<std::size_t>(max_children)> child;
         children(e, child);
         for (std::size_t n = 0; n < out.size(); ++n) {
             const ChildCorner at = rule_->new_corner[n];

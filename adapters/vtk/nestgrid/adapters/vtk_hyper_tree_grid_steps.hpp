@@ -65,7 +65,7 @@ Hidden HyperTreeGrid<dim>::read_mask(const Element& e, bool masked) {
     }
     Hidden result = masked ? Hidden::wholly : Hidden::not_at_all;
     if (split(e) != nullptr) {
-        std::array<Element, max_children> child;
+        std::array<Element, static_cast<std::size_t>(max_children)> child;
         children(e, child);
         result = read_mask(child[0], masked);
         for (std::size_t c = 1; c < child.size(); ++c) {
