@@ -82,6 +82,15 @@ struct FlatTriangle {
         return std::abs(middle) <= reach;
     }
 
+    /// A linear function on the triangle, continued in its plane and constant across.
+    double interpolant(const std::array<double, 3>& at_corners, const Point& x) const {
+        const Point a = corner[1] - corner[0];
+        const Point b = corner[2] - corner[0];
+        const Point d = (1 / dot(normal, normal)) * (x - corner[0]);
+        return at_corners[0] + dot(cross(b, normal), d) * (at_corners[1] - at_corners[0]) +
+               dot(cross(normal, a), d) * (at_corners[2] - at_corners[0]);
+    }
+
     Triangle corner;
     Box box;
     Point normal;
