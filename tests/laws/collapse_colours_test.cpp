@@ -18,6 +18,7 @@
 
 #include "closedness.hpp"
 #include "families.hpp"
+#include "five_at_nodes.hpp"
 #include "is_affine.hpp"
 #include "refusal.hpp"
 #include "same_surface.hpp"
@@ -286,6 +287,68 @@ TYPED_TEST(CollapsedColours, OfLinearDataNeedFewTriangles) {
             EXPECT_LE(left(shading(h).surface), 40U);
         }
     }
+}
+
+/// Each component keeps an error of its own.
+TEST(CollapsedColours, KeepAnErrorForEachComponent) {
+    auto grid = BisectionTetrahedra::grids()[0];
+    refine_at_sphere(grid, 2 * BisectionTetrahedra::steps);
+    const auto centre = [](const Point& x) { return norm(x - Point{0.4, 0.5, 0.6}); };
+    std::vector<std::array<double, 5>> values;
+    for (const Point& x : grid.node_positions()) {
+        values.push_back({x[0], std::sin(7 * x[1]), 1000 * x[1] * x[2], 1, centre(x)});
+    }
+    const FiveAtNodes field(grid, std::move(values));
+    const auto h = erase(grid, field);
+    const HierarchicalIndicator indicator(h);
+    const Surface<3> drawn = slice(h, planes[0]).surface;
+    const std::vector<double> errors{0.1, 0.2, 80, 0.01, 0.03};
+    Surface<3> surface = drawn;
+    const Collapsed result = collapse_colours(surface, h, indicator, {.errors = errors});
+    EXPECT_EQ(result.exceeding, 0U);
+    EXPECT_LT(3 * surface.simplices.size(), drawn.simplices.size());
+    expect_same_support(surface, drawn);
+    expect_colours_kept(surface, drawn, h, errors, result);
+}
+
+/// Two sheets in one plane, back to back along their rim, keep it.
+TEST(CollapsedColours, KeepTheRimOfAFlatPillow) {
+    const LatticeBisection<3> grid({.samples = {5, 5, 5}});
+    const std::vector<float> values(125, 1.0F);
+    const LatticeField field(grid, std::span<const float>(values));
+    const HierarchicalIndicator indicator(grid, field);
+    Surface<3> pillow;
+    std::array<std::array<std::array<std::uint32_t, 5>, 5>, 2> vertex{};
+    for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t i = 0; i < 5; ++i) {
+            for (std::size_t j = 0; j < 5; ++j) {
+                const bool on_rim = i % 4 == 0 || j % 4 == 0;
+                vertex[side][i][j] = side == 1 && on_rim
+                                         ? vertex[0][i][j]
+                                         : static_cast<std::uint32_t>(pillow.vertices.size());
+                if (side == 1 && on_rim) continue;
+                pillow.vertices.push_back({static_cast<double>(i), static_cast<double>(j), 1.5});
+            }
+        }
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                const auto& v = vertex[side];
+                std::array<Surface<3>::Simplex, 2> both{{{v[i][j], v[i + 1][j], v[i + 1][j + 1]},
+                                                         {v[i][j], v[i + 1][j + 1], v[i][j + 1]}}};
+                for (auto& t : both) {
+                    if (side == 1) std::swap(t[1], t[2]);
+                    pillow.simplices.push_back(t);
+                }
+            }
+        }
+    }
+    pillow.attributes.assign(pillow.vertices.size(), 1);
+    const Surface<3> drawn = pillow;
+    collapse_colours(pillow, grid, field, indicator, {.errors = {0.1}});
+    EXPECT_LE(pillow.simplices.size(), 16U);
+    expect_same_support(pillow, drawn);
 }
 
 TEST(CollapsedColours, AreTheSameWithAnyNumberOfThreads) {
