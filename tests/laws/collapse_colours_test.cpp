@@ -353,7 +353,7 @@ TEST(CollapsedColours, KeepTheRimOfAFlatPillow) {
 
 TEST(CollapsedColours, AreTheSameWithAnyNumberOfThreads) {
     const Samples n{129, 129, 3};  // more than one block
-    const LatticeBisection<3> grid({.samples = n});
+    const LatticeOctree<3> grid({.samples = n});
     const SampledField data = sampled_fields(n)[1];
     const LatticeField field(grid, std::span<const float>(data.values));
     const auto h = erase(grid, field);
