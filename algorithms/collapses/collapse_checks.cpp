@@ -129,12 +129,11 @@ bool CollapseChecks::keeps_colours(const BlockMesh::Star& star, const CollapsePl
         return std::span(values.data(), values.size());
     };
     const std::span<const double> at_w(place.colours.data(), place.colours.size());
-    double greatest = 0;
     return std::all_of(star.begin(), star.end(), [&](const StarTriangle& t) {
         if (t.goes) return true;
         const Triangle x = rules_->in_space({place.x, mesh_->x(t.a), mesh_->x(t.b)});
         return rules_->field->keeps_colours(FlatTriangle(x),
-                                            {at_w, colours_of(t.a), colours_of(t.b)}, greatest);
+                                            {at_w, colours_of(t.a), colours_of(t.b)});
     });
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <boost/container/small_vector.hpp>
+
 #include <collapses/deformed_leaf.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
 
@@ -99,7 +101,25 @@ public:
         return true;
     }
 
+    bool keeps_without_bound() {
+        boost::container::small_vector<LinearColour, 2> linear;
+        for (std::size_t c = 0; c < leaves_.components(); ++c) {
+            linear.emplace_back(triangle_, colour(c));
+        }
+        const auto must_look = [&](const Box& box, std::size_t level, std::size_t group) {
+            return triangle_.may_meet(box) &&
+                   !check_.ranges_->keeps(level, group, box, triangle_.corner[0],
+                                          {linear.data(), linear.size()});
+        };
+        return leaves_.for_each_in_groups(must_look,
+                                          [&](const NearLeaf& leaf) { return keeps_in(leaf); });
+    }
+
 private:
+    std::array<double, 3> colour(std::size_t component) const {
+        const auto& [a, b, c] = *colours_;
+        return {a[component], b[component], c[component]};
+    }
     bool keeps_in(const NearLeaf& leaf) {
         if (!leaf.affine) return deformed_keeps(leaf);
         if (!section_.cut(leaf, check_.map(leaf), triangle_.corner)) return true;
@@ -118,9 +138,7 @@ private:
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             f.value[k] = leaves_.value(nodes[k], component);
         }
-        if (colours_ != nullptr) {
-            for (std::size_t i = 0; i < 3; ++i) f.colour[i] = (*colours_)[i][component];
-        }
+        if (colours_ != nullptr) f.colour = colour(component);
         return f;
     }
     bool deformed_keeps(const NearLeaf& leaf) {
@@ -180,6 +198,7 @@ FieldCheck::FieldCheck(const NearLeaves& leaves, Drawn drawn)
     : leaves_{&leaves},
       lattice_{drawn == Drawn::isovalue ? KuhnLattice::find(leaves) : std::nullopt} {
     if (lattice_) return;
+    if (drawn == Drawn::colours) ranges_.emplace(leaves);
     maps_.reserve(leaves.leaves().size());
     std::array<Point, max_corners> room;
     for (const NearLeaf& leaf : leaves.leaves()) {
@@ -200,6 +219,10 @@ bool FieldCheck::keeps_in_leaves(const FlatTriangle& triangle, double& greatest)
 bool FieldCheck::keeps_colours(const FlatTriangle& triangle, const CornerColours& colours,
                                double& greatest) const {
     return Judge(*this, triangle, &colours).keeps(greatest);
+}
+
+bool FieldCheck::keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const {
+    return Judge(*this, triangle, &colours).keeps_without_bound();
 }
 
 bool FieldCheck::keeps(const FlatTriangle& triangle, double& greatest) const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <collapses/kuhn_lattice.hpp>
+#include <collapses/leaf_ranges.hpp>
 #include <collapses/leaf_section.hpp>
 
 namespace nestgrid::engine {
@@ -38,6 +39,8 @@ public:
     /// \param greatest raised to an upper bound of what they differ by in these units, if they do
     bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours,
                        double& greatest) const;
+    /// The same for a triangle that takes the place of such ones, without the bound: faster.
+    bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const;
 
 private:
     class Judge;
@@ -45,6 +48,7 @@ private:
 
     const NearLeaves* leaves_;
     std::vector<AffineLeaf> maps_;        // by leaf, without a lattice; of bent ones meaningless
+    std::optional<LeafRanges> ranges_;    // of colours
     std::optional<KuhnLattice> lattice_;  // where the leaves are of that kind: faster
 };
 
