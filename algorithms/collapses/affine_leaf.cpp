@@ -2,13 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <collapses/affine_leaf.hpp>
 
+#include <cmath>
+
 namespace nestgrid::engine {
 
 AffineLeaf::AffineLeaf(Shape shape, std::span<const Point> corners) : origin_{corners[0]} {
-    const std::size_t up = shape == Shape::hexahedron ? 4 : 3;
     const Point a = corners[1] - origin_;
     const Point b = corners[2] - origin_;
-    const Point c = corners[up] - origin_;
+    const auto across = [&] {  // about as long as the leaf is wide
+        const Point normal = cross(a, b);
+        return (1 / std::sqrt(norm(normal))) * normal;
+    };
+    const std::size_t up = shape == Shape::hexahedron ? 4 : 3;
+    const Point c = topology(shape).dimension == 2 ? across() : corners[up] - origin_;
     row_ = {cross(b, c), cross(c, a), cross(a, b)};
     const double inverse = 1 / dot(a, row_[0]);
     for (Point& row : row_) row = inverse * row;

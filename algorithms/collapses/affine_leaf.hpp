@@ -10,7 +10,8 @@
 namespace nestgrid::engine {
 
 /// The affine map of a tetrahedron, prism or hexahedron from positions to reference coordinates,
-/// and distances from its faces in these.
+/// and distances from its faces in these. In a triangle or quadrilateral the third coordinate is
+/// the distance from its plane, in units of its width.
 class AffineLeaf {
 public:
     AffineLeaf(Shape shape, std::span<const Point> corners);
@@ -33,6 +34,7 @@ inline std::array<double, max_faces> face_distances(Shape shape, const Point& s)
     const auto [x, y, z] = s;
     if (shape == Shape::tetrahedron) return {1 - x - y - z, x, y, z};
     if (shape == Shape::prism) return {z, 1 - z, y, 1 - x - y, x};
+    if (shape == Shape::triangle) return {1 - x - y, x, y};
     return {x, 1 - x, y, 1 - y, z, 1 - z};
 }
 

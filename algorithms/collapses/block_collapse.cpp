@@ -12,7 +12,7 @@ void BlockCollapse::run() {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t a = corners[i];
             const std::uint32_t b = corners[(i + 1) % 3];
-            const bool border = mesh_->vertices[a].on_border() && mesh_->vertices[b].on_border();
+            const bool border = mesh_->vertices[a].on_border && mesh_->vertices[b].on_border;
             if (a < b || border) push(a, b);
         }
     }
@@ -27,37 +27,52 @@ void BlockCollapse::push(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t u = std::min(a, b);
     const std::uint32_t v = std::max(a, b);
     if (!mesh_->vertices[u].moves || !mesh_->vertices[v].moves) return;
-    Quadric quadric = mesh_->vertices[u].quadric;
-    quadric.add(mesh_->vertices[v].quadric);
-    const Places found = places(u, v, quadric);
+    const auto [found, least] = places(u, v);
     if (found.empty()) return;
     const Point along = mesh_->x(u) - mesh_->x(v);
     // The length decides between edges whose quadrics are equally small, as in a plane.
-    const double cost = std::max(quadric.at(found[0]), 0.0) + 1e-9 * dot(along, along);
-    edges_.push({cost, u, v, version_[u] + version_[v]});
+    edges_.push({std::max(least, 0.0) + 1e-9 * dot(along, along), u, v, version_[u] + version_[v]});
 }
 
-auto BlockCollapse::places(std::uint32_t u, std::uint32_t v, const Quadric& quadric) const
-    -> Places {
+auto BlockCollapse::places(std::uint32_t u, std::uint32_t v) const -> std::pair<Places, double> {
     const CollapsingVertex& a = mesh_->vertices[u];
     const CollapsingVertex& b = mesh_->vertices[v];
     const bool a_stays = !b.freedom.keeps(a.freedom);
     const bool b_stays = !a.freedom.keeps(b.freedom);
     if (a_stays && b_stays) return {};
-    if (a_stays) return {a.x};
-    if (b_stays) return {b.x};
+    Colours colours = a.colours;
+    colours.add(b.colours);
+    Quadric quadric = a.quadric;
+    quadric.add(b.quadric);
+    quadric.add(colours.quadric());
+    const auto fitting = [&](const Point& x) { return CollapsePlace{x, colours.best_at(x)}; };
+    const auto cost = [&](const CollapsePlace& place) {
+        return quadric.at(place.x) + colours.excess(place.x, place.colours);
+    };
+    Places result;
+    if (a_stays || b_stays) {
+        const CollapsingVertex& stays = a_stays ? a : b;
+        result.push_back(fitting(stays.x));
+        if (!stays.colours.values().empty()) result.push_back({stays.x, stays.colours.values()});
+        return {result, cost(result[0])};
+    }
     const Point middle = 0.5 * (a.x + b.x);
     Point best = quadric.least(middle, a.freedom);
     const Point off = best - middle;
     const Point along = a.x - b.x;
     if (!(dot(off, off) < 4 * dot(along, along))) best = middle;
-    std::array<std::pair<double, Point>, 3> others{
-        {{quadric.at(middle), middle}, {quadric.at(a.x), a.x}, {quadric.at(b.x), b.x}}};
+    using Other = std::pair<double, CollapsePlace>;
+    std::array<Other, 3> others;
+    std::size_t count = 0;
+    for (const CollapsePlace& place : {fitting(middle), CollapsePlace{a.x, a.colours.values()},
+                                       CollapsePlace{b.x, b.colours.values()}}) {
+        others[count++] = {cost(place), place};
+    }
     std::stable_sort(others.begin(), others.end(),
-                     [](const auto& x, const auto& y) { return x.first < y.first; });
-    Places result{best};
-    for (const auto& [cost, x] : others) result.push_back(x);
-    return result;
+                     [](const Other& x, const Other& y) { return x.first < y.first; });
+    result.push_back(fitting(best));
+    for (const auto& [of, place] : others) result.push_back(place);
+    return {result, cost(result[0])};
 }
 
 void BlockCollapse::attempt(std::uint32_t u, std::uint32_t v) {
@@ -66,13 +81,11 @@ void BlockCollapse::attempt(std::uint32_t u, std::uint32_t v) {
         ++counts_.refused_by_manifold;
         return;
     }
-    Quadric quadric = mesh_->vertices[u].quadric;
-    quadric.add(mesh_->vertices[v].quadric);
     Refusal refused = nullptr;
-    for (const Point& w : places(u, v, quadric)) {
-        refused = checks_.refuse(u, v, star_, w);
+    for (const CollapsePlace& place : places(u, v).first) {
+        refused = checks_.refuse(u, v, star_, place);
         if (refused != nullptr) continue;
-        mesh_->collapse(u, v, w);
+        mesh_->collapse(u, v, place);
         ++counts_.collapses;
         ++version_[u];
         version_[v] += 1U << 20U;  // no entry of an edge to it is valid any more

@@ -35,10 +35,11 @@ private:
         }
     };
     /// Places for the point that an edge becomes, in the order in which they are tried.
-    using Places = boost::container::static_vector<Point, 4>;
+    using Places = boost::container::static_vector<CollapsePlace, 4>;
 
     void push(std::uint32_t a, std::uint32_t b);
-    Places places(std::uint32_t u, std::uint32_t v, const Quadric& quadric) const;
+    /// \return the cost of the first place, too
+    std::pair<Places, double> places(std::uint32_t u, std::uint32_t v) const;
     void attempt(std::uint32_t u, std::uint32_t v);
 
     BlockMesh* mesh_;

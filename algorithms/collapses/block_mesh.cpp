@@ -45,7 +45,7 @@ bool BlockMesh::keeps_manifold(std::uint32_t u, std::uint32_t v, const Star& sta
     }
     if (opposite.empty() || opposite.size() > 2) return false;
     // An edge between two borders would join them.
-    const bool borders = vertices[u].on_border() && vertices[v].on_border();
+    const bool borders = vertices[u].on_border && vertices[v].on_border;
     if (borders && opposite.size() != 1) return false;
     const auto mark_around = [&](std::uint32_t centre, std::uint8_t mark) {
         for (const std::uint32_t t : around_[centre]) {
@@ -76,7 +76,7 @@ bool BlockMesh::keeps_manifold(std::uint32_t u, std::uint32_t v, const Star& sta
     return !(at_u && at_v);
 }
 
-void BlockMesh::collapse(std::uint32_t u, std::uint32_t v, const Point& x) {
+void BlockMesh::collapse(std::uint32_t u, std::uint32_t v, const CollapsePlace& place) {
     const auto drop = [](Around& list, std::uint32_t t) {
         list.erase(std::find(list.begin(), list.end(), t));
     };
@@ -100,9 +100,13 @@ void BlockMesh::collapse(std::uint32_t u, std::uint32_t v, const Point& x) {
     around_[u] = std::move(kept);
     CollapsingVertex& to = vertices[u];
     const CollapsingVertex& from = vertices[v];
-    to.x = position_[u] = x;
+    if (place.x != to.x) to.drawn = place.x == from.x ? from.drawn : CollapsingVertex::moved;
+    to.x = position_[u] = place.x;
     to.quadric.add(from.quadric);
+    to.colours.add(from.colours);
+    to.colours.set_values(place.colours);
     if (from.freedom.count() > to.freedom.count()) to.freedom = from.freedom;
+    to.on_border = to.on_border || from.on_border;
     to.at_boundary = to.at_boundary || from.at_boundary;
 }
 

@@ -14,8 +14,8 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include <collapses/colours.hpp>
 #include <collapses/near_parts.hpp>
-#include <collapses/quadric.hpp>
 
 namespace nestgrid::engine {
 
@@ -23,12 +23,20 @@ namespace nestgrid::engine {
 struct CollapsingVertex {
     Point x{};  ///< from the middle of the surface
     Quadric quadric;
+    Colours colours;  ///< none where the place alone counts
     Freedom freedom;
+    std::uint32_t drawn = moved;  ///< number of the vertex that was drawn there
     bool moves = true;
+    bool on_border = false;    ///< on an edge of one triangle only
     bool at_boundary = false;  ///< of the domain: not at a crack
 
-    /// Whether it is on an edge of one triangle only.
-    bool on_border() const { return !freedom.free(); }
+    static constexpr std::uint32_t moved = ~std::uint32_t{0};  // none was
+};
+
+/// Where the point that an edge becomes may be, and which colours it may have.
+struct CollapsePlace {
+    Point x;
+    ColourValues colours;
 };
 
 /// A triangle around the ends of an edge that is to be collapsed into a point w.
@@ -73,8 +81,8 @@ public:
     /// Whether the surface stays a manifold of the same kind: the vertices that both ends have for
     /// neighbours are those opposite the edge (the link condition).
     bool keeps_manifold(std::uint32_t u, std::uint32_t v, const Star& star);
-    /// Moves u to x, lets v vanish in it, and joins their quadrics.
-    void collapse(std::uint32_t u, std::uint32_t v, const Point& x);
+    /// Moves u to a place, lets v vanish in it, and joins their quadrics.
+    void collapse(std::uint32_t u, std::uint32_t v, const CollapsePlace& place);
     /// The neighbours of a vertex, each once.
     std::span<const std::uint32_t> neighbours(std::uint32_t vertex);
 

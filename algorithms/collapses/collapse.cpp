@@ -119,11 +119,7 @@ void renew(Surface<3>& surface, const Hierarchy<Real>& hierarchy, std::size_t at
         engine::ProbedColours(surface, data).colour_from(0);
     }
     if (normals) settle_normals(surface);
-    surface.element_of.clear();
-    surface.reference.clear();
-    surface.elements = {};
-    surface.shape_of.clear();
-    surface.level_of.clear();
+    engine::forget_elements(surface);
 }
 
 }  // namespace
@@ -142,12 +138,14 @@ Collapsed collapse(Surface<3>& surface, const Hierarchy<Real>& hierarchy, double
         .field = checks.field(),
         .strong = checks.strong(),
         .distance = checks.distance(),
+        .coloured = false,
         .middle = 0.5 * (box.low + box.high),
         .least_cosine = std::cos(options.turn * std::numbers::pi / 180),
         .least_shape = options.shape};
     const std::size_t attributes = surface.attributes.size() / surface.vertices.size();
     const bool normals = !surface.normals.empty();
-    engine::CollapseRounds rounds(surface, checks.leaves(), rules, executor);
+    engine::CollapseRounds rounds(surface, rules, executor);
+    rounds.keep_borders(checks.leaves());
     judge(surface, checks, executor, [&](std::size_t t, bool keeps) {
         if (!keeps) rounds.fasten(t);
     });

@@ -24,7 +24,7 @@ double shape_of(const Triangle& x) {
 CollapseChecks::CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region)
     : mesh_{&mesh}, rules_{&rules}, region_{region}, in_star_(mesh.triangles.size(), 0) {
     if (rules.distance != nullptr) distance_.emplace(*rules.distance);
-    sort_into_cells();
+    if (!rules.coloured) sort_into_cells();
 }
 
 /// Makes cells as large as the triangles are now, and forgets where they were.
@@ -49,6 +49,7 @@ void CollapseChecks::note_done(const BlockMesh::Star& star, std::uint32_t vertex
                 parts.swap(*given++);
         }
     }
+    if (rules_->coloured) return;
     for (const std::uint32_t t : mesh_->around(vertex)) {
         cells_.add({t, Box::around(mesh_->corners(t))});
     }
@@ -56,7 +57,12 @@ void CollapseChecks::note_done(const BlockMesh::Star& star, std::uint32_t vertex
 }
 
 Refusal CollapseChecks::refuse(std::uint32_t u, std::uint32_t v, const BlockMesh::Star& star,
-                               const Point& w) {
+                               const CollapsePlace& place) {
+    const Point& w = place.x;
+    if (rules_->coloured) {
+        if (!region_.contains(w) || !keeps_shape(star, w)) return &Collapsed::refused_by_shape;
+        return keeps_colours(star, place) ? nullptr : &Collapsed::refused_by_field;
+    }
     const Freedom& of_u = mesh_->vertices[u].freedom;
     const Freedom& of_v = mesh_->vertices[v].freedom;
     const bool off_boundary = keeps_off_boundary(of_u.count() < of_v.count() ? of_v : of_u, star);
@@ -115,6 +121,20 @@ bool CollapseChecks::keeps_field(const BlockMesh::Star& star, const Point& w) co
     return rules_->field->keeps_fan({.w = w + rules_->middle,
                                      .ring = {ring.data(), ring.size()},
                                      .side = {sides.data(), sides.size()}});
+}
+
+bool CollapseChecks::keeps_colours(const BlockMesh::Star& star, const CollapsePlace& place) const {
+    const auto colours_of = [&](std::uint32_t vertex) {
+        const ColourValues& values = mesh_->vertices[vertex].colours.values();
+        return std::span(values.data(), values.size());
+    };
+    const std::span<const double> at_w(place.colours.data(), place.colours.size());
+    return std::all_of(star.begin(), star.end(), [&](const StarTriangle& t) {
+        if (t.goes) return true;
+        const Triangle x = rules_->in_space({place.x, mesh_->x(t.a), mesh_->x(t.b)});
+        return rules_->field->keeps_colours(FlatTriangle(x),
+                                            {at_w, colours_of(t.a), colours_of(t.b)});
+    });
 }
 
 /// The tetrahedra between the old triangles and the new point, in space.

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Judges collapses: each must keep the shape, what is asked for, be it the error and the sides or a
-// distance, and must not let the surface cross itself. BlockMesh judges whether the surface stays a
+// distance, and must not let the surface cross itself. Or it must keep the error of colours, on a
+// surface that consists of the same points as before. BlockMesh judges whether the surface stays a
 // manifold.
 #pragma once
 
@@ -21,7 +22,9 @@ struct CollapseRules {
     const FieldCheck* field;        ///< null where no error is kept
     const StrongNodes* strong;      ///< likewise
     const DistanceCheck* distance;  ///< null where none is kept
-    Point middle;                   ///< of the surface, from which positions in blocks are taken
+    /// Vertices have colours, which the field check judges, and keep on planes of the surface.
+    bool coloured;
+    Point middle;  ///< of the surface, from which positions in blocks are taken
     double least_cosine;
     double least_shape;
 
@@ -38,9 +41,10 @@ public:
     /// \param region convex, where the block alone may change anything
     CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region);
 
-    /// Judges the collapse of an edge into w.
+    /// Judges the collapse of an edge into a point.
     /// \param star of the edge
-    Refusal refuse(std::uint32_t u, std::uint32_t v, const BlockMesh::Star& star, const Point& w);
+    Refusal refuse(std::uint32_t u, std::uint32_t v, const BlockMesh::Star& star,
+                   const CollapsePlace& place);
     /// Tells that a collapse into a vertex was done, which refuse() was asked for last.
     /// \param mesh that of the constructor
     void note_done(const BlockMesh::Star& star, std::uint32_t vertex, BlockMesh& mesh);
@@ -51,6 +55,7 @@ private:
     bool keeps_off_boundary(const Freedom& freedom, const BlockMesh::Star& star) const;
     bool keeps_shape(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_field(const BlockMesh::Star& star, const Point& w) const;
+    bool keeps_colours(const BlockMesh::Star& star, const CollapsePlace& place) const;
     bool keeps_sides(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_distance(const BlockMesh::Star& star, const Point& w);
     bool keeps_domain(const BlockMesh::Star& star, const Point& w) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <collapses/block_collapse.hpp>
+#include <collapses/support.hpp>
 #include <surfaces/triangle_sides.hpp>
 
 namespace nestgrid::engine {
@@ -103,8 +104,8 @@ void add_counts(Collapsed& sum, const Collapsed& part) {
 
 }  // namespace
 
-CollapseRounds::CollapseRounds(Surface<3>& surface, const NearLeaves& leaves,
-                               const CollapseRules& rules, const Executor& executor)
+CollapseRounds::CollapseRounds(Surface<3>& surface, const CollapseRules& rules,
+                               const Executor& executor)
     : surface_{&surface},
       rules_{&rules},
       executor_{&executor},
@@ -112,25 +113,44 @@ CollapseRounds::CollapseRounds(Surface<3>& surface, const NearLeaves& leaves,
       triangles_(surface.simplices) {
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         vertices_[v].x = surface.vertices[v] - rules.middle;
+        vertices_[v].drawn = static_cast<std::uint32_t>(v);
     }
+    for (const auto& edge : surface.boundary) {
+        for (const std::uint32_t v : edge) vertices_[v].at_boundary = true;
+    }
+    for (const OrientedSide& side : open_sides(triangles_)) {
+        vertices_[side.low].on_border = vertices_[side.high].on_border = true;
+    }
+}
+
+void CollapseRounds::keep_borders(const NearLeaves& leaves) {
     find_borders(leaves);
     add_quadrics();
 }
 
+void CollapseRounds::keep_support(std::span<const double> errors) {
+    errors_.assign(errors.begin(), errors.end());
+    const auto freedom = support_freedom(*surface_);
+    std::vector<double> values(errors_.size());
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        for (std::size_t c = 0; c < errors_.size(); ++c) {
+            values[c] = surface_->attributes[v * errors_.size() + c] / errors_[c];
+        }
+        vertices_[v].colours = Colours(values);
+        vertices_[v].freedom = freedom[v];
+    }
+    add_colours();
+}
+
 /// Finds where vertices on the border may move: not at all at cracks inside the domain.
 void CollapseRounds::find_borders(const NearLeaves& leaves) {
-    for (const auto& edge : surface_->boundary) {
-        for (const std::uint32_t v : edge) vertices_[v].at_boundary = true;
-    }
-    for (const OrientedSide& side : open_sides(triangles_)) {
-        for (const std::uint32_t v : {side.low, side.high}) {
-            CollapsingVertex& vertex = vertices_[v];
-            if (vertex.on_border()) continue;
-            if (vertex.at_boundary)
-                vertex.freedom = border_freedom(leaves, surface_->vertices[v]);
-            else
-                vertex.freedom.fasten();
-        }
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        CollapsingVertex& vertex = vertices_[v];
+        if (!vertex.on_border) continue;
+        if (vertex.at_boundary)
+            vertex.freedom = border_freedom(leaves, surface_->vertices[v]);
+        else
+            vertex.freedom.fasten();
     }
 }
 
@@ -157,6 +177,21 @@ void CollapseRounds::add_quadrics() {
         Quadric quadric;
         quadric.add_plane(normal, dot(normal, x[side.low].x), dot(along, along));
         for (const std::uint32_t v : c) vertices_[v].quadric.add(quadric);
+    }
+}
+
+void CollapseRounds::add_colours() {
+    const auto& x = vertices_;
+    std::vector<ColourValues> values;
+    for (const CollapsingVertex& vertex : x) values.push_back(vertex.colours.values());
+    const auto of = [&](std::uint32_t v) { return std::span(values[v].data(), values[v].size()); };
+    for (const Corners& c : triangles_) {
+        const Triangle corners{x[c[0]].x, x[c[1]].x, x[c[2]].x};
+        const double area = 0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0]));
+        if (!(area > 0)) continue;
+        for (const std::uint32_t v : c) {
+            vertices_[v].colours.add_triangle(corners, area, {of(c[0]), of(c[1]), of(c[2])});
+        }
     }
 }
 
@@ -237,11 +272,27 @@ void CollapseRounds::erase_gone() {
     }
 }
 
+void CollapseRounds::put_attributes() {
+    if (errors_.empty()) return;
+    std::vector<double>& attributes = surface_->attributes;
+    attributes.clear();
+    for (const CollapsingVertex& vertex : vertices_) {
+        for (std::size_t c = 0; c < errors_.size(); ++c) {
+            attributes.push_back(errors_[c] * vertex.colours.values()[c]);
+        }
+    }
+}
+
 void CollapseRounds::finish() {
     erase_gone();
     Surface<3>& s = *surface_;
-    s.vertices = positions();
-    for (Point& x : s.vertices) x = x + rules_->middle;
+    put_attributes();
+    std::vector<Point> x = positions();
+    for (std::size_t v = 0; v < x.size(); ++v) {
+        const std::uint32_t drawn = vertices_[v].drawn;
+        x[v] = drawn == CollapsingVertex::moved ? x[v] + rules_->middle : s.vertices[drawn];
+    }
+    s.vertices = std::move(x);
     s.simplices = triangles_;
     s.boundary.clear();
     for (const OrientedSide& side : open_sides(triangles_)) {

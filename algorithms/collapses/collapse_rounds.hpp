@@ -20,9 +20,13 @@ namespace nestgrid::engine {
 class CollapseRounds {
 public:
     /// Borrows the rules and the surface, of which it changes vertices and triangles.
-    CollapseRounds(Surface<3>& surface, const NearLeaves& leaves, const CollapseRules& rules,
-                   const Executor& executor);
+    CollapseRounds(Surface<3>& surface, const CollapseRules& rules, const Executor& executor);
 
+    /// Lets vertices move anywhere but on borders, where they keep on the domain's boundary.
+    void keep_borders(const NearLeaves& leaves);
+    /// Lets vertices move on the planes of the surface, with the attributes for colours.
+    /// \param errors by attribute, which are the units of colours
+    void keep_support(std::span<const double> errors);
     /// The parts of another surface that are near to each triangle; none at first.
     std::vector<std::vector<NearPart>>& parts() { return parts_; }
     /// Fastens the vertices of a triangle for good.
@@ -30,7 +34,8 @@ public:
         for (const std::uint32_t v : triangles_[triangle]) vertices_[v].moves = false;
     }
     Collapsed run();
-    /// Puts what is left into the surface: vertices, triangles and boundary edges.
+    /// Puts what is left into the surface: vertices, triangles, boundary edges, and attributes
+    /// where they are colours.
     void finish();
 
 private:
@@ -38,6 +43,8 @@ private:
 
     void find_borders(const NearLeaves& leaves);
     void add_quadrics();
+    void add_colours();
+    void put_attributes();
     std::vector<Point> positions() const;
     void run_round(const Blocks& blocks, Collapsed& counts);
     void erase_gone();
@@ -48,6 +55,16 @@ private:
     std::vector<CollapsingVertex> vertices_;
     std::vector<Corners> triangles_;
     std::vector<std::vector<NearPart>> parts_;  // by triangle, or empty
+    std::vector<double> errors_;                // units of colours
 };
+
+/// Empties what a surface tells of the elements that it was drawn in.
+inline void forget_elements(Surface<3>& surface) {
+    surface.element_of.clear();
+    surface.reference.clear();
+    surface.elements = {};
+    surface.shape_of.clear();
+    surface.level_of.clear();
+}
 
 }  // namespace nestgrid::engine

@@ -13,11 +13,13 @@ struct AsHexahedron {
     std::array<int, 6> face;  // -1 where the face is an edge or a point
 };
 
+constexpr AsHexahedron quadrilateral{{0, 1, 2, 3, 0, 1, 2, 3}, {0, 1, 2, 3, -1, -1}};
 constexpr AsHexahedron pyramid{{0, 1, 2, 3, 4, 4, 4, 4}, {4, 2, 1, 3, 0, -1}};
 constexpr AsHexahedron prism{{0, 1, 2, 2, 3, 4, 5, 5}, {4, 3, 2, -1, 0, 1}};
 constexpr AsHexahedron hexahedron{{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5}};
 
 const AsHexahedron& as_hexahedron(Shape shape) {
+    if (shape == Shape::quadrilateral) return quadrilateral;
     if (shape == Shape::pyramid) return pyramid;
     return shape == Shape::prism ? prism : hexahedron;
 }
@@ -81,11 +83,38 @@ auto DeformedLeaf::child(const Part& part, unsigned number) -> Part {
     return half;
 }
 
+/// A bound of |U - C| on the triangle: the lesser one of those with and without the multiple of the
+/// distance that fits best.
+double DeformedLeaf::greatest_on(const Part& part, const FlatTriangle& triangle) {
+    std::array<double, 8> distance{};
+    double mean_distance = 0;
+    double mean_value = 0;
+    double most = 0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        distance[i] = dot(triangle.normal, part.x[i] - triangle.corner[0]);
+        mean_distance += 0.125 * distance[i];
+        mean_value += 0.125 * part.value[i];
+        most = std::max(most, std::abs(part.value[i]));
+    }
+    double both = 0;
+    double square = 0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double off = distance[i] - mean_distance;
+        both += off * (part.value[i] - mean_value);
+        square += off * off;
+    }
+    if (!(square > 0)) return most;
+    double rest = 0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        rest = std::max(rest, std::abs(part.value[i] - both / square * distance[i]));
+    }
+    return std::min(most, rest);
+}
+
 bool DeformedLeaf::keeps(const Part& part, const FlatTriangle& triangle, double error, int halvings,
                          double& greatest) {
     if (!may_meet(part, triangle)) return true;
-    double most = 0;
-    for (const double value : part.value) most = std::max(most, std::abs(value));
+    const double most = greatest_on(part, triangle);
     if (most <= error && part.boundary == 0) {
         greatest = std::max(greatest, most);
         return true;

@@ -8,9 +8,10 @@
 
 namespace nestgrid::engine {
 
-/// Prisms and pyramids are hexahedra with corners that coincide, and U and the map are trilinear on
-/// each. So both are within the hull of their values at the corners, on every box of the reference
-/// hexahedron.
+/// Quadrilaterals, prisms and pyramids are hexahedra with corners that coincide, and U and the map
+/// are trilinear on each. So both are within the hull of their values at the corners, on every box
+/// of the reference hexahedron. A multiple of the distance from the triangle's plane may be taken
+/// off: it is 0 on the triangle.
 class DeformedLeaf {
 public:
     /// \param corners, values of the leaf
@@ -33,6 +34,7 @@ private:
         unsigned boundary;  // faces of the hexahedron, one bit each
     };
 
+    static double greatest_on(const Part& part, const FlatTriangle& triangle);
     static bool may_meet(const Part& part, const FlatTriangle& triangle);
     static bool keeps(const Part& part, const FlatTriangle& triangle, double error, int halvings,
                       double& greatest);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <boost/container/small_vector.hpp>
+
 #include <collapses/deformed_leaf.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
 
@@ -14,16 +16,20 @@ namespace {
 constexpr int most_halvings = 5;            // of a polygon's triangles
 constexpr double least_covered = 1 - 1e-6;  // of a triangle's area by leaves
 
-/// U - C on an affine leaf.
+/// U - C on an affine leaf, or U without a colour, at points of a triangle. These are given in
+/// parts of its corners.
 struct LeafFunction {
     Shape shape;
-    std::array<double, max_corners> value;
+    std::array<double, max_corners> value;  // at the leaf's corners
+    std::array<Point, 3> reference;         // of the triangle's corners in the leaf
+    std::array<double, 3> colour{};         // at the triangle's corners, where there is one
 
-    double operator()(const Point& s) const {
-        const auto weight = shape_functions(shape, s);
+    double operator()(const LeafSection::Corner& c) const {
+        const auto weight =
+            shape_functions(shape, c[0] * reference[0] + c[1] * reference[1] + c[2] * reference[2]);
         double sum = 0;
         for (std::size_t k = 0; k < topology(shape).corners; ++k) sum += weight[k] * value[k];
-        return sum;
+        return sum - (c[0] * colour[0] + c[1] * colour[1] + c[2] * colour[2]);
     }
 };
 
@@ -79,8 +85,13 @@ bool cubic_keeps(const LeafFunction& f, const Triangle& s, double error, int hal
 /// Looks at the leaves that one triangle meets.
 class FieldCheck::Judge {
 public:
-    Judge(const FieldCheck& check, const FlatTriangle& triangle)
-        : check_{check}, leaves_{*check.leaves_}, triangle_{triangle}, limit_{leaves_.error()} {}
+    /// \param colours null where an isosurface is drawn
+    Judge(const FieldCheck& check, const FlatTriangle& triangle, const CornerColours* colours)
+        : check_{check},
+          leaves_{*check.leaves_},
+          triangle_{triangle},
+          colours_{colours},
+          limit_{leaves_.error()} {}
 
     bool keeps(double& greatest) {
         const bool kept = leaves_.for_each([&](const Box& box) { return triangle_.may_meet(box); },
@@ -90,33 +101,71 @@ public:
         return true;
     }
 
+    bool keeps_without_bound() {
+        boost::container::small_vector<LinearColour, 2> linear;
+        for (std::size_t c = 0; c < leaves_.components(); ++c) {
+            linear.emplace_back(triangle_, colour(c));
+        }
+        const auto must_look = [&](const Box& box, std::size_t level, std::size_t group) {
+            return triangle_.may_meet(box) &&
+                   !check_.ranges_->keeps(level, group, box, triangle_.corner[0],
+                                          {linear.data(), linear.size()});
+        };
+        return leaves_.for_each_in_groups(must_look,
+                                          [&](const NearLeaf& leaf) { return keeps_in(leaf); });
+    }
+
 private:
+    std::array<double, 3> colour(std::size_t component) const {
+        const auto& [a, b, c] = *colours_;
+        return {a[component], b[component], c[component]};
+    }
     bool keeps_in(const NearLeaf& leaf) {
         if (!leaf.affine) return deformed_keeps(leaf);
         if (!section_.cut(leaf, check_.map(leaf), triangle_.corner)) return true;
-        if (section_.leaves_domain()) return false;
+        // Coloured triangles keep where they are, in the domain.
+        if (colours_ == nullptr && section_.leaves_domain()) return false;
         covered_ += section_.area();
-        const LeafFunction f = function_on(leaf);
-        return leaf.shape == Shape::tetrahedron ? affine_keeps(f) : polynomial_keeps(f);
+        for (std::size_t c = 0; c < leaves_.components(); ++c) {
+            const LeafFunction f = function_on(leaf, c);
+            if (!(is_simplex(leaf.shape) ? affine_keeps(f) : polynomial_keeps(f))) return false;
+        }
+        return true;
     }
-    LeafFunction function_on(const NearLeaf& leaf) const {
-        LeafFunction f{leaf.shape, {}};
+    LeafFunction function_on(const NearLeaf& leaf, std::size_t component) const {
+        LeafFunction f{leaf.shape, {}, section_.reference()};
         const auto nodes = leaves_.nodes(leaf);
-        for (std::size_t k = 0; k < nodes.size(); ++k) f.value[k] = leaves_.value(nodes[k]);
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            f.value[k] = leaves_.value(nodes[k], component);
+        }
+        if (colours_ != nullptr) f.colour = colour(component);
         return f;
     }
     bool deformed_keeps(const NearLeaf& leaf) {
         deformed_ = true;
         std::array<Point, max_corners> room;
         const auto x = leaves_.corners(leaf, room);
-        return DeformedLeaf(leaf, x, function_on(leaf).value).keeps(triangle_, limit_, greatest_);
+        NearLeaf inside = leaf;
+        if (colours_ != nullptr) inside.boundary = 0;
+        for (std::size_t c = 0; c < leaves_.components(); ++c) {
+            LeafFunction f = function_on(leaf, c);
+            if (colours_ != nullptr) {
+                for (std::size_t k = 0; k < x.size(); ++k) {
+                    f.value[k] -= triangle_.interpolant(f.colour, x[k]);
+                }
+            }
+            if (!DeformedLeaf(inside, x, f.value).keeps(triangle_, limit_, greatest_)) return false;
+        }
+        return true;
     }
     bool affine_keeps(const LeafFunction& f) {
         std::array<double, 3> at{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const auto& [x, y, z] = section_.reference()[i];
-            at[i] = f.value[0] + x * (f.value[1] - f.value[0]) + y * (f.value[2] - f.value[0]) +
-                    z * (f.value[3] - f.value[0]);
+            at[i] = f.value[0] - f.colour[i];
+            const std::size_t corners = topology(f.shape).corners;
+            for (std::size_t d = 0; d + 1 < corners; ++d) {
+                at[i] += section_.reference()[i][d] * (f.value[d + 1] - f.value[0]);
+            }
         }
         for (const auto& c : section_.corners()) {
             const double off = std::abs(c[0] * at[0] + c[1] * at[1] + c[2] * at[2]);
@@ -127,7 +176,8 @@ private:
     }
     bool polynomial_keeps(const LeafFunction& f) {
         for (std::size_t i = 2; i < section_.corners().size(); ++i) {
-            const Triangle s{section_.at(0), section_.at(i - 1), section_.at(i)};
+            const auto& corner = section_.corners();
+            const Triangle s{corner[0], corner[i - 1], corner[i]};
             if (!cubic_keeps(f, s, limit_, most_halvings, greatest_)) return false;
         }
         return true;
@@ -136,6 +186,7 @@ private:
     const FieldCheck& check_;
     const NearLeaves& leaves_;
     const FlatTriangle& triangle_;
+    const CornerColours* colours_;
     double limit_;
     LeafSection section_;
     double covered_ = 0;
@@ -143,9 +194,11 @@ private:
     bool deformed_ = false;
 };
 
-FieldCheck::FieldCheck(const NearLeaves& leaves)
-    : leaves_{&leaves}, lattice_{KuhnLattice::find(leaves)} {
+FieldCheck::FieldCheck(const NearLeaves& leaves, Drawn drawn)
+    : leaves_{&leaves},
+      lattice_{drawn == Drawn::isovalue ? KuhnLattice::find(leaves) : std::nullopt} {
     if (lattice_) return;
+    if (drawn == Drawn::colours) ranges_.emplace(leaves);
     maps_.reserve(leaves.leaves().size());
     std::array<Point, max_corners> room;
     for (const NearLeaf& leaf : leaves.leaves()) {
@@ -160,7 +213,16 @@ AffineLeaf FieldCheck::map(const NearLeaf& leaf) const {
 }
 
 bool FieldCheck::keeps_in_leaves(const FlatTriangle& triangle, double& greatest) const {
-    return Judge(*this, triangle).keeps(greatest);
+    return Judge(*this, triangle, nullptr).keeps(greatest);
+}
+
+bool FieldCheck::keeps_colours(const FlatTriangle& triangle, const CornerColours& colours,
+                               double& greatest) const {
+    return Judge(*this, triangle, &colours).keeps(greatest);
+}
+
+bool FieldCheck::keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const {
+    return Judge(*this, triangle, &colours).keeps_without_bound();
 }
 
 bool FieldCheck::keeps(const FlatTriangle& triangle, double& greatest) const {

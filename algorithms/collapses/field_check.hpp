@@ -1,24 +1,32 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether |U - C| <= e on triangles, exactly: not at some of their points.
+// Whether |U - C| <= e on triangles, exactly: not at some of their points. Or, where colours are
+// drawn linearly on triangles, whether each of them differs from U by at most its error.
 #pragma once
 
 #include <collapses/kuhn_lattice.hpp>
+#include <collapses/leaf_ranges.hpp>
 #include <collapses/leaf_section.hpp>
 
 namespace nestgrid::engine {
 
-/// Checks triangles against the leaves near an isovalue, which it borrows.
+/// Colours at the corners of a triangle, each the components of one corner, in units of their
+/// errors.
+using CornerColours = std::array<std::span<const double>, 3>;
+
+/// Checks triangles against the leaves near an isovalue, or along a surface, which it borrows.
 ///
 /// In a simplex U is affine on a triangle, so |U - C| is greatest at a corner of the polygon that
 /// the triangle has in common with the simplex. In an affine prism or hexahedron U is a cubic
 /// polynomial on that polygon, and within its Bernstein coefficients on parts of it. In other
 /// leaves U is within its corner values on parts of the leaf. Where parts are too small to go on,
-/// the triangle is refused.
+/// the triangle is refused. A colour is affine on the triangle and changes nothing of this.
 class FieldCheck {
 public:
-    explicit FieldCheck(const NearLeaves& leaves);
+    enum class Drawn { isovalue, colours };
+
+    explicit FieldCheck(const NearLeaves& leaves, Drawn drawn = Drawn::isovalue);
 
     /// Whether a triangle keeps |U - C| <= e and lies in the domain.
     /// \param greatest raised to an upper bound of |U - C| on the triangle, if it does
@@ -27,6 +35,12 @@ public:
     bool keeps_fan(const Fan& fan) const;
     /// Looks at the leaves one by one in any case.
     bool keeps_in_leaves(const FlatTriangle& triangle, double& greatest) const;
+    /// Whether each colour, linear on a triangle in the domain, keeps within its error of U.
+    /// \param greatest raised to an upper bound of what they differ by in these units, if they do
+    bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours,
+                       double& greatest) const;
+    /// The same for a triangle that takes the place of such ones, without the bound: faster.
+    bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const;
 
 private:
     class Judge;
@@ -34,6 +48,7 @@ private:
 
     const NearLeaves* leaves_;
     std::vector<AffineLeaf> maps_;        // by leaf, without a lattice; of bent ones meaningless
+    std::optional<LeafRanges> ranges_;    // of colours
     std::optional<KuhnLattice> lattice_;  // where the leaves are of that kind: faster
 };
 

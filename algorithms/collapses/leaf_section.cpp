@@ -8,6 +8,8 @@ namespace {
 
 /// By how much, in reference coordinates, rounding may move a corner off a face.
 constexpr double rounding = 1e-10;
+/// By how much a triangle may leave the plane of a leaf of dimension 2.
+constexpr double off_plane = 1e-6;
 
 }  // namespace
 
@@ -49,6 +51,11 @@ bool LeafSection::cut(const NearLeaf& leaf, const AffineLeaf& map, const Triangl
         reference_[i] = map.reference(x[i]);
         const auto distance = face_distances(leaf.shape, reference_[i]);
         for (std::size_t f = 0; f < faces; ++f) from[f][i] = distance[f];
+    }
+    if (topology(leaf.shape).dimension == 2) {
+        for (const Point& s : reference_) {
+            if (!(std::abs(s[2]) <= off_plane)) return false;
+        }
     }
     for (std::size_t f = 0; f < faces; ++f) {
         const auto& [a, b, c] = from[f];

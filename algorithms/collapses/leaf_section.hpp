@@ -16,7 +16,8 @@ public:
     using Corner = std::array<double, 3>;
 
     /// Cuts a triangle. The same object may be used again and again.
-    /// \return whether triangle and leaf have an area in common, or a line or a point
+    /// \return whether triangle and leaf have an area in common, or a line or a point. A triangle
+    ///         across the plane of a leaf of dimension 2 has nothing in common with it
     bool cut(const NearLeaf& leaf, const AffineLeaf& map, const Triangle& x);
 
     std::span<const Corner> corners() const { return {corner_->data(), count_}; }
@@ -26,11 +27,6 @@ public:
     bool leaves_domain() const { return leaves_domain_; }
     /// The triangle's corners in reference coordinates.
     const std::array<Point, 3>& reference() const { return reference_; }
-    /// A corner of the polygon in reference coordinates.
-    Point at(std::size_t i) const {
-        const auto& [a, b, c] = (*corner_)[i];
-        return a * reference_[0] + b * reference_[1] + c * reference_[2];
-    }
 
 private:
     using Polygon = std::array<Corner, 3 + max_faces>;

@@ -12,6 +12,13 @@
 
 namespace nestgrid::engine {
 
+namespace {
+
+constexpr std::array<double, 1> as_they_are{1};  // the units of component 0
+constexpr double touching = 1e-9;                // of an element, by which it may miss a triangle
+
+}  // namespace
+
 /// Goes down to the leaves that are wanted and keeps them.
 template <class Real>
 class NearLeaves::Search final : public Visitor<Real> {
@@ -21,8 +28,14 @@ public:
     /// Whether an element, and what is below it, may be wanted.
     using Wants = std::function<bool(const View&, const Split&)>;
 
-    Search(const Walk<Real>& walk, double isovalue, Wants wants, NearLeaves& found)
-        : walk_{walk}, isovalue_{isovalue}, wants_{std::move(wants)}, found_{found} {}
+    Search(const Walk<Real>& walk, double isovalue, std::size_t first,
+           std::span<const double> units, Wants wants, NearLeaves& found)
+        : walk_{walk},
+          isovalue_{isovalue},
+          first_{first},
+          units_{units},
+          wants_{std::move(wants)},
+          found_{found} {}
 
     Decision inspect(const View& view, const Split& split) override {
         return {wants_(view, split) ? Visit::descend : Visit::skip, 0};
@@ -35,7 +48,7 @@ public:
         const std::span<const Point> corners(x.data(), count);
         const auto first = static_cast<std::uint32_t>(found_.nodes_.size());
         for (std::size_t k = 0; k < count; ++k) {
-            found_.nodes_.push_back(number(key[k], x[k], view.value[k * walk_.components()]));
+            found_.nodes_.push_back(number(key[k], x[k], view.value + k * walk_.components()));
         }
         const bool affine = view.shape != Shape::pyramid && is_affine(view.shape, corners);
         const auto boundary = static_cast<std::uint8_t>(walk_.boundary(view));
@@ -44,18 +57,23 @@ public:
     }
 
 private:
-    std::uint32_t number(NodeKey key, const Point& x, Real value) {
+    std::uint32_t number(NodeKey key, const Point& x, const Real* values) {
         const auto next = static_cast<std::uint32_t>(found_.position_.size());
         const auto [at, is_new] = number_.insert(key, next);
         if (is_new) {
             found_.position_.push_back(x);
-            found_.value_.push_back(static_cast<double>(value) - isovalue_);
+            for (std::size_t c = 0; c < units_.size(); ++c) {
+                found_.value_.push_back((static_cast<double>(values[first_ + c]) - isovalue_) /
+                                        units_[c]);
+            }
         }
         return *at;
     }
 
     const Walk<Real>& walk_;
     double isovalue_;
+    std::size_t first_;              // component that is kept
+    std::span<const double> units_;  // by component that is
     Wants wants_;
     NearLeaves& found_;
     KeyTable<NodeKey, std::uint32_t> number_;
@@ -63,16 +81,16 @@ private:
 
 /// \param wants wants(walk, view, split) is told of elements
 template <class Real, class Wants>
-NearLeaves NearLeaves::collect(const Hierarchy<Real>& hierarchy, double isovalue, double error,
-                               const Bounds& bounds, const Wants& wants) {
-    hierarchy.facts().require_dimension(3);
+NearLeaves NearLeaves::collect(const Hierarchy<Real>& hierarchy, double isovalue, std::size_t first,
+                               std::span<const double> units, const Bounds& bounds,
+                               const Wants& wants) {
     require_same_epoch(hierarchy, bounds);
     NearLeaves found;
-    found.error_ = error;
+    found.components_ = units.size();
     found.may_hide_ = hierarchy.offers(Feature::hidden);
     const Walk<Real> walk(hierarchy, {.positions = true}, bounds.hanging());
     Search<Real> search(
-        walk, isovalue,
+        walk, isovalue, first, units,
         [&](const ElementView<Real>& view, const Split& split) { return wants(walk, view, split); },
         found);
     walk.run(search);
@@ -83,6 +101,7 @@ NearLeaves NearLeaves::collect(const Hierarchy<Real>& hierarchy, double isovalue
 template <class Real>
 NearLeaves NearLeaves::find(const Hierarchy<Real>& hierarchy, double isovalue, double error,
                             const Bounds& bounds) {
+    hierarchy.facts().require_dimension(3);
     const auto near = [&](const Walk<Real>& walk, const ElementView<Real>& view,
                           const Split& split) {
         const double bound = split.rule == nullptr ? 0 : bounds.bound(*split.rule, split.keys);
@@ -95,13 +114,16 @@ NearLeaves NearLeaves::find(const Hierarchy<Real>& hierarchy, double isovalue, d
         }
         return least - bound <= error && greatest + bound >= -error;
     };
-    return collect(hierarchy, isovalue, error, bounds, near);
+    NearLeaves found = collect(hierarchy, isovalue, 0, as_they_are, bounds, near);
+    found.error_ = error;
+    return found;
 }
 
 template <class Real>
 NearLeaves NearLeaves::find_at_boundary(const Hierarchy<Real>& hierarchy,
                                         const ClosestPoints& surface, double distance,
                                         const Bounds& bounds) {
+    hierarchy.facts().require_dimension(3);
     std::uint32_t near = 0;
     const auto wanted = [&](const Walk<Real>& walk, const ElementView<Real>& view,
                             const Split& split) {
@@ -113,7 +135,38 @@ NearLeaves NearLeaves::find_at_boundary(const Hierarchy<Real>& hierarchy,
         const Box box = Box::around(std::span(x).first(view.corner_count()));
         return surface.is_within(0.5 * (box.low + box.high), 0.5 * box.diameter() + distance, near);
     };
-    return collect(hierarchy, 0, 0, bounds, wanted);
+    return collect(hierarchy, 0, 0, as_they_are, bounds, wanted);
+}
+
+template <class Real>
+NearLeaves NearLeaves::find_along(const Hierarchy<Real>& hierarchy, const Surface<3>& surface,
+                                  std::span<const double> errors, const Bounds& bounds) {
+    const auto components = static_cast<std::size_t>(hierarchy.facts().components);
+    const std::size_t first = components - errors.size();
+    std::vector<FlatTriangle> triangles;
+    BoxTree tree;
+    for (const auto& [a, b, c] : surface.simplices) {
+        triangles.emplace_back(
+            Triangle{surface.vertices[a], surface.vertices[b], surface.vertices[c]});
+        tree.add(triangles.back().box);
+    }
+    tree.finish();
+    // Where positions are those of eq. (1), what is below an element lies between its corners.
+    const bool nested = !hierarchy.offers(Feature::new_positions);
+    const auto touched = [&](const Walk<Real>& walk, const ElementView<Real>& view,
+                             const Split& split) {
+        if (split.rule != nullptr && !nested) return true;
+        std::array<NodeKey, max_corners> key;
+        std::array<Point, max_corners> x;
+        walk.corners(view, key.data(), x.data());
+        Box box = Box::around(std::span(x).first(view.corner_count()));
+        box.widen(touching * box.diameter());
+        return !tree.for_each([&](const Box& other) { return other.meets(box); },
+                              [&](std::size_t t) { return !triangles[t].may_meet(box); });
+    };
+    NearLeaves found = collect(hierarchy, 0, first, errors, bounds, touched);
+    found.error_ = 1;
+    return found;
 }
 
 std::span<const Point> NearLeaves::corners(const NearLeaf& leaf,
@@ -135,5 +188,9 @@ template NearLeaves NearLeaves::find_at_boundary(const Hierarchy<float>&, const 
                                                  double, const Bounds&);
 template NearLeaves NearLeaves::find_at_boundary(const Hierarchy<double>&, const ClosestPoints&,
                                                  double, const Bounds&);
+template NearLeaves NearLeaves::find_along(const Hierarchy<float>&, const Surface<3>&,
+                                           std::span<const double>, const Bounds&);
+template NearLeaves NearLeaves::find_along(const Hierarchy<double>&, const Surface<3>&,
+                                           std::span<const double>, const Bounds&);
 
 }  // namespace nestgrid::engine

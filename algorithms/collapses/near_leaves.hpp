@@ -7,9 +7,12 @@
 // does not leave them but through the boundary of the domain: on a face to any other leaf
 // |U - C| > e. Memory is that of the leaves through which the surface passes, and of those around
 // it to a distance at which U differs from C by e.
+//
+// Leaves along a surface that is given keep several components, each in units of its own error.
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/hierarchy.hpp>
 
 #include <distances/closest_points.hpp>
@@ -39,13 +42,24 @@ public:
                                        const ClosestPoints& surface, double distance,
                                        const Bounds& bounds);
 
+    /// Walks to the leaves that a surface passes through or touches, in a hierarchy of dimension 2
+    /// or 3. Values are those of the last components, in units of their errors; error() is 1.
+    /// \param errors no more than the field has components
+    /// \param bounds of the same grid
+    template <class Real>
+    static NearLeaves find_along(const Hierarchy<Real>& hierarchy, const Surface<3>& surface,
+                                 std::span<const double> errors, const Bounds& bounds);
+
     double error() const { return error_; }
+    std::size_t components() const { return components_; }
     /// Whether leaves may be missing because they are hidden.
     bool may_hide() const { return may_hide_; }
     std::size_t node_count() const { return position_.size(); }
     const Point& position(std::uint32_t node) const { return position_[node]; }
-    /// U - C
-    double value(std::uint32_t node) const { return value_[node]; }
+    /// U - C, or a component in units of its error.
+    double value(std::uint32_t node, std::size_t component = 0) const {
+        return value_[node * components_ + component];
+    }
     std::span<const NearLeaf> leaves() const { return leaves_; }
     std::span<const std::uint32_t> nodes(const NearLeaf& leaf) const {
         return std::span(nodes_).subspan(leaf.first, topology(leaf.shape).corners);
@@ -59,16 +73,23 @@ public:
     bool for_each(const Meets& meets, const Function& function) const {
         return tree_.for_each(meets, [&](std::size_t i) { return function(leaves_[i]); });
     }
+    /// The same, with meets(box, level, group) as of BoxTree::for_each_in_groups().
+    template <class Meets, class Function>
+    bool for_each_in_groups(const Meets& meets, const Function& function) const {
+        return tree_.for_each_in_groups(meets, [&](std::size_t i) { return function(leaves_[i]); });
+    }
     std::size_t memory_bytes() const;
 
 private:
     template <class Real>
     class Search;
     template <class Real, class Wants>
-    static NearLeaves collect(const Hierarchy<Real>& hierarchy, double isovalue, double error,
-                              const Bounds& bounds, const Wants& wants);
+    static NearLeaves collect(const Hierarchy<Real>& hierarchy, double isovalue, std::size_t first,
+                              std::span<const double> units, const Bounds& bounds,
+                              const Wants& wants);
 
     double error_ = 0;
+    std::size_t components_ = 1;
     bool may_hide_ = false;
     std::vector<Point> position_;
     std::vector<double> value_;

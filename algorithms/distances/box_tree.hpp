@@ -82,6 +82,15 @@ struct FlatTriangle {
         return std::abs(middle) <= reach;
     }
 
+    /// A linear function on the triangle, continued in its plane and constant across.
+    double interpolant(const std::array<double, 3>& at_corners, const Point& x) const {
+        const Point a = corner[1] - corner[0];
+        const Point b = corner[2] - corner[0];
+        const Point d = (1 / dot(normal, normal)) * (x - corner[0]);
+        return at_corners[0] + dot(cross(b, normal), d) * (at_corners[1] - at_corners[0]) +
+               dot(cross(normal, a), d) * (at_corners[2] - at_corners[0]);
+    }
+
     Triangle corner;
     Box box;
     Point normal;
@@ -90,6 +99,8 @@ struct FlatTriangle {
 
 class BoxTree {
 public:
+    static constexpr std::size_t fan = 4;  ///< items in a group, and groups in one above
+
     /// Adds the box of the next item.
     void add(const Box& box) {
         if (count_ % fan == 0) groups_.emplace_back();
@@ -111,6 +122,15 @@ public:
     /// it returns false. \return whether it never did
     template <class Meets, class Function>
     bool for_each(const Meets& meets, const Function& function) const {
+        const auto of_box = [&](const Box& box, std::size_t /*level*/, std::size_t /*group*/) {
+            return meets(box);
+        };
+        return for_each_in_groups(of_box, function);
+    }
+    /// The same, and meets(box, level, group) is told of which group the box is: items number
+    /// fan * group and following on level 0, groups of the level below on the others.
+    template <class Meets, class Function>
+    bool for_each_in_groups(const Meets& meets, const Function& function) const {
         for (std::size_t i = 0; i < levels_.back().size(); ++i) {
             if (!visit(levels_.size() - 1, i, meets, function)) return false;
         }
@@ -123,12 +143,10 @@ public:
     }
 
 private:
-    static constexpr std::size_t fan = 4;
-
     template <class Meets, class Function>
     bool visit(std::size_t level, std::size_t group, const Meets& meets,
                const Function& function) const {
-        if (!meets(levels_[level][group])) return true;
+        if (!meets(levels_[level][group], level, group)) return true;
         const std::size_t count = level == 0 ? count_ : levels_[level - 1].size();
         const std::size_t last = std::min(count, (group + 1) * fan);
         for (std::size_t i = group * fan; i < last; ++i) {

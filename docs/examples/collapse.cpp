@@ -8,10 +8,12 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
+#include <nestgrid/algorithms/collapse_colours.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/measured_error.hpp>
+#include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
 #include "bucky_ball.hpp"
@@ -34,6 +36,14 @@ int main() {
     // [collapse]
     std::printf("%zu triangles, then %zu, |U - C| <= %.3f\n", drawn, surface.simplices.size(),
                 collapsed.error);
+    // [colours]
+    const Plane plane({16, 16, 16}, {1, 2, 3});
+    Surface<3> coloured = slice(grid, field, plane, deviations, {.threshold = error / 2}).surface;
+    const std::size_t in_slice = coloured.simplices.size();
+    const Collapsed kept = collapse_colours(coloured, grid, field, deviations, {.errors = {error}});
+    // [colours]
+    std::printf("a slice of %zu triangles, then %zu, colours within %.3f\n", in_slice,
+                coloured.simplices.size(), kept.error);
     // [measure]
     const auto whole = isosurface(grid, field, isovalue).surface;
     const MeasuredError measured = measure_error(surface, whole, grid, field, isovalue);

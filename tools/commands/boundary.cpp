@@ -12,6 +12,7 @@ struct BoundaryArguments {
     LensText lens;
     TimeOptions time;
     bool outlines = false;
+    bool collapses = false;
     double colour_tolerance = 0;
 };
 
@@ -30,6 +31,7 @@ Command add_boundary(CLI::App& program) {
     add_colour_option(*boundary, o->colour_tolerance);
     add_time_options(*boundary, o->time);
     add_lens_options(*boundary, o->lens);
+    add_collapse_option(*boundary, o->collapses);
     add_read_options(*boundary, o->input);
     return {boundary, [o](Report& report) {
                 const nestgrid::detail::Everywhere everywhere;
@@ -39,7 +41,8 @@ Command add_boundary(CLI::App& program) {
                                .outlines = o->outlines,
                                .empty = "the hierarchy has no boundary",
                                .lens = parse(o->lens),
-                               .colour_tolerance = o->colour_tolerance},
+                               .colour_tolerance = o->colour_tolerance,
+                               .collapses = o->collapses},
                               o->time, report);
             }};
 }

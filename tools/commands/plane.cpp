@@ -17,6 +17,7 @@ struct PlaneArguments {
     TimeOptions time;
     double scale = 0;
     bool outlines = false;
+    bool collapses = false;
     double colour_tolerance = 0;
 };
 
@@ -41,6 +42,7 @@ Command add(CLI::App& program, const char* name, const char* what, const char* e
     if (!lifted) add_colour_option(*command, o->colour_tolerance);
     add_time_options(*command, o->time);
     add_lens_options(*command, o->lens);
+    add_collapse_option(*command, o->collapses);
     add_read_options(*command, o->input);
     return {command, [o, lifted](Report& report) {
                 if (!std::isfinite(o->scale) || (lifted && o->scale == 0)) {
@@ -52,7 +54,8 @@ Command add(CLI::App& program, const char* name, const char* what, const char* e
                                .flat = false,
                                .empty = "the hierarchy has no elements",
                                .lens = parse(o->lens),
-                               .colour_tolerance = o->colour_tolerance},
+                               .colour_tolerance = o->colour_tolerance,
+                               .collapses = o->collapses},
                               o->time, report);
             }};
 }

@@ -19,6 +19,7 @@ struct SliceArguments {
     TimeOptions time;
     bool cap = false;
     bool outlines = false;
+    bool collapses = false;
     double colour_tolerance = 0;
     std::optional<double> isovalue;
 };
@@ -36,7 +37,8 @@ void run_slice(SliceArguments& o, Report& report) {
                                .normal = f.normal,
                                .empty = "the slice does not meet the domain",
                                .lens = parse(o.lens),
-                               .colour_tolerance = o.colour_tolerance};
+                               .colour_tolerance = o.colour_tolerance,
+                               .collapses = o.collapses};
     draw_coloured(o.input, o.surface, what, o.time, report);
 }
 
@@ -69,6 +71,7 @@ Command add_slice(CLI::App& program) {
     add_colour_option(*slice, o->colour_tolerance)->group("Slice");
     add_time_options(*slice, o->time);
     add_lens_options(*slice, o->lens);
+    add_collapse_option(*slice, o->collapses);
     add_read_options(*slice, o->input);
     return {slice, [o](Report& report) { run_slice(*o, report); }};
 }

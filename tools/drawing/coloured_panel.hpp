@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
@@ -26,6 +27,7 @@ struct Drawn {
     nestgrid::Surface<3> isosurface;  ///< beside a slice
     nestgrid::SurfaceReport isosurface_report;
     nestgrid::Polylines isolines;
+    std::optional<nestgrid::Collapsed> collapsed;
     double seconds = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include <nestgrid/algorithms/collapse_colours.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
@@ -34,6 +35,9 @@ void check(const ColouredSurface& what, const SurfaceOptions& options,
     facts.require_dimension(in_space ? 3 : 2);
     if (what.colour_tolerance > 0 && !options.budgets.empty()) {
         throw nestgrid::InvalidInput("--max-triangles excludes --colour-tolerance");
+    }
+    if (what.collapses && options.command->count("--error") == 0) {
+        throw nestgrid::InvalidInput("--collapse needs an --error to keep");
     }
 }
 
@@ -94,8 +98,14 @@ public:
         indicators.with_criteria([&](const auto& criterion_at) {
             const auto take_at = [&](double threshold, const nestgrid::TriangleBudget& search) {
                 tell(false);
-                take(draw(search, threshold,
-                          [&](Drawn& d) { draw_with(criterion_at(threshold), d); }));
+                take(draw(search, threshold, [&](Drawn& d) {
+                    if (!what_.collapses || !(threshold > 0)) {
+                        return draw_with(criterion_at(threshold), d);
+                    }
+                    d.threshold = threshold / 2;
+                    draw_with(criterion_at(threshold / 2), d);
+                    collapse_one(threshold, d);
+                }));
             };
             for (const std::int64_t budget : options_.budgets) {
                 tell(true);
@@ -123,7 +133,7 @@ private:
     }
 
     nestgrid::Slice draw_exactly() const {
-        nestgrid::Slice drawn = what_.function == nullptr ? triangles()
+        nestgrid::Slice drawn = what_.function == nullptr ? triangles(0)
                                                           : slice(hierarchy_, *what_.function,
                                                                   {.cap = what_.cap}, executor_);
         refine(drawn.surface);
@@ -136,6 +146,13 @@ private:
         if (what_.colour_tolerance > 0) {
             refine_colours(surface, hierarchy_, what_.colour_tolerance, with...);
         }
+    }
+    /// Takes edges away within an error, and tells it.
+    void collapse_one(double error, Drawn& d) const {
+        d.threshold = error;
+        d.collapsed = collapse_colours(d.slice.surface, hierarchy_, moment_.indicators().bounds(),
+                                       {.errors = {error}, .scale = what_.scale}, executor_);
+        d.collapsed->hand_to(d.slice, d.slice.surface_error);
     }
     /// The least threshold at which the surface keeps within a number of triangles.
     template <class CriterionAt>
@@ -188,7 +205,10 @@ private:
         } else if (what_.function != nullptr) {
             drawn.slice = slice(hierarchy_, *what_.function, criterion, bounds, options, executor_);
         } else {
-            drawn.slice = triangles(criterion, bounds);
+            drawn.slice = triangles(drawn.threshold, criterion, bounds);
+        }
+        if (what_.collapses && what_.scale == 0) {
+            refine_colours(drawn.slice.surface, hierarchy_, drawn.threshold, criterion, bounds);
         }
         refine(drawn.slice.surface, criterion, bounds);
         if (!drawn.isosurface.attributes.empty()) refine(drawn.isosurface, criterion, bounds);
@@ -196,8 +216,9 @@ private:
 
     /// The grid of dimension 2.
     template <class... With>
-    nestgrid::Slice triangles(const With&... with) const {
-        const nestgrid::ShadingOptions options;
+    nestgrid::Slice triangles(double threshold, const With&... with) const {
+        nestgrid::ShadingOptions options;
+        if (what_.collapses) options.flatness = threshold;
         nestgrid::Shading s =
             what_.scale == 0 ? shading(hierarchy_, with..., options, executor_)
                              : height_field(hierarchy_, what_.scale, with..., options, executor_);
@@ -221,6 +242,9 @@ Row row_of(const Drawn& d, const ColouredSurface& what) {
         row.add("isosurface_triangles", d.isosurface_report.triangles);
         row.add("isosurface_open_edges", d.isosurface_report.open_edges);
         row.add("isosurface_area", d.isosurface_report.area);
+    }
+    if (d.collapsed) {
+        row.add("collapses", d.collapsed->collapses).add("exceeding", d.collapsed->exceeding);
     }
     row.add("boundary_edges", d.report.boundary_edges);
     row.add("inspect_calls", d.slice.counts.calls).add("visited", d.slice.counts.visited);
@@ -383,6 +407,19 @@ CLI::Option* add_colour_option(CLI::App& command, double& tolerance) {
                     "split triangles until colours follow the data within this")
         ->type_name("NUMBER")
         ->check(positive_number);
+}
+
+void add_collapse_option(CLI::App& command, bool& collapses) {
+    CLI::Option* const collapse =
+        command.add_flag("--collapse", collapses,
+                         "take edges away while the --error is kept, in place: some times fewer "
+                         "triangles, some times the time");
+    for (const char* const other : {"--threshold", "--max-triangles", "--outlines", "--lens",
+                                    "--colour-tolerance", "--with-isosurface"}) {
+        if (CLI::Option* const option = command.get_option_no_throw(other)) {
+            collapse->excludes(option);
+        }
+    }
 }
 
 void draw_coloured(Input& input, SurfaceOptions& options, const ColouredSurface& what,

@@ -29,10 +29,16 @@ struct ColouredSurface {
     std::optional<LensRequest> lens{};
     /// Triangles are split until colours follow the data within this; 0 splits none.
     double colour_tolerance = 0;
+    /// Whether edges are collapsed while colours keep within the thresholds. What is drawn first has
+    /// half of them.
+    bool collapses = false;
 };
 
 /// Adds the option for ColouredSurface::colour_tolerance.
 CLI::Option* add_colour_option(CLI::App& command, double& tolerance);
+
+/// Adds the option for ColouredSurface::collapses, which excludes others that are there already.
+void add_collapse_option(CLI::App& command, bool& collapses);
 
 /// Draws, writes, paints and prints the surface at each threshold or budget, of the field or at
 /// times between its frames.

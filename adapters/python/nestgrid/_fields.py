@@ -160,6 +160,7 @@ class Field:
         plane=optional(shape(("the point", 3), ("the normal", 3))),
         sphere=optional(shape(("the centre", 3), ("the radius", 0))),
         cylinder=optional(shape(("the point", 3), ("the axis", 3), ("the radius", 0))),
+        collapse=flag,
     )
     def slice(
         self,
@@ -173,6 +174,7 @@ class Field:
         blend: float = 1,
         lens: LensLike | None = None,
         error: float | None = None,
+        collapse: bool = False,
         normals: bool = False,
         elements: bool = False,
         threads: int = 0,
@@ -182,6 +184,7 @@ class Field:
         plane     (point, normal), 3 numbers each; the normal of any length
         sphere    (centre, radius), 3 numbers and one, in units of length
         cylinder  (point on the axis, axis, radius), 3 numbers, 3 of any length, and one
+        collapse  whether to take edges away while error, which must be given, is kept in place
 
         Raises InvalidInput unless there is one of plane, sphere and cylinder, and as isosurface().
         """
@@ -191,9 +194,11 @@ class Field:
             raise InvalidInput("slice(): a slice needs one of plane, sphere and cylinder")
         ((name, parts),) = shapes
         function = getattr(_nestgrid, name)(*parts)
+        _require_error(collapse, error, lens)
         projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
+        options = (normals, elements, collapse)
         return Surface._of(
-            _nestgrid.slice(self._source, function, normals, elements, projection, threads), self
+            _nestgrid.slice(self._source, function, *options, projection, threads), self
         )
 
     @takes(values=numbers)
@@ -219,7 +224,7 @@ class Field:
             _nestgrid.isolines(self._source, several(values), projection, threads), self
         )
 
-    @takes(scale=optional(number), flatness=not_negative)
+    @takes(scale=optional(number), flatness=not_negative, collapse=flag)
     def height_field(
         self,
         scale: float | None = 1,
@@ -230,6 +235,7 @@ class Field:
         blend: float = 1,
         lens: LensLike | None = None,
         error: float | None = None,
+        collapse: bool = False,
         elements: bool = False,
         threads: int = 0,
     ) -> Surface:
@@ -238,13 +244,15 @@ class Field:
         scale     units of length per unit of the data; None: the triangles stay in the plane
         flatness  at least 0, in the units of the data: quadrilaterals that differ by more from two
                   triangles get a vertex in their middle
+        collapse  whether to take edges away while error, which must be given, is kept
 
         Raises InvalidInput also for a field of dimension 3.
         """
+        _require_error(collapse, error, lens)
         projection = _projection(threshold, None, indicator, blend, lens, error)
+        options = (scale, flatness, elements, collapse)
         return Surface._of(
-            _nestgrid.height_field(self._source, scale, flatness, elements, projection, threads),
-            self,
+            _nestgrid.height_field(self._source, *options, projection, threads), self
         )
 
     @takes(points=numbers)
@@ -324,6 +332,11 @@ def _surface_projection(
     compiled = lens._lens if isinstance(lens, Lens) else None
     measured: Literal["error", "slope"] = "slope" if error is None else "error"
     return _nestgrid.Projection(value, None, measured, blend, compiled)
+
+
+def _require_error(collapse: bool, error: float | None, lens: LensLike | None) -> None:
+    if collapse and (error is None or lens is not None):
+        raise InvalidInput("collapse needs an error, and no lens")
 
 
 def _projection(

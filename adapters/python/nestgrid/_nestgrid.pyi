@@ -194,6 +194,7 @@ def slice(
     function: LevelFunction,
     normals: bool,
     elements: bool,
+    collapses: bool,
     projection: Projection,
     threads: int,
 ) -> Surface: ...
@@ -205,6 +206,7 @@ def height_field(
     scale: float | None,
     flatness: float,
     elements: bool,
+    collapses: bool,
     projection: Projection,
     threads: int,
 ) -> Surface: ...

@@ -162,14 +162,15 @@ void bind_draws(py::module_& m) {
     m.def(
         "slice",
         [](const SourcePointer& source, const std::shared_ptr<LevelFunction>& function,
-           bool normals, bool elements, const Projection& projection, int threads) {
-            const SurfaceRequest request{.normals = normals, .elements = elements};
+           bool normals, bool elements, bool collapses, const Projection& projection, int threads) {
+            const SurfaceRequest request{
+                .normals = normals, .elements = elements, .collapses = collapses};
             return drawn(threads, [source, function, request, projection](const Call& call) {
                 return draw_slice(*source, *function, request, projection, call);
             });
         },
         py::arg("source"), py::arg("function"), py::arg("normals"), py::arg("elements"),
-        py::arg("projection"), py::arg("threads"));
+        py::arg("collapses"), py::arg("projection"), py::arg("threads"));
     m.def(
         "isolines",
         [](const SourcePointer& source, const std::vector<double>& values,
@@ -182,14 +183,14 @@ void bind_draws(py::module_& m) {
     m.def(
         "height_field",
         [](const SourcePointer& source, std::optional<double> scale, double flatness, bool elements,
-           const Projection& projection, int threads) {
-            return drawn(
-                threads, [source, scale, flatness, elements, projection](const Call& call) {
-                    return draw_height_field(*source, scale, flatness, elements, projection, call);
-                });
+           bool collapses, const Projection& projection, int threads) {
+            const SurfaceRequest request{.elements = elements, .collapses = collapses};
+            return drawn(threads, [source, scale, flatness, request, projection](const Call& call) {
+                return draw_height_field(*source, scale, flatness, request, projection, call);
+            });
         },
         py::arg("source"), py::arg("scale"), py::arg("flatness"), py::arg("elements"),
-        py::arg("projection"), py::arg("threads"));
+        py::arg("collapses"), py::arg("projection"), py::arg("threads"));
     m.def("probe", &probe_array, py::arg("source"), py::arg("points"), py::arg("projection"),
           py::arg("threads"));
 }

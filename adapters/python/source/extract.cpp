@@ -6,9 +6,11 @@
 
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
+#include <nestgrid/algorithms/collapse_colours.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/error.hpp>
@@ -211,9 +213,17 @@ Drawn draw_slice(const Source& source, const LevelFunction& function, const Surf
                                           projection.max_triangles, options, call.executor());
                 });
             }
-            return drawn_of(slice(hierarchy, function, criterion_at(search.threshold),
-                                  criteria.bounds(), options, call.executor()),
-                            search);
+            const double error = search.threshold;
+            const auto criterion = criterion_at(request.collapses ? error / 2 : error);
+            Slice drawn =
+                slice(hierarchy, function, criterion, criteria.bounds(), options, call.executor());
+            if (request.collapses && error > 0 && !drawn.cancelled) {
+                refine_colours(drawn.surface, hierarchy, error / 2, criterion, criteria.bounds());
+                collapse_colours(drawn.surface, hierarchy, criteria.bounds(), {.errors = {error}},
+                                 call.executor())
+                    .hand_to(drawn, drawn.surface_error);
+            }
+            return drawn_of(std::move(drawn), search);
         });
     });
 }
@@ -234,22 +244,33 @@ DrawnLines draw_isolines(const Source& source, std::span<const double> values,
 }
 
 Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
-                        bool elements, const Projection& projection, const Call& call) {
+                        const SurfaceRequest& request, const Projection& projection,
+                        const Call& call) {
     return call.with(source.hierarchy(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(2);
         const Criteria criteria(source, projection, call);
+        const double error = criteria.threshold();
+        const double first = request.collapses ? error / 2 : error;
         const ShadingOptions options{
-            .flatness = flatness, .elements = elements, .progress = progress_of(call)};
+            .flatness = request.collapses ? std::min(flatness, first) : flatness,
+            .elements = request.elements,
+            .progress = progress_of(call)};
         return criteria.with_criteria([&](const auto& criterion_at) {
-            const auto s = criterion_at(criteria.threshold());
+            const auto s = criterion_at(first);
             Shading result =
                 scale ? height_field(hierarchy, *scale, s, criteria.bounds(), options,
                                      call.executor())
                       : shading(hierarchy, s, criteria.bounds(), options, call.executor());
+            if (request.collapses && error > 0 && !result.cancelled) {
+                double surface_error = 0;
+                collapse_colours(result.surface, hierarchy, criteria.bounds(),
+                                 {.errors = {error}, .scale = scale.value_or(0)}, call.executor())
+                    .hand_to(result, surface_error);
+            }
             return Drawn{static_cast<const ErrorBounds&>(result),
                          std::move(result.surface),
                          result.counts,
-                         criteria.threshold(),
+                         error,
                          std::numeric_limits<double>::infinity(),
                          {},
                          result.cancelled};

@@ -60,7 +60,8 @@ struct SurfaceRequest {
     bool elements = false;
     bool at_nodes = false;
     bool finest_cuts = false;
-    bool collapses = false;       ///< needs the indicator "error", or a distance that is kept
+    /// Needs the indicator "error", or a distance that is kept; but for isosurfaces "deviation".
+    bool collapses = false;
     bool keeps_distance = false;  ///< needs the indicator "slope"
 };
 
@@ -76,7 +77,8 @@ DrawnLines draw_isolines(const Source& source, std::span<const double> values,
 /// \param scale nothing: the shading in the plane
 /// \throw InvalidInput, GridError as height_field()
 Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
-                        bool elements, const Projection& projection, const Call& call);
+                        const SurfaceRequest& request, const Projection& projection,
+                        const Call& call);
 /// \throw InvalidInput, GridError as probe()
 ProbeResult probe_points(const Source& source, std::span<const Point> points,
                          const Projection& projection, const Call& call);

@@ -294,6 +294,34 @@ def test_an_error_that_is_asked_for_is_kept(gyroid):
             volume.isosurface(0.5, collapse=True, **wrong)
 
 
+def test_collapsed_colours_keep_their_place_and_error() -> None:
+    at = np.linspace(0, 1, 33)
+    x, y, z = np.meshgrid(at, at, at, indexing="ij")
+    samples = np.sin(5 * x) + y * z
+    volume = nestgrid.Volume(samples)
+    whole = volume.slice(plane=((16, 16, 16), (1, 2, 3)))
+    few = volume.slice(plane=((16, 16, 16), (1, 2, 3)), error=0.05, collapse=True)
+    assert len(few.triangles) < len(whole.triangles) / 10
+    assert few.error_bound <= 0.05
+    corners = few.vertices[few.triangles]
+    colours = few.attributes[few.triangles, 0]
+    off = volume.probe(corners.mean(axis=1)) - colours.mean(axis=1)
+    assert np.abs(off).max() <= 0.05 + 1e-9
+    assert np.abs((few.vertices - 16) @ np.array((1, 2, 3))).max() < 1e-9
+
+    picture = nestgrid.Volume(np.ascontiguousarray(samples[:, :, 16]))
+    for scale in (None, 2.5):
+        graph = picture.height_field(scale, error=0.05, collapse=True)
+        assert len(graph.triangles) < len(picture.height_field(scale, error=0.05).triangles)
+        lift = 0 if scale is None else scale * graph.attributes[:, 0]
+        assert np.abs(graph.vertices[:, 2] - lift).max() < 1e-9
+        assert graph.error_bound <= 0.05
+    with refused("collapse needs an error"):
+        volume.slice(plane=((16, 16, 16), (1, 2, 3)), collapse=True)
+    with refused("collapse needs an error"):
+        picture.height_field(collapse=True)
+
+
 def test_a_distance_that_is_asked_for_is_kept_about():
     x, y, z = np.mgrid[-1:1:33j, -1:1:33j, -1:1:33j]
     radius = np.sqrt(x * x + y * y + z * z).astype("float32")
