@@ -93,10 +93,12 @@ TEST_F(CTable, WithAWrongRuleIsRefusedWithASentence) {
               halves + "the shape 12 does not exist");
     EXPECT_EQ(refused_with([](auto& p) { p.rule.child_count = 1; }),
               halves + "volume lost: the children hold 0.500000 of their father");
-    EXPECT_EQ(refused_with([](auto& p) { p.rule.child_count = 65; }),
-              halves + "65 children, not 1 to 64");
-    EXPECT_EQ(refused_with([](auto& p) { p.rule.new_node_count = -1; }),
-              halves + "-1 new nodes, not 0 to 64");
+    EXPECT_EQ(
+        refused_with([](auto& p) { p.rule.child_count = 65; }),
+        halves + "65 children, not 1 to 64; where it would need more, refine in several steps");
+    EXPECT_EQ(
+        refused_with([](auto& p) { p.rule.new_node_count = -1; }),
+        halves + "-1 new nodes, not 0 to 64; where it would need more, refine in several steps");
     EXPECT_EQ(refused_with([](auto& p) { p.rule.children = nullptr; }),
               halves + "its tables are NULL");
     EXPECT_EQ(refused_with([](auto& p) {

@@ -12,6 +12,7 @@
 #include <nestgrid/standard_rules.hpp>
 
 #include "forest.hpp"
+#include "refusal.hpp"
 
 using namespace nestgrid_test;
 
@@ -384,6 +385,23 @@ TEST(Rules, PreferTheFirstCornerOfAChildThenTheLast) {
             EXPECT_EQ(rank, is(0) ? 0U : is(1) ? 1U : 2U) << rule->name;
         }
     }
+}
+
+/// A rule that would be too large says the way out.
+TEST(Rules, SayWhatToDoWhereTheyAreTooLarge) {
+    std::vector<PlacedChild> parts;
+    for (int i = 0; i < 64; ++i) {
+        PlacedChild part{Shape::hexahedron, topology(Shape::hexahedron).reference};
+        for (Point& x : part.corners) {
+            x = {(x[0] + i % 4) / 4, (x[1] + i / 4 % 4) / 4, (x[2] + i / 16) / 4};
+        }
+        parts.push_back(part);
+    }
+    RuleTable table;
+    const std::string sentence = refusal([&] { table.add(Shape::hexahedron, parts); });
+    EXPECT_NE(sentence.find("117 new nodes, more than 64: refine in several steps"),
+              std::string::npos)
+        << sentence;
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ void GridChecker::check_corners(const std::string& who) {
         if (!is_new && at->second.first != x) {
             fail(Law::coarse_node,
                  "coarse node " + std::to_string(id[k]) + " is at one place in coarse element " +
-                     std::to_string(at->second.second) + " and at another in " + who);
+                     std::to_string(at->second.second) + " and at another in " + who +
+                     ": periodic images are different nodes, with ids of their own");
         }
         if (id_at_.try_emplace(x, id[k]).first->second != id[k]) several_ids_at_.insert(x);
     }

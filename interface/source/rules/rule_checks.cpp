@@ -176,14 +176,24 @@ std::optional<std::string> find_tiling_violation(const Rule& rule) {
     return std::nullopt;
 }
 
+/// Says the way out, too: 4 x 4 x 4 parts are 2 x 2 x 2 parts twice.
+std::string too_many(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what +
+           ", more than 64: refine in several steps, each by a rule of its own, by fewer parts or "
+           "along one axis after the other";
+}
+
 }  // namespace
 
 std::optional<std::string> find_violation(const Rule& rule) {
     const std::string name = "rule '" + rule.name + "': ";
     if (rule.parent == Shape::point) return name + "a point has no children";
     if (rule.children.empty()) return name + "there are no children";
-    if (rule.children.size() > max_children) return name + "more than 64 children";
-    if (rule.new_nodes.size() > max_new_nodes) return name + "more than 64 new nodes";
+    if (rule.children.size() > max_children)
+        return name + too_many(rule.children.size(), "children");
+    if (rule.new_nodes.size() > max_new_nodes) {
+        return name + too_many(rule.new_nodes.size(), "new nodes");
+    }
     if (auto v = find_stencil_violation(rule)) return v;
     if (auto v = find_child_violation(rule)) return v;
     return find_tiling_violation(rule);

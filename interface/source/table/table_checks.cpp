@@ -43,10 +43,14 @@ private:
 
     void check_counts() const {
         if (rule_->new_node_count < 0 || rule_->new_node_count > max_new_nodes) {
-            refuse(std::to_string(rule_->new_node_count) + " new nodes, not 0 to 64");
+            refuse(std::to_string(rule_->new_node_count) +
+                   " new nodes, not 0 to 64; where it "
+                   "would need more, refine in several steps");
         }
         if (rule_->child_count < 1 || rule_->child_count > max_children) {
-            refuse(std::to_string(rule_->child_count) + " children, not 1 to 64");
+            refuse(std::to_string(rule_->child_count) +
+                   " children, not 1 to 64; where it would "
+                   "need more, refine in several steps");
         }
         if ((rule_->new_node_count > 0 && rule_->new_nodes == nullptr) ||
             rule_->children == nullptr) {
