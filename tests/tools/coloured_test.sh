@@ -182,6 +182,21 @@ for number in 0 -1 nan inf x; do
 done
 refused 1 'excludes --colour-tolerance' slice "${oblique[@]}" --colour-tolerance 1 --max-triangles 9
 
+# Collapses keep the error and the place, and leave fewer triangles.
+for what in "slice v.vti --axis z --at 9.3" "boundary v.vti" "surface ramp.pgm" "height ramp.pgm --scale 2"; do
+    run $what --error 5%
+    drawn=$(value triangles)
+    area=$(value area)
+    run $what --error 5% --collapse -o collapsed.vtp
+    [ "$(value triangles)" -le "$drawn" ] || fail "$what --collapse: $(value triangles) triangles, not $drawn"
+    [ "$(value exceeding)" = 0 ] || fail "$what --collapse: $(value exceeding) triangles exceed the error"
+    awk -v bound="$(value error_bound)" -v error="$(value threshold)" 'BEGIN { exit !(bound <= error) }' ||
+        fail "$what --collapse: $(value error_bound)"
+    case $what in height*) ;; *) expect area "$area" ;; esac
+done
+refused 1 'collapse needs an --error' slice v.vti --axis z --at 9.3 --collapse -o x.vtp
+refused 2 '--collapse' boundary v.vti --error 5% --collapse --outlines -o x.vtp
+
 refused 1 'needs one of --plane' slice v.vti -o x.vtp
 refused 1 'needs one of --plane' slice v.vti --axis x --at 1 --sphere 1,1,1,1
 refused 1 'normal of the plane is 0' slice v.vti --plane 1,2,3,0,0,0 -o x.vtp

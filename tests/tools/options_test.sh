@@ -164,6 +164,7 @@ refused 1 'no point data array' info v.vti --array none && echo "info --array" >
 for command in isosurface slice isolines boundary; do
     effect $command "$raw ${base[$command]}" --max-triangles 3000
     effect $command "$raw ${base[$command]}" --error 30
+    case $command in slice | boundary) effect $command "$raw ${base[$command]} --error 30" --collapse ;; esac
     for option in '--threshold 1' '--max-triangles 900' '--indicator visual'; do
         refused 2 'error excludes|excludes --error' $command $raw ${base[$command]} --error 30 $option
     done
@@ -277,6 +278,7 @@ for command in height surface; do
     effect $command "v.raw $options --dims 20,432,1 --type uint8" --spacing 1,2,3
     effect $command "hills.pgm $options" --threshold 5
     effect $command "hills.pgm $options" --error 5
+    effect $command "hills.pgm $options --error 5" --collapse
     effect $command "hills.pgm $options" --max-triangles 900
     effect $command "hills.pgm $options" -o kept/x.vtp
     effect $command "hills.pgm $options" --output kept/x.vtp

@@ -29,8 +29,8 @@ struct ColouredSurface {
     std::optional<LensRequest> lens{};
     /// Triangles are split until colours follow the data within this; 0 splits none.
     double colour_tolerance = 0;
-    /// Whether edges are collapsed while colours keep within the thresholds. What is drawn first has
-    /// half of them.
+    /// Whether edges are collapsed while colours keep within the thresholds. What is drawn first
+    /// has half of them.
     bool collapses = false;
 };
 
