@@ -7,6 +7,8 @@
 #include <limits>
 
 #include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/between.hpp>
+#include <nestgrid/algorithms/discontinuous.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/holes.hpp>
@@ -21,6 +23,7 @@
 
 #include "closedness.hpp"
 #include "hiding_forest.hpp"
+#include "table_in_c.hpp"
 
 using namespace nestgrid_test;
 
@@ -141,6 +144,84 @@ void expect_nobody_looks(Forest<dim> forest, int steps) {
         EXPECT_EQ(numbers.all, first->all);
     }
     EXPECT_GT(first->all.size(), 1000U);
+}
+
+/// Values of its own for every leaf, those of hidden ones being a placeholder.
+template <int dim>
+struct PlaceholderLeaves {
+    const HidingForest<dim>* grid;
+    double placeholder;
+
+    void leaf_values(std::uint32_t leaf, std::span<double> out) const {
+        const auto& cell = grid->cells[leaf];
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            const Point& x = grid->positions[cell.nodes[k]];
+            out[k] = grid->hidden(leaf) == Hidden::wholly
+                         ? placeholder
+                         : x[0] - 0.5 * x[1] * x[1] + 0.01 * (leaf % 7);
+        }
+    }
+};
+
+template <int dim>
+Numbers everything_that_jumps(const HidingForest<dim>& grid, double placeholder) {
+    const PlaceholderLeaves<dim> leaves{&grid, placeholder};
+    const DiscontinuousData data(grid, leaves);
+    Numbers numbers;
+    for (const double threshold : {0.0, 0.02, 0.2}) {
+        const DiscontinuousOptions options{.threshold = threshold};
+        const auto add = [&](const DiscontinuousSurface& drawn) {
+            numbers.add(drawn.surface);
+            numbers.all.push_back(drawn.error_bound);
+        };
+        if constexpr (dim == 3) {
+            add(slice(data, Plane({0.9, 0.8, 0.7}, {1, 0.5, -0.3}), options));
+        } else {
+            add(shading(data, options));
+            add(height_field(data, 0.5, options));
+        }
+    }
+    return numbers;
+}
+
+/// Through tables in C, between frames, and of data that jump.
+template <int dim>
+void expect_nobody_looks_elsewhere(Forest<dim> forest, int steps) {
+    std::mt19937 random(8);
+    refine_randomly(forest, random, steps);
+    const HidingForest<dim> grid(std::move(forest), random, 2);
+    const std::vector<bool> unseen = grid.unseen();
+    const auto f = [](const Point& x) { return std::sin(3 * x[0]) + x[1] - x[2] * x[0] - 0.4; };
+    const auto g = [](const Point& x) { return 0.5 - x[0] * x[1]; };
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    std::optional<std::array<Numbers, 3>> first;
+    for (const std::optional<double> placeholder :
+         {std::optional{0.0}, {nan}, {0.3}, {-1e6}, std::optional<double>{}}) {
+        SCOPED_TRACE(placeholder ? std::to_string(*placeholder) : "no value");
+        using Field = PlaceholderField<dim>;
+        const Field field(grid, f, unseen, placeholder);
+        const Field later(grid, g, unseen, placeholder);
+        const TableInC table(grid);
+        const nestgrid_field in_c = field_in_c(grid, field);
+        const Between<Field> between({&field, &later}, std::array{0.25F, 0.75F});
+        const std::array<Numbers, 3> numbers{
+            everything<dim>(*open_table<double>(table.table, in_c)),
+            everything<dim>(erase(grid, between)),
+            everything_that_jumps(grid, placeholder.value_or(nan))};
+        if (!first) first = numbers;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            EXPECT_EQ(numbers[i].all, (*first)[i].all) << i;
+            EXPECT_GT(numbers[i].all.size(), 1000U) << i;
+        }
+    }
+}
+
+TEST(HiddenValues, AreNotLookedAtElsewhereEither) {
+    std::mt19937 random(3);
+    expect_nobody_looks_elsewhere(boxes<3>(random, 2), 40);
+    expect_nobody_looks_elsewhere(kuhn<3>(3), 600);
+    expect_nobody_looks_elsewhere(boxes<2>(random, 3), 150);
+    expect_nobody_looks_elsewhere(kuhn<2>(2), 300);
 }
 
 TEST(HiddenValues, AreNeverLookedAt) {
