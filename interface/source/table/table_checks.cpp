@@ -134,6 +134,11 @@ nestgrid_grid checked_table(const nestgrid_grid& given) {
 
 nestgrid_field checked_table(const nestgrid_field& given, int value_type) {
     const nestgrid_field table = copy(given, offsetof(nestgrid_field, corner_gradients), "field");
+    if (table.value_type != NESTGRID_FLOAT && table.value_type != NESTGRID_DOUBLE) {
+        throw InvalidInput("the values of the field have the type " +
+                           std::to_string(table.value_type) +
+                           ", which is neither NESTGRID_FLOAT nor NESTGRID_DOUBLE");
+    }
     if (table.value_type != value_type) {
         throw InvalidInput(
             "the values of the field are of another type, float or double, than "
