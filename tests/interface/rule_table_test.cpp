@@ -26,7 +26,7 @@ std::vector<const Rule*> standard_rules() {
     for (const Shape s : {Shape::segment, Shape::quadrilateral, Shape::hexahedron}) {
         rules.push_back(&dyadic_rule(s));
     }
-    for (const Shape s : {Shape::pyramid, Shape::prism}) rules.push_back(&red_rule(s));
+    rules.push_back(&red_rule(Shape::pyramid));  // that of prisms has the children of another one
     for (const PrismSplit s :
          {PrismSplit::isotropic, PrismSplit::horizontal, PrismSplit::vertical}) {
         rules.push_back(&prism_rule(s));

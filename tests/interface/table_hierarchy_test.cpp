@@ -111,8 +111,15 @@ TEST(Tables, GiveTheSameSurfaceFromTheRequiredOperations) {
 }
 
 TEST(Tables, GiveTheSameLinesWithUnequalWeights) {
-    Forest<2> forest = kuhn<2>(0);
-    for (std::uint32_t e = 0; forest.cells.size() < 200; ++e) forest.refine(e, thirds_rule());
+    static const Rule layers = make_rule(
+        "layers", Shape::quadrilateral,
+        {weighted_mean_of({{0, 0.75}, {2, 0.25}}), weighted_mean_of({{1, 0.75}, {3, 0.25}})},
+        {Child{.shape = Shape::quadrilateral, .corner = {0, 1, 4, 5}},
+         Child{.shape = Shape::quadrilateral, .corner = {4, 5, 2, 3}}});
+    Forest<2> forest;
+    for (const Point& x : topology(Shape::quadrilateral).reference) forest.add_node(x);
+    forest.add_coarse(Shape::quadrilateral, {0, 1, 2, 3}, 1);
+    for (std::uint32_t e = 0; forest.cells.size() < 200; ++e) forest.refine(e, layers);
     const ForestField<2> field(forest, [](const Point& x) { return norm(x); });
     expect_same_behind_tables(forest, field, 0.7, {});
 }
