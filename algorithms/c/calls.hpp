@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What all functions for C have in common: tables become hierarchies, exceptions become codes and
+// Around every function that C codes call: tables become hierarchies, exceptions become codes and
 // sentences, and structs are read and written as far as their size says.
 #pragma once
 

@@ -13,7 +13,7 @@
 
 namespace nestgrid {
 
-/// What `owner` of a nestgrid_surface points to.
+/// A surface that a C code owns, by the pointer `owner` of its nestgrid_surface.
 template <int dimension>
 struct Drawn {
     Isosurface<dimension> result;

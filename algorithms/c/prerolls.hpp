@@ -16,7 +16,7 @@ struct nestgrid_prerolls {
     /// Keeps the tables that are asked for first.
     /// \throw nestgrid::InvalidInput where they are of another grid or field
     void require_same(const nestgrid_grid& grid, const nestgrid_field& field);
-    /// What is kept under a number, made by make() where there is nothing.
+    /// The indicator that `map` has under a number; make() gives it where there is none yet.
     template <class Map, class Make>
     typename Map::mapped_type kept(Map& map, int number, const Make& make) {
         const std::scoped_lock lock(mutex);

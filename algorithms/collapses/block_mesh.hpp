@@ -33,7 +33,7 @@ struct CollapsingVertex {
     static constexpr std::uint32_t moved = ~std::uint32_t{0};  // none was
 };
 
-/// Where the point that an edge becomes may be, and which colours it may have.
+/// One of the places that are tried for the point that an edge is collapsed to, with its colours.
 struct CollapsePlace {
     Point x;
     ColourValues colours;

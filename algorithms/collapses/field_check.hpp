@@ -39,7 +39,7 @@ public:
     /// \param greatest raised to an upper bound of what they differ by in these units, if they do
     bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours,
                        double& greatest) const;
-    /// The same for a triangle that takes the place of such ones, without the bound: faster.
+    /// Likewise without the bound, which is faster: for triangles that replace checked ones.
     bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const;
 
 private:

@@ -151,7 +151,7 @@ NearLeaves NearLeaves::find_along(const Hierarchy<Real>& hierarchy, const Surfac
         tree.add(triangles.back().box);
     }
     tree.finish();
-    // Where positions are those of eq. (1), what is below an element lies between its corners.
+    // Unless the grid gives new nodes places of its own, an element lies between its corners.
     const bool nested = !hierarchy.offers(Feature::new_positions);
     const auto touched = [&](const Walk<Real>& walk, const ElementView<Real>& view,
                              const Split& split) {

@@ -73,7 +73,7 @@ public:
     bool for_each(const Meets& meets, const Function& function) const {
         return tree_.for_each(meets, [&](std::size_t i) { return function(leaves_[i]); });
     }
-    /// The same, with meets(box, level, group) as of BoxTree::for_each_in_groups().
+    /// As for_each(), but meets(box, level, group) also gets the group in the tree of boxes.
     template <class Meets, class Function>
     bool for_each_in_groups(const Meets& meets, const Function& function) const {
         return tree_.for_each_in_groups(meets, [&](std::size_t i) { return function(leaves_[i]); });

@@ -3,6 +3,13 @@
 //
 // The standard refinement rules. Each is built on first use, checked, and lives until the program
 // ends; ask for those you need in the constructor of your grid, not in split().
+//
+// Elements that share a face must divide it by the same nodes. These go with each other:
+//   - red_rule() of all shapes, which are red_triangle_rule(), red_tetrahedron_rule() with any
+//     diagonal, dyadic_rule(), and rules of their own for pyramids and prisms;
+//   - prism_rule() of all kinds, among prisms and beside red triangles: not beside hexahedra and
+//     pyramids, nor beside red_rule() of prisms;
+//   - bisection_rule() of all tags, where the tags are compatible.
 #pragma once
 
 #include <nestgrid/rule.hpp>
@@ -32,8 +39,9 @@ const Rule& dyadic_rule(Shape shape);
 
 /// Refinement of any shape that divides all edges and faces alike: every edge at its midpoint,
 /// every triangle into four, every quadrilateral into four around the mean of its corners. A
-/// pyramid becomes six pyramids and four tetrahedra, a prism eight prisms. \throw InvalidInput for
-/// a point
+/// pyramid becomes six pyramids and four tetrahedra, a prism eight prisms.
+///
+/// \throw InvalidInput for a point
 const Rule& red_rule(Shape shape);
 
 /// How a prism, triangle times segment, is refined.

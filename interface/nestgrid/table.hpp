@@ -23,9 +23,8 @@ std::unique_ptr<const Hierarchy<Real>> open_table(const nestgrid_grid& grid,
                                                   const nestgrid_field& field);
 
 /// The grid of a table with several fields, whose components stand behind each other.
-/// \param more fields behind the first one, of float or double each; their values become Real.
-/// Their
-///        gradients are not asked for
+/// \param more fields behind the first one, of float or double each, whose values become Real and
+///        whose gradients are not asked for
 /// \throw InvalidInput also where one of them is NULL
 template <class Real>
 std::unique_ptr<const Hierarchy<Real>> open_table(const nestgrid_grid& grid,

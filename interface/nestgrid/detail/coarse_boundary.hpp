@@ -38,8 +38,9 @@ std::vector<FaceContact> face_contacts(const Hierarchy<Real>& hierarchy,
 
 /// For each coarse element, one bit each, the faces on the boundary of the domain: single faces
 /// that touch no other one, or that are one side of a slit. Faces that touch others in a part are
-/// none: what is drawn on both sides does not fit together there, and its edges are open. \throw
-/// GridError as single_faces()
+/// none: what is drawn on both sides does not fit together there, and its edges are open.
+///
+/// \throw GridError as single_faces()
 template <class Real>
 std::vector<std::uint8_t> coarse_boundary(const Hierarchy<Real>& hierarchy);
 
