@@ -65,26 +65,26 @@ HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy,
                                              const LeafErrors& leaf_errors,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread} {
-    engine::with_places(hierarchy, [&] { prepare(hierarchy, leaf_errors, executor); });
+    prepare(hierarchy, leaf_errors, executor);
 }
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy,
                                              const LeafErrors& leaf_errors,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread} {
-    engine::with_places(hierarchy, [&] { prepare(hierarchy, leaf_errors, executor); });
+    prepare(hierarchy, leaf_errors, executor);
 }
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<float>& hierarchy, NodeError error,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread}, error_{error} {
-    engine::with_places(hierarchy, [&] { prepare(hierarchy, {}, executor); });
+    prepare(hierarchy, {}, executor);
 }
 
 HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy, NodeError error,
                                              const Executor& executor, const Spread& spread)
     : spread_{spread}, error_{error} {
-    engine::with_places(hierarchy, [&] { prepare(hierarchy, {}, executor); });
+    prepare(hierarchy, {}, executor);
 }
 
 template <class Real>
@@ -95,32 +95,34 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
     roundoff_ = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
     own_errors_ = static_cast<bool>(leaf_errors);
     hanging_ = engine::find_hanging_nodes(hierarchy);
-    const bool measures = spread_.slope > 0;
-    const bool deviations = error_ == NodeError::deviation;
-    const bool plain = spread_.factor == 1 && !measures && !own_errors_ && !deviations;
-    if (hierarchy.facts().knows_stars && plain) {
-        facts_ = engine::sweep_stars(hierarchy, entries_);
-        node_count_ = hierarchy.facts().node_count;
-        return;
-    }
-    if (deviations && engine::bisects_by_keys(hierarchy)) {
-        facts_ = engine::sweep_stars(hierarchy, entries_);
-        engine::sweep_lattice_deviations(hierarchy, spread_, entries_, executor);
-        node_count_ = hierarchy.facts().node_count;
-        return;
-    }
-    const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true, .positions = measures},
-                                  hanging());
-    const engine::MadeOf made_of = deviations    ? engine::MadeOf::deviations
-                                   : own_errors_ ? engine::MadeOf::leaf_errors
-                                                 : engine::MadeOf::offsets;
-    engine::Sweeps sweeps(hierarchy.facts().node_count, made_of, spread_);
-    facts_ = engine::walk_preroll(walk, {&leaf_errors, measures, deviations}, sweeps, executor);
-    sweeps.saturate();
-    // No element above a crossing node stops, whatever its level.
-    facts_.one_level_a_node = sweeps.one_level_a_node() && hanging_.crossing() == nullptr;
-    node_count_ = sweeps.node_count();
-    sweeps.store(entries_);
+    engine::with_places(hierarchy, [&] {
+        const bool measures = spread_.slope > 0;
+        const bool deviations = error_ == NodeError::deviation;
+        const bool plain = spread_.factor == 1 && !measures && !own_errors_ && !deviations;
+        if (hierarchy.facts().knows_stars && plain) {
+            facts_ = engine::sweep_stars(hierarchy, entries_);
+            node_count_ = hierarchy.facts().node_count;
+            return;
+        }
+        if (deviations && engine::bisects_by_keys(hierarchy)) {
+            facts_ = engine::sweep_stars(hierarchy, entries_);
+            engine::sweep_lattice_deviations(hierarchy, spread_, entries_, executor);
+            node_count_ = hierarchy.facts().node_count;
+            return;
+        }
+        const engine::Walk<Real> walk(
+            hierarchy, {.values = true, .keys = true, .positions = measures}, hanging());
+        const engine::MadeOf made_of = deviations    ? engine::MadeOf::deviations
+                                       : own_errors_ ? engine::MadeOf::leaf_errors
+                                                     : engine::MadeOf::offsets;
+        engine::Sweeps sweeps(hierarchy.facts().node_count, made_of, spread_);
+        facts_ = engine::walk_preroll(walk, {&leaf_errors, measures, deviations}, sweeps, executor);
+        sweeps.saturate();
+        // No element above a crossing node stops, whatever its level.
+        facts_.one_level_a_node = sweeps.one_level_a_node() && hanging_.crossing() == nullptr;
+        node_count_ = sweeps.node_count();
+        sweeps.store(entries_);
+    });
 }
 
 template <class Real>
@@ -148,12 +150,13 @@ void HierarchicalIndicator::update_dirty(const Hierarchy<Real>& hierarchy,
         hierarchy, {.values = true, .keys = true, .positions = spread_.slope > 0}, &hanging);
     const std::size_t dense = hierarchy.facts().node_count;
     std::vector<std::pair<NodeKey, detail::IndicatorEntry>> made;
-    const detail::PrerollFacts facts =
-        engine::sweep_dirty(walk, dirty, entries_, leaf_errors, spread_,
-                            [&](NodeKey node, const detail::IndicatorEntry& entry) {
-                                if (dense != 0) engine::require_dense(node, dense);
-                                made.emplace_back(node, entry);
-                            });
+    const auto put = [&](NodeKey node, const detail::IndicatorEntry& entry) {
+        if (dense != 0) engine::require_dense(node, dense);
+        made.emplace_back(node, entry);
+    };
+    const detail::PrerollFacts facts = engine::with_places(hierarchy, [&] {
+        return engine::sweep_dirty(walk, dirty, entries_, leaf_errors, spread_, put);
+    });
     entries_.resize(node_count_, dense);
     for (const auto& [node, entry] : made) entries_.put(node, entry);
     node_count_ = entries_.dense == nullptr ? entries_.sparse.size() : dense;
@@ -165,12 +168,12 @@ void HierarchicalIndicator::update_dirty(const Hierarchy<Real>& hierarchy,
 
 void HierarchicalIndicator::update(const Hierarchy<float>& hierarchy, const ChangedPlaces& changed,
                                    const LeafErrors& leaf_errors) {
-    engine::with_places(hierarchy, [&] { update_dirty(hierarchy, changed, leaf_errors); });
+    update_dirty(hierarchy, changed, leaf_errors);
 }
 
 void HierarchicalIndicator::update(const Hierarchy<double>& hierarchy, const ChangedPlaces& changed,
                                    const LeafErrors& leaf_errors) {
-    engine::with_places(hierarchy, [&] { update_dirty(hierarchy, changed, leaf_errors); });
+    update_dirty(hierarchy, changed, leaf_errors);
 }
 
 std::size_t HierarchicalIndicator::memory_bytes() const {
