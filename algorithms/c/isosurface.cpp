@@ -66,6 +66,11 @@ int draw_height_field(const Hierarchy<Real>& hierarchy, double scale, const Aske
     return 0;
 }
 
+void require_one_component(const HierarchyFacts& facts) {
+    if (facts.components == 1) return;
+    throw InvalidInput("the field has " + std::to_string(facts.components) + " components, not 1");
+}
+
 /// The number of attributes that each vertex has.
 template <int dimension>
 std::size_t attribute_count(const Surface<dimension>& surface) {
@@ -117,11 +122,7 @@ extern "C" int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_fie
         options.threshold = threshold;
         const Asked asked(&options, grid, field);
         return with_tables(grid, field, {}, [&](const auto& hierarchy) {
-            const int components = hierarchy.facts().components;
-            if (components != 1) {
-                throw InvalidInput("the field has " + std::to_string(components) +
-                                   " components, not 1");
-            }
+            require_one_component(hierarchy.facts());
             return draw(hierarchy, isovalue, asked, *out);
         });
     });
@@ -181,10 +182,7 @@ extern "C" int nestgrid_check_grid(const nestgrid_grid* grid, const nestgrid_fie
                                    char* message, size_t message_size) {
     return without_exceptions(message, message_size, [&] {
         return with_tables(grid, field, {}, [&](const auto& hierarchy) {
-            if (hierarchy.facts().components != 1) {
-                throw InvalidInput("the field has " + std::to_string(hierarchy.facts().components) +
-                                   " components, not 1");
-            }
+            require_one_component(hierarchy.facts());
             const auto violation = check_table(hierarchy, *grid, *field);
             if (violation) say(*violation, message, message_size);
             return violation ? 4 : 0;
