@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/detail/union_find.hpp>
 #include <surfaces/collinear_triangles.hpp>
 #include <surfaces/surface_builder.hpp>
-#include <surfaces/union_find.hpp>
 #include <surfaces/vertex_links.hpp>
 
 namespace nestgrid::engine {
@@ -64,7 +64,7 @@ private:
     const Surface<3>& surface_;
     const VerticesAtNodes& at_nodes_;
     std::vector<std::uint32_t> entry_;  // by vertex: its place in at_nodes_, or none
-    UnionFind classes_;
+    nestgrid::detail::UnionFind classes_;
     std::vector<bool> merged_;  // by root
 };
 

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include <nestgrid/algorithms/surface_measures.hpp>
+#include <nestgrid/detail/union_find.hpp>
 #include <nestgrid/error.hpp>
 
 #include <surfaces/triangle_sides.hpp>
-#include <surfaces/union_find.hpp>
 
 namespace nestgrid {
 
@@ -30,7 +30,7 @@ std::vector<bool> open_vertices(const Surface<3>& surface) {
 
 /// Numbers the components in the order of their first triangles; one number per triangle.
 std::vector<std::uint32_t> number_components(const Surface<3>& surface) {
-    engine::UnionFind joined(surface.vertices.size());
+    detail::UnionFind joined(surface.vertices.size());
     for (const auto& t : surface.simplices) {
         joined.join(t[0], t[1]);
         joined.join(t[0], t[2]);

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include <nestgrid/algorithms/surface_report.hpp>
+#include <nestgrid/detail/union_find.hpp>
 #include <nestgrid/error.hpp>
 
 #include <surfaces/triangle_sides.hpp>
-#include <surfaces/union_find.hpp>
 
 namespace nestgrid {
 
@@ -61,7 +61,7 @@ std::uint32_t corner_at(const Surface<3>& surface, std::uint32_t triangle, std::
 /// Counts the vertices whose triangles do not form one fan. Corners are joined where their
 /// triangles share a side, so that each class is a fan.
 std::size_t count_nonmanifold_vertices(const Surface<3>& surface, const Sides& sides) {
-    engine::UnionFind fans(3 * surface.simplices.size());
+    detail::UnionFind fans(3 * surface.simplices.size());
     for_each_edge(sides, [&](std::span<const OrientedSide> edge) {
         for (const OrientedSide& side : edge.subspan(1)) {
             for (const std::uint32_t v : {side.low, side.high}) {
@@ -84,7 +84,7 @@ std::size_t count_nonmanifold_vertices(const Surface<3>& surface, const Sides& s
 
 /// Counts the vertices that belong to a triangle, and the components that edges make of them.
 void count_vertices(const Surface<3>& surface, SurfaceReport& report) {
-    engine::UnionFind components(surface.vertices.size());
+    detail::UnionFind components(surface.vertices.size());
     std::vector<bool> used(surface.vertices.size(), false);
     for (const auto& t : surface.simplices) {
         for (const std::uint32_t v : t) used[v] = true;

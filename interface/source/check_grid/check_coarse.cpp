@@ -21,7 +21,6 @@ constexpr const char* in_tensor_order =
 void GridChecker::check_coarse(std::size_t i) {
     hierarchy_->coarse(task_.get(), i, coarse_, coarse_family_);
     coarse_number_ = i;
-    piece_of_.push_back(i);
     const std::string who = "coarse element " + std::to_string(i);
     const Topology& t = topology(coarse_.shape);
     const HierarchyFacts& facts = hierarchy_->facts();
@@ -46,8 +45,11 @@ void GridChecker::check_coarse(std::size_t i) {
         for (std::size_t k = 0; k < t.face[f].corners; ++k) {
             sum += coarse_key(coarse_.ids[t.face[f].corner[k]]);
         }
-        FaceUse& use = *coarse_faces_.insert(mean_key(sum, t.face[f].corners), {0, i}).first;
-        join_pieces(use.element, i);
+        FaceUse& use =
+            *coarse_faces_
+                 .insert(mean_key(sum, t.face[f].corners), {0, static_cast<std::uint32_t>(i)})
+                 .first;
+        pieces_.join(use.element, static_cast<std::uint32_t>(i));
         if (++use.count > 2) {
             fail(Law::coarse_face, "face " + std::to_string(f) + " of " + who +
                                        " belongs to more than two coarse elements");
@@ -92,24 +94,11 @@ void GridChecker::check_ids() const {
     if (options_->notes != nullptr) options_->notes->push_back(sentence);
 }
 
-/// The first element of the piece that an element belongs to.
-std::size_t GridChecker::piece_of(std::size_t element) {
-    while (piece_of_[element] != element) {
-        element = piece_of_[element] = piece_of_[piece_of_[element]];
-    }
-    return element;
-}
-
-void GridChecker::join_pieces(std::size_t a, std::size_t b) {
-    const auto [least, greatest] = std::minmax({piece_of(a), piece_of(b)});
-    piece_of_[greatest] = least;
-}
-
 void GridChecker::note_pieces() {
     std::size_t pieces = 0;
-    std::size_t other = 0;  // the first element that is in another piece than element 0
-    for (std::size_t i = 0; i < piece_of_.size(); ++i) {
-        if (piece_of(i) != i) continue;
+    std::uint32_t other = 0;  // the first element that is in another piece than element 0
+    for (std::uint32_t i = 0; i < hierarchy_->coarse_count(); ++i) {
+        if (pieces_.root(i) != i) continue;
         if (++pieces == 2) other = i;
     }
     if (pieces < 2 || options_->notes == nullptr) return;

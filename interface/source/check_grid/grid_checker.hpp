@@ -18,6 +18,7 @@
 
 #include <nestgrid/check_grid.hpp>
 #include <nestgrid/detail/hanging_probe.hpp>
+#include <nestgrid/detail/union_find.hpp>
 #include <nestgrid/hierarchy.hpp>
 
 namespace nestgrid::detail {
@@ -32,7 +33,8 @@ public:
           options_{&options},
           components_{static_cast<std::size_t>(hierarchy.facts().components)},
           own_keys_{hierarchy.offers(Feature::own_keys)},
-          task_{hierarchy.open()} {}
+          task_{hierarchy.open()},
+          pieces_(hierarchy.coarse_count()) {}
 
     std::optional<GridViolation> run();
 
@@ -43,8 +45,8 @@ private:
         GridViolation violation;
     };
     struct FaceUse {
-        int count;            // of coarse elements that have the face
-        std::size_t element;  // the first one
+        int count;              // of coarse elements that have the face
+        std::uint32_t element;  // the first one
     };
     struct Corner {
         Weights weights{};
@@ -128,8 +130,6 @@ private:
     void check_coarse(std::size_t i);
     void check_corners(const std::string& who);
     void check_ids() const;
-    std::size_t piece_of(std::size_t element);
-    void join_pieces(std::size_t a, std::size_t b);
     void note_pieces();
     void check_contacts();
 
@@ -196,7 +196,7 @@ private:
     std::map<Point, std::uint64_t> id_at_;  // of the first coarse corner there
     std::set<Point> several_ids_at_;
     KeyTable<NodeKey, FaceUse> coarse_faces_;
-    std::vector<std::size_t> piece_of_;  // of each coarse element, an earlier one of its piece
+    UnionFind pieces_;                   // coarse elements that share faces
     KeyTable<NodeKey, Node> nodes_;      // by place
     std::vector<double> values_;         // all components of each node
     KeyTable<NodeKey, Origin> origins_;  // of new nodes, by place

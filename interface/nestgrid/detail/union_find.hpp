@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace nestgrid::engine {
+namespace nestgrid::detail {
 
 /// Classes of numbers below a count. The least number of a class represents it.
 class UnionFind {
@@ -32,4 +32,4 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-}  // namespace nestgrid::engine
+}  // namespace nestgrid::detail
