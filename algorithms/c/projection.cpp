@@ -14,8 +14,9 @@
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
 
+#include <threads/thread_executor.hpp>
+
 #include "prerolls.hpp"
-#include "thread_executor.hpp"
 
 namespace nestgrid {
 
@@ -52,9 +53,10 @@ void require_one_wish(const nestgrid_options& options) {
     }
 }
 
-std::size_t thread_count(int threads) {
-    if (threads != NESTGRID_ALL_THREADS) return static_cast<std::size_t>(std::max(threads, 1));
-    return std::min<std::size_t>(ThreadExecutor::all_threads(), most_threads);
+int thread_count(int threads) {
+    if (threads != NESTGRID_ALL_THREADS) return std::max(threads, 1);
+    return static_cast<int>(
+        std::min<std::size_t>(engine::ThreadExecutor::all_threads(), most_threads));
 }
 
 bool is_simplex(int shape) { return shape == NESTGRID_TRIANGLE || shape == NESTGRID_TETRAHEDRON; }
@@ -116,11 +118,11 @@ Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid, const nes
     }
     require_range(options_);
     require_one_wish(options_);
-    const std::size_t threads = thread_count(options_.threads);
+    const int threads = thread_count(options_.threads);
     if (threads == 1) {
         executor_ = std::make_unique<SequentialExecutor>();
     } else {
-        executor_ = std::make_unique<ThreadExecutor>(threads);
+        executor_ = std::make_unique<engine::ThreadExecutor>(threads);
     }
 }
 

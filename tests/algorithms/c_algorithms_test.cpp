@@ -25,7 +25,7 @@
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
-#include <c/thread_executor.hpp>
+#include <threads/thread_executor.hpp>
 
 #include "executor_laws.hpp"
 #include "forest.hpp"
@@ -383,10 +383,10 @@ TEST(IsosurfacesForC, EndWhereTheCallerSaysSo) {
 }
 
 TEST(ThreadsForC, WorkOnceAndInOrder) {
-    for (const std::size_t threads : {1U, 2U, 7U}) {
-        expect_parts_once_and_in_order(ThreadExecutor(threads));
+    for (const int threads : {1, 2, 7}) {
+        expect_parts_once_and_in_order(engine::ThreadExecutor(threads));
     }
-    ThreadExecutor(3).run(
+    engine::ThreadExecutor(3).run(
         0, [](std::size_t) { FAIL(); }, [](std::size_t) { FAIL(); });
 }
 
@@ -397,9 +397,9 @@ TEST(ThreadsForC, PassOnWhatIsThrown) {
         if (i == 9) throw InvalidInput("nine");
     };
     const auto nothing = [](std::size_t) {};
-    EXPECT_THROW(ThreadExecutor(4).run(1000, fail_at_nine, nothing), InvalidInput);
+    EXPECT_THROW(engine::ThreadExecutor(4).run(1000, fail_at_nine, nothing), InvalidInput);
     EXPECT_LT(begun, 100);
-    EXPECT_THROW(ThreadExecutor(4).run(1000, nothing, fail_at_nine), InvalidInput);
+    EXPECT_THROW(engine::ThreadExecutor(4).run(1000, nothing, fail_at_nine), InvalidInput);
 }
 
 TEST(HeightFieldsForC, AreTheSame) {

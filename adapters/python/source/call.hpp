@@ -8,9 +8,9 @@
 #include <variant>
 
 #include <nestgrid/hierarchy.hpp>
+#include <threads/thread_executor.hpp>
 
 #include "stoppable.hpp"
-#include "thread_executor.hpp"
 
 namespace nestgrid::python {
 
@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    ThreadExecutor executor_;
+    engine::ThreadExecutor executor_;
     const std::atomic<bool>& stopped_;
 };
 

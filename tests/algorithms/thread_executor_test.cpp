@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The threads of the Python package keep the contract of an executor.
+// The threads of the library keep the contract of an executor.
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
@@ -10,11 +10,11 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/error.hpp>
+#include <threads/thread_executor.hpp>
 
 #include "executor_laws.hpp"
-#include "thread_executor.hpp"
 
-using nestgrid::python::ThreadExecutor;
+using nestgrid::engine::ThreadExecutor;
 
 namespace {
 

@@ -1,17 +1,19 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "thread_executor.hpp"
+#include <threads/thread_executor.hpp>
 
 #include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include <nestgrid/error.hpp>
 
-namespace nestgrid::python {
+namespace nestgrid::engine {
 
 namespace {
 
@@ -88,11 +90,14 @@ private:
 
 std::size_t thread_count(int threads) {
     if (threads < 0) throw InvalidInput("threads is " + std::to_string(threads) + ", below 0");
-    return threads > 0 ? static_cast<std::size_t>(threads)
-                       : std::max(1U, std::thread::hardware_concurrency());
+    return threads > 0 ? static_cast<std::size_t>(threads) : ThreadExecutor::all_threads();
 }
 
 }  // namespace
+
+std::size_t ThreadExecutor::all_threads() {
+    return std::max(1U, std::thread::hardware_concurrency());
+}
 
 ThreadExecutor::ThreadExecutor(int threads) : threads_{thread_count(threads)} {}
 
@@ -102,10 +107,14 @@ void ThreadExecutor::run(std::size_t count, const std::function<void(std::size_t
     {
         std::vector<std::jthread> threads;
         const std::size_t others = std::min(threads_, std::max<std::size_t>(count, 1)) - 1;
-        while (threads.size() < others) threads.emplace_back([&] { parts.work_on_all(); });
+        try {
+            while (threads.size() < others) threads.emplace_back([&] { parts.work_on_all(); });
+        } catch (const std::system_error&) {
+            // The system gives no more threads.
+        }
         parts.consume_all(consume);
     }
     parts.rethrow();
 }
 
-}  // namespace nestgrid::python
+}  // namespace nestgrid::engine
