@@ -18,15 +18,10 @@ void Colours::take_off_means(double sign) {
 void Colours::add_triangle(const Triangle& x, double area,
                            const std::array<std::span<const double>, 3>& corners) {
     take_off_means(-1);
-    const Point a = x[1] - x[0];
-    const Point b = x[2] - x[0];
-    const Point normal = cross(a, b);
-    const double square = dot(normal, normal);
+    const FlatTriangle triangle(x);
     for (std::size_t c = 0; c < sum_.size(); ++c) {
-        const double at = corners[0][c];
-        const Point slope = (1 / square) * ((corners[1][c] - at) * cross(b, normal) +
-                                            (corners[2][c] - at) * cross(normal, a));
-        const double offset = at - dot(slope, x[0]);
+        const Point slope = triangle.gradient({corners[0][c], corners[1][c], corners[2][c]});
+        const double offset = corners[0][c] - dot(slope, x[0]);
         sum_[c].slope = sum_[c].slope + area * slope;
         sum_[c].offset += area * offset;
         quadric_.add_plane(slope, -offset, area);

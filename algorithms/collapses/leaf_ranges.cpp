@@ -6,14 +6,9 @@ namespace nestgrid::engine {
 
 LinearColour::LinearColour(const FlatTriangle& triangle, const std::array<double, 3>& at_corners)
     : at_first{at_corners[0]},
+      slope{triangle.gradient(at_corners)},
       least{std::min({at_corners[0], at_corners[1], at_corners[2]})},
-      greatest{std::max({at_corners[0], at_corners[1], at_corners[2]})} {
-    const Point& n = triangle.normal;
-    const Point a = triangle.corner[1] - triangle.corner[0];
-    const Point b = triangle.corner[2] - triangle.corner[0];
-    slope = (1 / dot(n, n)) *
-            ((at_corners[1] - at_first) * cross(b, n) + (at_corners[2] - at_first) * cross(n, a));
-}
+      greatest{std::max({at_corners[0], at_corners[1], at_corners[2]})} {}
 
 LeafRanges::LeafRanges(const NearLeaves& leaves) : components_{leaves.components()} {
     std::vector<Range> below;

@@ -82,13 +82,16 @@ struct FlatTriangle {
         return std::abs(middle) <= reach;
     }
 
-    /// A linear function on the triangle, continued in its plane and constant across.
-    double interpolant(const std::array<double, 3>& at_corners, const Point& x) const {
+    /// The gradient of a linear function on the triangle, in its plane.
+    Point gradient(const std::array<double, 3>& at_corners) const {
         const Point a = corner[1] - corner[0];
         const Point b = corner[2] - corner[0];
-        const Point d = (1 / dot(normal, normal)) * (x - corner[0]);
-        return at_corners[0] + dot(cross(b, normal), d) * (at_corners[1] - at_corners[0]) +
-               dot(cross(normal, a), d) * (at_corners[2] - at_corners[0]);
+        return (1 / dot(normal, normal)) * ((at_corners[1] - at_corners[0]) * cross(b, normal) +
+                                            (at_corners[2] - at_corners[0]) * cross(normal, a));
+    }
+    /// A linear function on the triangle, continued in its plane and constant across.
+    double interpolant(const std::array<double, 3>& at_corners, const Point& x) const {
+        return at_corners[0] + dot(gradient(at_corners), x - corner[0]);
     }
 
     Triangle corner;
