@@ -52,11 +52,7 @@ int with_tables(const nestgrid_grid* grid, const nestgrid_field* field,
     if (field->value_type == NESTGRID_FLOAT) {
         return function(*open_table<float>(*grid, *field, attributes));
     }
-    if (field->value_type == NESTGRID_DOUBLE) {
-        return function(*open_table<double>(*grid, *field, attributes));
-    }
-    throw InvalidInput("the value_type " + std::to_string(field->value_type) +
-                       " of the field is neither float nor double");
+    return function(*open_table<double>(*grid, *field, attributes));
 }
 
 /// Empties a result, as much of it as its size says.

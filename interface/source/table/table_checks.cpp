@@ -135,9 +135,8 @@ nestgrid_grid checked_table(const nestgrid_grid& given) {
 nestgrid_field checked_table(const nestgrid_field& given, int value_type) {
     const nestgrid_field table = copy(given, offsetof(nestgrid_field, corner_gradients), "field");
     if (table.value_type != NESTGRID_FLOAT && table.value_type != NESTGRID_DOUBLE) {
-        throw InvalidInput("the values of the field have the type " +
-                           std::to_string(table.value_type) +
-                           ", which is neither NESTGRID_FLOAT nor NESTGRID_DOUBLE");
+        throw InvalidInput("the value_type " + std::to_string(table.value_type) +
+                           " of the field is neither float nor double");
     }
     if (table.value_type != value_type) {
         throw InvalidInput(
