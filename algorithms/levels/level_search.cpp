@@ -31,11 +31,11 @@ LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::span<const Level<Rea
       entries_{own_bounds_ == nullptr ? nullptr : &own_bounds_->entries()},
       saturated_{criterion.saturated()},
       asks_for_masks_{!criterion.wants_positions() && !criterion.blends()},
-      never_stops_{dynamic_cast<const Exact*>(&criterion) != nullptr} {
+      never_stops_{criterion.never_holds()} {
     for (const Level<Real>& level : levels_) {
         last_component_ = std::max(last_component_, level.component);
     }
-    const auto* threshold = dynamic_cast<const Threshold*>(&criterion);
+    const Threshold* const threshold = criterion.as_threshold();
     if (threshold != nullptr && own_bounds_ != nullptr && threshold->indicator() == own_bounds_) {
         own_threshold_ = threshold;
         packed_threshold_ = Pack<float>::all(float_below(threshold->epsilon()));
@@ -46,7 +46,7 @@ template <class Real>
 bool may_stop_apart(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
                     const Bounds& bounds) {
     if (hierarchy.offers(Feature::constrained) || bounds.hanging() != nullptr) return true;
-    if (dynamic_cast<const Exact*>(&criterion) != nullptr) return false;
+    if (criterion.never_holds()) return false;
     return hierarchy.offers(Feature::hidden) || !bounds.stops_conform();
 }
 

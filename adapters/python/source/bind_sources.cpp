@@ -83,11 +83,6 @@ Samples samples_of(const py::array& array, const Numbers& spacing, const Numbers
     return samples;
 }
 
-struct Frames {
-    std::vector<double> times;
-    std::shared_ptr<FrameSource> source;
-};
-
 std::shared_ptr<Frames> frames_of(const std::vector<py::array>& arrays,
                                   const std::vector<double>& times, const Numbers& spacing,
                                   const Numbers& origin, const Numbers& direction) {
@@ -99,9 +94,8 @@ std::shared_ptr<Frames> frames_of(const std::vector<py::array>& arrays,
     for (const py::array& array : arrays) {
         samples.push_back(samples_of(array, spacing, origin, direction));
     }
-    auto source = make_frames(samples);
     linear_weights(times, times.front());
-    return std::make_shared<Frames>(Frames{times, std::move(source)});
+    return std::make_shared<Frames>(make_frames(samples, times));
 }
 
 using Leaves = py::array_t<std::int64_t, py::array::c_style>;
@@ -121,9 +115,7 @@ std::shared_ptr<OctreeSource> octree_of(const Leaves& leaves, const Numbers& val
     arrays.masked = span_of(masked);
     arrays.coordinates = coordinates;
     const std::array memory{keep(leaves), keep(values), keep(masked)};
-    return interruptible(1, [arrays, memory](const Call&) {
-        return std::shared_ptr<OctreeSource>(make_octree(arrays));
-    });
+    return interruptible(1, [arrays, memory](const Call&) { return make_octree(arrays); });
 }
 
 py::tuple leaves_of(const OctreeSource& octree) {
@@ -138,10 +130,10 @@ py::tuple leaves_of(const OctreeSource& octree) {
 
 std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int threads) {
     const auto weights =
-        cubic ? catmull_rom_weights(frames.times, t) : linear_weights(frames.times, t);
-    return interruptible(threads, [source = frames.source, weights](const Call& call) {
-        auto field = std::shared_ptr<Source>(source->at(weights));
-        field->choose("offset", 1, call);
+        cubic ? catmull_rom_weights(frames.times(), t) : linear_weights(frames.times(), t);
+    return interruptible(threads, [frames, weights](const Call& call) {
+        auto field = std::make_shared<Source>(frames.at(weights));
+        field->range(call);
         return field;
     });
 }
@@ -151,11 +143,10 @@ py::tuple loaded(const std::string& path, const std::string& array) {
     const auto field = interruptible(1, [path, array](const Call&) {
         return std::make_shared<LoadedField>(load_hierarchy(path, array));
     });
-    if (field->alone) {
-        return py::make_tuple(std::shared_ptr<Source>(std::move(field->alone)), field->name);
+    if (field->frames.count() == 1) {
+        return py::make_tuple(std::make_shared<Source>(field->frames[0]), field->name);
     }
-    const auto frames = std::make_shared<Frames>(Frames{field->times, std::move(field->frames)});
-    return py::make_tuple(frames, field->name);
+    return py::make_tuple(std::make_shared<Frames>(field->frames), field->name);
 }
 
 }  // namespace
@@ -177,8 +168,7 @@ void bind_sources(py::module_& m) {
         "volume",
         [](const py::array& array, const Numbers& spacing, const Numbers& origin,
            const Numbers& direction) {
-            return std::shared_ptr<Source>(
-                make_volume(samples_of(array, spacing, origin, direction)));
+            return make_volume(samples_of(array, spacing, origin, direction));
         },
         py::arg("array"), py::arg("spacing"), py::arg("origin"), py::arg("direction"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),
@@ -186,8 +176,8 @@ void bind_sources(py::module_& m) {
     py::class_<Frames, std::shared_ptr<Frames>>(m, "Frames")
         .def(py::init(&frames_of), py::arg("arrays"), py::arg("times"), py::arg("spacing"),
              py::arg("origin"), py::arg("direction"))
-        .def_readonly("times", &Frames::times)
-        .def("clear", [](const Frames& frames) { frames.source->clear(); })
+        .def_property_readonly("times", &Frames::times)
+        .def("clear", &Frames::clear)
         .def("at", &field_at, py::arg("t"), py::arg("cubic"), py::arg("threads"));
     m.def("load", &loaded, py::arg("path"), py::arg("array"));
 }

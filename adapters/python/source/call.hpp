@@ -5,65 +5,42 @@
 #pragma once
 
 #include <atomic>
-#include <variant>
 
-#include <nestgrid/hierarchy.hpp>
+#include <nestgrid/algorithms/watch.hpp>
 #include <threads/thread_executor.hpp>
-
-#include "stoppable.hpp"
 
 namespace nestgrid::python {
 
-/// A hierarchy with values of either type, borrowed.
-using AnyHierarchy = std::variant<const Hierarchy<float>*, const Hierarchy<double>*>;
+/// Thrown out of an algorithm that is to end.
+struct Stopped {};
 
-/// Runs tasks on threads, and throws Stopped between them once the flag is set.
-class StoppableExecutor final : public Executor {
-public:
-    /// \param threads as of ThreadExecutor
-    StoppableExecutor(int threads, const std::atomic<bool>& stopped)
-        : executor_(threads), stopped_{stopped} {}
-
-    std::size_t concurrency() const override { return executor_.concurrency(); }
-    void run(std::size_t count, const std::function<void(std::size_t)>& work,
-             const std::function<void(std::size_t)>& consume) const override {
-        executor_.run(count, work, [&](std::size_t i) {
-            if (stopped_.load(std::memory_order_relaxed)) throw Stopped();
-            consume(i);
-        });
-    }
-
-private:
-    engine::ThreadExecutor executor_;
-    const std::atomic<bool>& stopped_;
-};
-
-/// Invariant: once stop() was called, every algorithm that asks a hierarchy given by with(), or
-/// runs tasks of executor(), throws Stopped. Safe for several threads.
-class Call {
+/// Invariant: once stop() was called, every algorithm that does its work(), or asks a hierarchy
+/// given by with(), throws Stopped. Safe for several threads.
+class Call final : public Watch {
 public:
     /// \throw InvalidInput as ThreadExecutor
-    explicit Call(int threads) : executor_(threads, stopped_) {}
+    explicit Call(int threads)
+        : threads_(threads), executor_(threads_, [this](double) { check(); }) {}
 
     const Executor& executor() const { return executor_; }
+    Work work() const { return {executor_, this}; }
     void stop() { stopped_.store(true, std::memory_order_relaxed); }
     bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+    void check() const override {
+        if (stopped()) throw Stopped();
+    }
 
     /// Calls function(hierarchy) with the Hierarchy<float> or Hierarchy<double>, which throws
     /// Stopped when this call is to end.
     template <class Function>
-    decltype(auto) with(const AnyHierarchy& any, const Function& function) const {
-        return std::visit(
-            [&]<class Real>(const Hierarchy<Real>* hierarchy) -> decltype(auto) {
-                const Stoppable<Real> stoppable(*hierarchy, stopped_);
-                return function(static_cast<const Hierarchy<Real>&>(stoppable));
-            },
-            any);
+    decltype(auto) with(const FieldOnGrid& field, const Function& function) const {
+        return watched(field, *this).visit(function);
     }
 
 private:
     std::atomic<bool> stopped_{false};
-    StoppableExecutor executor_;
+    engine::ThreadExecutor threads_;
+    TellingExecutor executor_;
 };
 
 }  // namespace nestgrid::python

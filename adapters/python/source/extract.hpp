@@ -8,36 +8,16 @@
 #include <optional>
 #include <string>
 
-#include <nestgrid/algorithms/domains.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/level_function.hpp>
 #include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/projection.hpp>
 
 #include "source.hpp"
 
 namespace nestgrid::python {
-
-/// A lens by the size of elements.
-struct LensRequest {
-    Distance distance;
-    double finest = 0;
-    double coarsest = std::numeric_limits<double>::infinity();
-    double slope = 0.5;
-};
-
-/// Which criterion decides.
-struct Projection {
-    /// Nothing: 0, or with a lens infinity, so that the lens decides alone.
-    std::optional<double> threshold;
-    std::uint64_t max_triangles = 0;  ///< 0: no limit
-    /// As Source::choose(); for isosurfaces also "error", a threshold of |data - isovalue| that is
-    /// kept, and "distance", an estimate.
-    std::string indicator = "offset";
-    double blend = 1;
-    std::optional<LensRequest> lens;
-};
 
 struct Drawn : ErrorBounds {
     Surface<3> surface;

@@ -316,27 +316,29 @@ public:
     using Grid = MaskedOctree<dim>;
     using Field = LinearOctreeField<Grid, double, std::uint32_t>;
 
-    explicit ForestSource(const OctreeArrays& arrays)
-        : forest_(arrays),
-          grid_(forest_.grid()),
-          field_(grid_, forest_.element_nodes(), forest_.values()),
-          hierarchy_(grid_, field_) {}
+    explicit ForestSource(const std::shared_ptr<const Forest<dim>>& forest)
+        : OctreeSource(std::make_shared<Prerolls>(field_of(forest))), forest_{forest} {}
 
-    AnyHierarchy hierarchy() const override { return &hierarchy_; }
-    OctreeLeaves leaves() const override { return forest_.leaves(); }
+    OctreeLeaves leaves() const override { return forest_->leaves(); }
 
 private:
-    Forest<dim> forest_;
-    Grid grid_;
-    Field field_;
-    detail::ErasedHierarchy<Grid, Field> hierarchy_;
+    static FieldOnGrid field_of(const std::shared_ptr<const Forest<dim>>& forest) {
+        const auto grid = std::make_shared<const Grid>(forest->grid());
+        return shared_field(grid, Field(*grid, forest->element_nodes(), forest->values()), forest);
+    }
+
+    std::shared_ptr<const Forest<dim>> forest_;
 };
+
+template <int dim>
+std::shared_ptr<OctreeSource> forest_source(const OctreeArrays& arrays) {
+    return std::make_shared<ForestSource<dim>>(std::make_shared<const Forest<dim>>(arrays));
+}
 
 }  // namespace
 
-std::unique_ptr<OctreeSource> make_octree(const OctreeArrays& arrays) {
-    if (arrays.dimension == 2) return std::make_unique<ForestSource<2>>(arrays);
-    return std::make_unique<ForestSource<3>>(arrays);
+std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays) {
+    return arrays.dimension == 2 ? forest_source<2>(arrays) : forest_source<3>(arrays);
 }
 
 }  // namespace nestgrid::python

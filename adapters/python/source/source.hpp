@@ -6,75 +6,35 @@
 
 #include <filesystem>
 #include <span>
-#include <variant>
 #include <vector>
 
-#include <nestgrid/algorithms/key_frames.hpp>
+#include <nestgrid/algorithms/frames.hpp>
 
-#include "prerolls.hpp"
+#include "call.hpp"
 
 namespace nestgrid::python {
 
-/// An indicator to compare thresholds with, and bounds of the data for the search.
-struct ChosenIndicator {
-    std::shared_ptr<const Indicator> indicator;
-    std::shared_ptr<const Bounds> bounds;
-    /// The bounds, which know the range of the data: those of a field, or between frames.
-    std::variant<const HierarchicalIndicator*, const KeyFrames*> ranged;
-};
-
-/// A field on a hierarchy. Safe for several threads.
+/// A field on a hierarchy, and its prerolls. Safe for several threads.
 class Source {
 public:
+    explicit Source(std::shared_ptr<Prerolls> prerolls) : prerolls_{std::move(prerolls)} {}
     Source(const Source&) = delete;
     Source& operator=(const Source&) = delete;
     virtual ~Source() = default;
 
-    virtual AnyHierarchy hierarchy() const = 0;
-    int dimension() const {
-        return std::visit([](const auto* each) { return each->facts().dimension; }, hierarchy());
-    }
-    /// \param name offset, or as Prerolls::swept()
-    /// \param blend at least 1
-    /// \throw InvalidInput as Prerolls
-    virtual ChosenIndicator choose(const std::string& name, double blend,
-                                   const Call& call) const = 0;
-    virtual std::shared_ptr<const SweptIndicator> sizes(double slope, const Call& call) const = 0;
+    Prerolls& prerolls() const { return *prerolls_; }
+    const FieldOnGrid& field() const { return prerolls_->field(); }
+    int dimension() const { return field().dimension(); }
     /// The least and the greatest value.
-    virtual std::array<double, 2> range(const Call& call) const = 0;
-    /// Drops all prerolls: values have changed.
-    virtual void clear() = 0;
-
-protected:
-    Source() = default;
-};
-
-/// A source with prerolls of its own, which is all but one between frames.
-class PrerolledSource : public Source {
-public:
-    ChosenIndicator choose(const std::string& name, double blend, const Call& call) const final;
-    std::shared_ptr<const SweptIndicator> sizes(double slope, const Call& call) const final {
-        return prerolls().sizes(slope, call);
+    std::array<double, 2> range(const Call& call) const {
+        const std::shared_ptr<const Bounds> bounds = prerolls_->bounds(call.work());
+        return {bounds->least(), bounds->greatest()};
     }
-    std::array<double, 2> range(const Call& call) const final;
-    void clear() final { prerolls().clear(); }
-
-protected:
-    Prerolls& prerolls() const;
+    /// Drops all prerolls: values have changed.
+    void clear() { prerolls_->clear(); }
 
 private:
-    mutable std::once_flag once_;
-    mutable std::unique_ptr<Prerolls> prerolls_;
-};
-
-/// Frames of one field, at times.
-class FrameSource {
-public:
-    virtual ~FrameSource() = default;
-    /// The field at a time; keeps the frames alive.
-    /// \throw InvalidInput where there is not one finite weight for each frame
-    virtual std::unique_ptr<Source> at(std::span<const float> weights) = 0;
-    virtual void clear() = 0;
+    std::shared_ptr<Prerolls> prerolls_;
 };
 
 /// Samples in memory, without gaps.
@@ -93,10 +53,11 @@ struct Samples {
 /// The samples as the corners of bisected triangles or tetrahedra. Index d of the array runs along
 /// column d of the direction, whatever the order in memory is.
 /// \throw InvalidInput as LatticeBisection, and for a type that no field takes
-std::unique_ptr<Source> make_volume(const Samples& samples);
+std::shared_ptr<Source> make_volume(const Samples& samples);
 /// \param frames of one shape, order, type and place, one at least
+/// \param times one for each, ascending
 /// \throw InvalidInput as make_volume(), and where they differ in these
-std::shared_ptr<FrameSource> make_frames(const std::vector<Samples>& frames);
+Frames make_frames(const std::vector<Samples>& frames, std::vector<double> times);
 
 /// Leaves and values of an octree or quadtree, copied.
 struct OctreeArrays {
@@ -114,19 +75,18 @@ struct OctreeLeaves {
     std::vector<double> values;        ///< for each corner of each
     std::vector<std::uint8_t> masked;  ///< for each leaf, or nothing
 };
-class OctreeSource : public PrerolledSource {
+class OctreeSource : public Source {
 public:
+    using Source::Source;
     virtual OctreeLeaves leaves() const = 0;
 };
 /// \throw InvalidInput where the leaves are no forest, or values at one node differ
-std::unique_ptr<OctreeSource> make_octree(const OctreeArrays& arrays);
+std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays);
 
-/// The field of a file, or its frames where it has several.
+/// The field of a file: one frame, or several.
 struct LoadedField {
-    std::unique_ptr<Source> alone;        ///< null where there are frames
-    std::shared_ptr<FrameSource> frames;  ///< null where there is one
-    std::vector<double> times;            ///< of the frames
-    std::string name;                     ///< of the field
+    Frames frames;
+    std::string name;  ///< of the field
 };
 
 /// \param array name of the field; may be empty where there is only one

@@ -12,7 +12,7 @@
 #include <nestgrid/adapters/red_green.hpp>
 #include <nestgrid/adapters/stored_file.hpp>
 
-#include "frames.hpp"
+#include "source.hpp"
 
 namespace nestgrid::python {
 
@@ -38,59 +38,25 @@ bool any_missing(const NamedField& field) {
 }
 
 template <class Family>
-class Stored final : public PrerolledSource {
-public:
-    using Grid = StoredGrid<Family>;
-    using Field = NodeField<Grid, double>;
-
-    Stored(StoredHierarchy<Family> stored, const std::string& array)
-        : stored_(std::move(stored)),
-          field_(stored_.grid, stored_.fields[index_of(stored_.fields, array)].values),
-          hierarchy_(stored_.grid, field_) {
-        if (any_missing(stored_.fields[index_of(stored_.fields, array)])) {
-            holes_.emplace(hierarchy_);
-        }
-    }
-
-    AnyHierarchy hierarchy() const override {
-        if (holes_) return &*holes_;
-        return &hierarchy_;
-    }
-
-private:
-    StoredHierarchy<Family> stored_;
-    Field field_;
-    detail::ErasedHierarchy<Grid, Field> hierarchy_;
-    std::optional<Holes<double>> holes_;
-};
-
-template <class Family>
 LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& array) {
-    LoadedField loaded;
-    loaded.times = stored.times;
-    loaded.name = stored.fields[index_of(stored.fields, array)].name;
-    if (stored.times.size() == 1) {
-        loaded.alone = std::make_unique<Stored<Family>>(std::move(stored), array);
-        return loaded;
-    }
     using Grid = StoredGrid<Family>;
     using Field = NodeField<Grid, double>;
     const std::size_t index = index_of(stored.fields, array);
     const auto kept = std::make_shared<const StoredHierarchy<Family>>(std::move(stored));
+    const NamedField& named = kept->fields[index];
     std::vector<Field> fields;
     for (std::size_t i = 0; i < kept->times.size(); ++i) {
-        fields.emplace_back(kept->grid, kept->frame(kept->fields[index], i));
+        fields.emplace_back(kept->grid, kept->frame(named, i));
     }
-    loaded.frames = std::make_shared<GridFrames<Grid, Field>>(
-        std::shared_ptr<const Grid>(kept, &kept->grid), std::move(fields), kept,
-        any_missing(kept->fields[index]));
-    return loaded;
+    const Frames frames = shared_frames(std::shared_ptr<const Grid>(kept, &kept->grid),
+                                        std::move(fields), kept->times, kept);
+    return {any_missing(named) ? frames.without_missing() : frames, named.name};
 }
 
 /// \return whether the file holds this family
 template <class Family>
 bool load_family(const HierarchyHeader& header, const std::filesystem::path& path,
-                 const std::string& array, LoadedField& loaded) {
+                 const std::string& array, std::optional<LoadedField>& loaded) {
     if (header.family != Family::name || header.dimension != Family::dimension ||
         header.corners != Family::max_corners) {
         return false;
@@ -102,8 +68,8 @@ bool load_family(const HierarchyHeader& header, const std::filesystem::path& pat
 template <class... Families>
 LoadedField load_one_of(const std::filesystem::path& path, const std::string& array) {
     const HierarchyHeader header = read_hierarchy_header(path);
-    LoadedField loaded;
-    if ((load_family<Families>(header, path, array, loaded) || ...)) return loaded;
+    std::optional<LoadedField> loaded;
+    if ((load_family<Families>(header, path, array, loaded) || ...)) return *std::move(loaded);
     throw IoError("'" + path.string() + "' holds a family that is not known: " + header.family);
 }
 

@@ -8,13 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <type_traits>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/holes.hpp>
 
-#include "frames.hpp"
 #include "source.hpp"
 
 namespace nestgrid::python {
@@ -60,36 +57,9 @@ bool any_missing(const Samples& samples, std::size_t count) {
     return false;
 }
 
-template <int dim, class Sample>
-class Volume final : public PrerolledSource {
-public:
-    using Grid = LatticeBisection<dim>;
-
-    explicit Volume(const Samples& samples)
-        : memory_{samples.memory},
-          grid_(lattice_geometry<dim>(samples)),
-          field_{lattice_field<Sample>(grid_, samples)},
-          hierarchy_{erase(grid_, field_)} {
-        if (any_missing<Sample>(samples, grid_.sample_count())) holes_.emplace(hierarchy_);
-    }
-
-    AnyHierarchy hierarchy() const override {
-        if (holes_) return &*holes_;
-        return &hierarchy_;
-    }
-
-private:
-    std::shared_ptr<const void> memory_;
-    Grid grid_;
-    LatticeField<Grid, Sample> field_;
-    decltype(erase(std::declval<const Grid&>(),
-                   std::declval<const LatticeField<Grid, Sample>&>())) hierarchy_;
-    std::optional<Holes<typename LatticeField<Grid, Sample>::value_type>> holes_;
-};
-
 /// The samples of several arrays of one layout as frames.
 template <int dim, class Sample>
-std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) {
+Frames lattice_frames(const std::vector<Samples>& frames, std::vector<double> times) {
     using Grid = LatticeBisection<dim>;
     using Field = LatticeField<Grid, Sample>;
     const auto grid = std::make_shared<const Grid>(lattice_geometry<dim>(frames.front()));
@@ -101,7 +71,8 @@ std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) 
         fields.push_back(lattice_field<Sample>(*grid, frame));
         memory->push_back(frame.memory);
     }
-    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), memory, missing);
+    Frames all = shared_frames(grid, std::move(fields), std::move(times), memory);
+    return missing ? all.without_missing() : all;
 }
 
 /// Calls function(Sample{}) with the type of a name.
@@ -124,9 +95,7 @@ auto with_sample_type(const std::string& type, const Function& function) {
 }
 
 // Each is compiled by itself.
-std::unique_ptr<Source> make_volume_2(const Samples& samples);
-std::unique_ptr<Source> make_volume_3(const Samples& samples);
-std::shared_ptr<FrameSource> make_frames_2(const std::vector<Samples>& frames);
-std::shared_ptr<FrameSource> make_frames_3(const std::vector<Samples>& frames);
+Frames make_frames_2(const std::vector<Samples>& frames, std::vector<double> times);
+Frames make_frames_3(const std::vector<Samples>& frames, std::vector<double> times);
 
 }  // namespace nestgrid::python

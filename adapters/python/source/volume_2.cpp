@@ -4,9 +4,9 @@
 
 namespace nestgrid::python {
 
-std::unique_ptr<Source> make_volume_2(const Samples& samples) {
-    return with_sample_type(samples.type, [&]<class Sample>(Sample) {
-        return std::unique_ptr<Source>(std::make_unique<Volume<2, Sample>>(samples));
+Frames make_frames_2(const std::vector<Samples>& frames, std::vector<double> times) {
+    return with_sample_type(frames.front().type, [&]<class Sample>(Sample) {
+        return lattice_frames<2, Sample>(frames, std::move(times));
     });
 }
 

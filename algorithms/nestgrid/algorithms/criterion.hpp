@@ -11,6 +11,7 @@
 #include <array>
 #include <concepts>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -27,6 +28,8 @@ struct NewNodes {
     NodeMask outside;                    ///< nodes at which no element may stop
     std::span<const Point> positions{};  ///< the true ones, where the criterion wants them
 };
+
+class Threshold;
 
 /// S, a function of nodes: 0 or 1, or a weight between (section 6).
 class Criterion {
@@ -57,6 +60,11 @@ public:
     virtual double surface_error(std::span<const double> /*isovalues*/) const {
         return std::numeric_limits<double>::infinity();
     }
+    /// Whether S is 0 at every node, so that nothing is to be asked.
+    virtual bool never_holds() const { return false; }
+    /// This criterion as a plain threshold, which walks compare with many numbers at once; null
+    /// where it is anything else.
+    virtual const Threshold* as_threshold() const { return nullptr; }
 
 protected:
     Criterion() = default;
@@ -133,6 +141,7 @@ public:
     double surface_error(std::span<const double> isovalues) const override {
         return indicator_->surface_error(isovalues, epsilon_);
     }
+    const Threshold* as_threshold() const override { return this; }
 
 private:
     const Indicator* indicator_;
@@ -162,6 +171,33 @@ public:
     NodeMask holds(const NewNodes&) const override { return 0; }
     bool saturated() const override { return true; }
     double surface_error(std::span<const double>) const override { return 0; }
+    bool never_holds() const override { return true; }
+};
+
+/// Any criterion as a value; copies share it.
+class AnyCriterion final : public Criterion {
+public:
+    template <std::derived_from<Criterion> S>
+        requires(!std::same_as<S, AnyCriterion>)
+    AnyCriterion(S criterion) : criterion_{std::make_shared<const S>(std::move(criterion))} {}
+
+    NodeMask holds(const NewNodes& nodes) const override { return criterion_->holds(nodes); }
+    bool blends() const override { return criterion_->blends(); }
+    void weights(const NewNodes& nodes, std::span<float> s) const override {
+        criterion_->weights(nodes, s);
+    }
+    bool wants_positions() const override { return criterion_->wants_positions(); }
+    bool saturated() const override { return criterion_->saturated(); }
+    bool needs_one_level_a_node() const override { return criterion_->needs_one_level_a_node(); }
+    bool insists() const override { return criterion_->insists(); }
+    double surface_error(std::span<const double> isovalues) const override {
+        return criterion_->surface_error(isovalues);
+    }
+    bool never_holds() const override { return criterion_->never_holds(); }
+    const Threshold* as_threshold() const override { return criterion_->as_threshold(); }
+
+private:
+    std::shared_ptr<const Criterion> criterion_;
 };
 
 namespace detail {
@@ -211,6 +247,7 @@ public:
     double surface_error(std::span<const double> isovalues) const override {
         return std::min(this->a_.surface_error(isovalues), this->b_.surface_error(isovalues));
     }
+    bool never_holds() const override { return this->a_.never_holds() || this->b_.never_holds(); }
 };
 
 /// S_a or S_b: the greatest of their weights.
@@ -224,6 +261,7 @@ public:
     void weights(const NewNodes& nodes, std::span<float> s) const override {
         this->combine(nodes, s, [](float a, float b) { return std::max(a, b); });
     }
+    bool never_holds() const override { return this->a_.never_holds() && this->b_.never_holds(); }
 };
 
 /// Insists on a criterion that is not saturated.

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The criteria that a projection stands for, one for each threshold.
+#pragma once
+
+#include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/prerolls.hpp>
+
+namespace nestgrid {
+
+/// S of a projection of one field at any threshold, and what it is made of.
+class Criteria {
+public:
+    /// Makes the indicators that the projection needs, or takes them from the prerolls.
+    /// \param isovalues of the level sets that are drawn; empty where none are
+    /// \throw InvalidInput as Projection::check() and Prerolls::choose()
+    Criteria(Prerolls& prerolls, Projection projection, std::span<const double> isovalues,
+             const Work& work);
+
+    /// S at a threshold, which holds at more nodes the greater it is: to be handed to
+    /// find_threshold(), too. Must not outlive this object.
+    AnyCriterion at(double threshold) const;
+    /// S at the threshold of the projection.
+    AnyCriterion criterion() const { return at(projection_.least_threshold()); }
+
+    const Projection& projection() const { return projection_; }
+    const Indicator& indicator() const { return *chosen_.indicator; }
+    const Bounds& bounds() const { return *chosen_.bounds; }
+
+private:
+    Projection projection_;
+    ChosenIndicator chosen_;
+    std::shared_ptr<const SweptIndicator> sizes_;  // where there is a lens
+};
+
+}  // namespace nestgrid

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The indicators of one field, made when they are first asked for, and kept: what every projection
+// of the field shares.
+//
+// Invariants:
+//   - what is kept has the bits of what its own function makes of the field;
+//   - between frames, offsets, deviations, bounds and each indicator of which it is known to hold
+//     (IndicatorKind::between_frames) are the weighted sums of those of the frames
+//     (key_frames.hpp), which are made once for all times; others are made of the field between
+//     them;
+//   - several threads may ask at once: the one that comes first makes, the others wait. Where its
+//     work is ended by an exception, nothing is kept, and the next one makes it.
+// Memory: that of what was asked for; of indicators of level sets the last one is kept.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <nestgrid/algorithms/field_on_grid.hpp>
+#include <nestgrid/algorithms/indicators.hpp>
+#include <nestgrid/algorithms/projection.hpp>
+#include <nestgrid/algorithms/watch.hpp>
+
+namespace nestgrid {
+
+/// An indicator to compare thresholds with, and bounds of the data for the search and the error.
+struct ChosenIndicator {
+    std::shared_ptr<const Indicator> indicator;
+    std::shared_ptr<const Bounds> bounds;
+};
+
+class Prerolls {
+public:
+    /// Keeps the field's hierarchy alive where the field does.
+    explicit Prerolls(FieldOnGrid field);
+    /// Those of a field between frames.
+    /// \param field sum of weight * frame (between.hpp)
+    /// \param frames of one grid, shared
+    /// \throw InvalidInput where there is no frame, or not one finite weight for each
+    Prerolls(FieldOnGrid field, std::vector<std::shared_ptr<Prerolls>> frames,
+             std::span<const float> weights);
+    Prerolls(const Prerolls&) = delete;
+    Prerolls& operator=(const Prerolls&) = delete;
+    ~Prerolls();
+
+    const FieldOnGrid& field() const;
+    bool between_frames() const;
+
+    /// \param name of indicators(), or "error" as of Projection
+    /// \param blend the factor by which the indicator is spread, at least 1
+    /// \param isovalues where the indicator is that of level sets
+    /// \throw InvalidInput for an unknown name, where the grid lacks what the indicator needs,
+    /// where
+    ///        one of level sets is asked for without isovalues, and as the functions that make them
+    ChosenIndicator choose(std::string_view name, double blend, std::span<const double> isovalues,
+                           const Work& work);
+    /// The offsets, which bound the data and know their range.
+    std::shared_ptr<const Bounds> bounds(const Work& work);
+    /// Sizes of elements (mesh_size.hpp), for a lens.
+    std::shared_ptr<const SweptIndicator> sizes(const Spread& spread, const Work& work);
+
+    /// Drops what is kept: the data have changed. Work that goes on keeps what it uses. Frames keep
+    /// theirs.
+    void clear();
+    /// Of what is kept, without the frames.
+    std::size_t memory_bytes() const;
+
+private:
+    class Kept;
+
+    std::unique_ptr<Kept> kept_;
+};
+
+}  // namespace nestgrid

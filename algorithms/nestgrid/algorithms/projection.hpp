@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How finely a field is drawn, as a value: what a user chooses, whatever is drawn of it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <nestgrid/algorithms/domains.hpp>
+
+namespace nestgrid {
+
+/// A lens by the size of elements (lens.hpp), in units of length.
+struct LensRequest {
+    Distance distance;  ///< from the domain where elements are fine
+    double finest = 0;  ///< size of elements in it
+    double coarsest = std::numeric_limits<double>::infinity();  ///< far from it
+    double slope = 0.5;  ///< by which sizes may grow with the distance
+};
+
+/// Which elements may stop.
+struct Projection {
+    /// In the units of the indicator. Nothing: 0, or with a lens infinity, so that the lens decides
+    /// alone.
+    std::optional<double> threshold{};
+    /// The largest number of triangles, beside which there is no threshold; 0 asks for none.
+    std::uint64_t max_triangles = 0;
+    /// Of indicators(); or "error", which is error_indicator().
+    std::string indicator = "offset";
+    /// Nodes move from their mean to their value between the threshold and this many times it
+    /// (blended.hpp), at least 1.
+    double blend = 1;
+    std::optional<LensRequest> lens{};
+
+    /// The threshold where none is searched for.
+    double least_threshold() const {
+        return threshold.value_or(lens ? std::numeric_limits<double>::infinity() : 0);
+    }
+    /// Whether it can be kept without a preroll: everything is drawn.
+    bool draws_everything() const {
+        return least_threshold() == 0 && max_triangles == 0 && blend == 1;
+    }
+    /// \throw InvalidInput where a number is out of range, with its name
+    void check() const;
+};
+
+}  // namespace nestgrid

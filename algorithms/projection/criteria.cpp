@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/criteria.hpp>
+
+#include <nestgrid/algorithms/blended.hpp>
+#include <nestgrid/algorithms/lens.hpp>
+
+namespace nestgrid {
+
+Criteria::Criteria(Prerolls& prerolls, Projection projection, std::span<const double> isovalues,
+                   const Work& work)
+    : projection_{std::move(projection)} {
+    projection_.check();
+    chosen_ = prerolls.choose(projection_.indicator, projection_.blend, isovalues, work);
+    if (!projection_.lens) return;
+    sizes_ = prerolls.sizes({.factor = projection_.blend, .slope = projection_.lens->slope}, work);
+}
+
+AnyCriterion Criteria::at(double threshold) const {
+    const Indicator* const indicator = chosen_.indicator.get();
+    const auto in_lens = [&](auto criterion) -> AnyCriterion {
+        if (!projection_.lens) return criterion;
+        const LensRequest& lens = *projection_.lens;
+        return criterion &&
+               Lens(sizes_.get(), lens.distance,
+                    {.finest = lens.finest, .coarsest = lens.coarsest, .blend = projection_.blend});
+    };
+    if (projection_.blend == 1) return in_lens(Threshold(indicator, threshold));
+    return in_lens(Blended(indicator, threshold, projection_.blend));
+}
+
+}  // namespace nestgrid

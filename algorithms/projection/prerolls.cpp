@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/prerolls.hpp>
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <tuple>
+
+#include <nestgrid/algorithms/key_frames.hpp>
+#include <nestgrid/algorithms/mesh_size.hpp>
+#include <nestgrid/algorithms/swept_key_frames.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
+
+namespace {
+
+/// The entry of a key, made by make() where there is none.
+template <class Map, class Make>
+typename Map::mapped_type kept_in(Map& map, const typename Map::key_type& key, const Make& make) {
+    const auto found = map.find(key);
+    if (found != map.end()) return found->second;
+    return map.emplace(key, make()).first->second;
+}
+
+/// The sum of indicators of frames, with what it borrows.
+/// \tparam Sum KeyFrames or SweptKeyFrames
+template <class Sum, class Indicator>
+std::shared_ptr<const Sum> weighted_sum(std::vector<std::shared_ptr<const Indicator>> of_frames,
+                                        std::span<const float> weights) {
+    struct Kept {
+        std::vector<std::shared_ptr<const Indicator>> frames;
+        Sum sum;
+    };
+    std::vector<const Indicator*> borrowed;
+    for (const auto& each : of_frames) borrowed.push_back(each.get());
+    const auto kept =
+        std::make_shared<Kept>(Kept{std::move(of_frames), Sum(std::move(borrowed), weights)});
+    return {kept, &kept->sum};
+}
+
+}  // namespace
+
+/// All that is kept, behind one lock.
+class Prerolls::Kept {
+public:
+    Kept(FieldOnGrid field, std::vector<std::shared_ptr<Prerolls>> frames,
+         std::span<const float> weights)
+        : field_{std::move(field)},
+          frames_{std::move(frames)},
+          weights_(weights.begin(), weights.end()) {}
+
+    const FieldOnGrid& field() const { return field_; }
+    bool between_frames() const { return !frames_.empty(); }
+
+    ChosenIndicator choose(const IndicatorKind& kind, double blend,
+                           std::span<const double> isovalues, const Work& work) {
+        kind.require(field_.facts());
+        if (kind.of_nodes) return of_nodes(*kind.of_nodes, blend, work);
+        ChosenIndicator chosen = of_nodes(NodeError::offset, 1, work);
+        if (kind.of_level_sets) {
+            chosen.indicator = of_level_sets(kind, blend, isovalues, *chosen.bounds, work);
+        } else if (between_frames() && kind.between_frames) {
+            chosen.indicator = sum_of_frames<SweptKeyFrames>([&](Kept& frame) {
+                return frame.swept(kind, blend, *frame.of_nodes(NodeError::offset, 1, work).bounds,
+                                   work);
+            });
+        } else {
+            chosen.indicator = swept(kind, blend, *chosen.bounds, work);
+        }
+        return chosen;
+    }
+
+    std::shared_ptr<const SweptIndicator> sizes(const Spread& spread, const Work& work) {
+        if (between_frames()) return frames_.front()->kept_->sizes(spread, work);
+        const std::scoped_lock lock(mutex_);
+        return kept_in(sizes_, {spread.factor, spread.slope}, [&] {
+            return work.on(field_).visit([&](const auto& hierarchy) {
+                return std::make_shared<const SweptIndicator>(mesh_size(hierarchy, spread));
+            });
+        });
+    }
+
+    void clear() {
+        const std::scoped_lock lock(mutex_);
+        of_nodes_.clear();
+        swept_.clear();
+        sizes_.clear();
+        of_level_sets_ = {};
+    }
+
+    std::size_t memory_bytes() const {
+        const std::scoped_lock lock(mutex_);
+        std::size_t bytes = of_level_sets_.made ? of_level_sets_.made->memory_bytes() : 0;
+        for (const auto& [key, each] : of_nodes_) bytes += each->memory_bytes();
+        for (const auto& [key, each] : swept_) bytes += each->memory_bytes();
+        for (const auto& [key, each] : sizes_) bytes += each->memory_bytes();
+        return bytes;
+    }
+
+private:
+    using Made = std::shared_ptr<const SweptIndicator>;
+
+    /// A hierarchical indicator, which has bounds, too.
+    ChosenIndicator of_nodes(NodeError error, double blend, const Work& work) {
+        if (between_frames()) {
+            const auto sum = sum_of_frames<KeyFrames>(
+                [&](Kept& frame) { return frame.own_of_nodes(error, blend, work); });
+            return {sum, sum};
+        }
+        const auto own = own_of_nodes(error, blend, work);
+        return {own, own};
+    }
+    std::shared_ptr<const HierarchicalIndicator> own_of_nodes(NodeError error, double blend,
+                                                              const Work& work) {
+        const std::scoped_lock lock(mutex_);
+        return kept_in(of_nodes_, {error, blend}, [&] {
+            return work.on(field_).visit([&](const auto& hierarchy) {
+                return std::make_shared<const HierarchicalIndicator>(
+                    hierarchy, error, work.executor, Spread{.factor = blend});
+            });
+        });
+    }
+
+    Made swept(const IndicatorKind& kind, double blend, const Bounds& bounds, const Work& work) {
+        const std::scoped_lock lock(mutex_);
+        return kept_in(swept_, {&kind, blend}, [&] { return make(kind, blend, {}, bounds, work); });
+    }
+    Made of_level_sets(const IndicatorKind& kind, double blend, std::span<const double> isovalues,
+                       const Bounds& bounds, const Work& work) {
+        if (isovalues.empty()) {
+            throw InvalidInput("the indicator " + std::string(kind.name) +
+                               " is for isosurfaces and isolines with given values");
+        }
+        const std::scoped_lock lock(mutex_);
+        OfLevelSets& last = of_level_sets_;
+        if (last.kind == &kind && last.blend == blend &&
+            std::ranges::equal(last.isovalues, isovalues)) {
+            return last.made;
+        }
+        last = {&kind, blend, std::vector(isovalues.begin(), isovalues.end()),
+                make(kind, blend, isovalues, bounds, work)};
+        return last.made;
+    }
+    Made make(const IndicatorKind& kind, double blend, std::span<const double> isovalues,
+              const Bounds& bounds, const Work& work) const {
+        const IndicatorInput input{.range = bounds.greatest() - bounds.least(),
+                                   .spread = {.factor = blend},
+                                   .isovalues = isovalues,
+                                   .bounds = &bounds,
+                                   .executor = work.executor};
+        return std::make_shared<const SweptIndicator>(kind.make(work.on(field_), input));
+    }
+
+    /// \param of gives the indicator of one frame
+    template <class Sum, class Of>
+    std::shared_ptr<const Sum> sum_of_frames(const Of& of) const {
+        std::vector<decltype(of(*frames_.front()->kept_))> of_frames;
+        for (const auto& frame : frames_) of_frames.push_back(of(*frame->kept_));
+        return weighted_sum<Sum>(std::move(of_frames), weights_);
+    }
+
+    struct OfLevelSets {
+        const IndicatorKind* kind = nullptr;
+        double blend = 1;
+        std::vector<double> isovalues{};
+        Made made{};
+    };
+
+    FieldOnGrid field_;
+    std::vector<std::shared_ptr<Prerolls>> frames_;  // empty where the field is no sum
+    std::vector<float> weights_;                     // of the frames
+    mutable std::mutex mutex_;
+    std::map<std::pair<NodeError, double>, std::shared_ptr<const HierarchicalIndicator>> of_nodes_;
+    std::map<std::pair<const IndicatorKind*, double>, Made> swept_;
+    std::map<std::pair<double, double>, Made> sizes_;
+    OfLevelSets of_level_sets_;
+};
+
+Prerolls::Prerolls(FieldOnGrid field)
+    : kept_{std::make_unique<Kept>(std::move(field), std::vector<std::shared_ptr<Prerolls>>{},
+                                   std::span<const float>{})} {}
+
+Prerolls::Prerolls(FieldOnGrid field, std::vector<std::shared_ptr<Prerolls>> frames,
+                   std::span<const float> weights) {
+    if (frames.empty()) throw InvalidInput("there are no frames to interpolate between");
+    detail::require_weights(frames.size(), weights);
+    kept_ = std::make_unique<Kept>(std::move(field), std::move(frames), weights);
+}
+
+Prerolls::~Prerolls() = default;
+
+const FieldOnGrid& Prerolls::field() const { return kept_->field(); }
+
+bool Prerolls::between_frames() const { return kept_->between_frames(); }
+
+ChosenIndicator Prerolls::choose(std::string_view name, double blend,
+                                 std::span<const double> isovalues, const Work& work) {
+    const IndicatorKind& kind = name == "error" ? error_indicator(field().facts(), between_frames())
+                                                : indicator_named(name);
+    return kept_->choose(kind, blend, isovalues, work);
+}
+
+std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) {
+    return choose("offset", 1, {}, work).bounds;
+}
+
+std::shared_ptr<const SweptIndicator> Prerolls::sizes(const Spread& spread, const Work& work) {
+    return kept_->sizes(spread, work);
+}
+
+void Prerolls::clear() { kept_->clear(); }
+
+std::size_t Prerolls::memory_bytes() const { return kept_->memory_bytes(); }
+
+}  // namespace nestgrid

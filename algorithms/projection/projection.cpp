@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/projection.hpp>
+
+#include <cmath>
+
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
+
+void Projection::check() const {
+    if (!(blend >= 1) || !std::isfinite(blend)) {
+        throw InvalidInput("blend is not a finite number of at least 1");
+    }
+    if (!(least_threshold() >= 0)) throw InvalidInput("the threshold is not a number >= 0");
+    if (lens && (!(lens->slope >= 0) || !std::isfinite(lens->slope))) {
+        throw InvalidInput("the slope of the lens is not a finite number >= 0");
+    }
+}
+
+}  // namespace nestgrid
