@@ -4,9 +4,9 @@
 
 #include <nestgrid/algorithms/isolines.hpp>
 
+#include "asked.hpp"
 #include "calls.hpp"
 #include "drawn.hpp"
-#include "projection.hpp"
 
 namespace {
 
@@ -49,9 +49,9 @@ Isolines draw(const Hierarchy<Real>& hierarchy, std::span<const double> values,
     if (asked.options().max_triangles > 0) {
         throw InvalidInput("a limit of segments is for one isoline: take nestgrid_isosurface_with");
     }
-    const Projection projection(hierarchy, asked, values);
-    return isolines(hierarchy, values, projection.at(projection.threshold()), projection.bounds(),
-                    asked.how_to_draw(), asked.executor());
+    const Criteria criteria = asked.criteria(hierarchy, values);
+    return isolines(hierarchy, values, criteria.criterion(), criteria.bounds(), asked.how_to_draw(),
+                    asked.executor());
 }
 
 }  // namespace

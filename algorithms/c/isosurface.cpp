@@ -6,10 +6,10 @@
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
+#include "asked.hpp"
 #include "calls.hpp"
 #include "check_table.hpp"
 #include "drawn.hpp"
-#include "projection.hpp"
 
 namespace {
 
@@ -18,16 +18,16 @@ using namespace nestgrid;
 template <int dimension, class Real>
 void draw(const Hierarchy<Real>& hierarchy, double isovalue, const Asked& asked,
           nestgrid_surface& out) {
-    const Projection projection(hierarchy, asked, std::span(&isovalue, 1));
+    const Criteria criteria = asked.criteria(hierarchy, std::span(&isovalue, 1));
     const IsosurfaceOptions how = asked.how_to_draw();
-    TriangleBudget search{.threshold = projection.threshold()};
+    TriangleBudget search{.threshold = criteria.projection().least_threshold()};
     if (asked.options().max_triangles > 0) {
         search = find_threshold<dimension>(
-            hierarchy, isovalue, [&](double threshold) { return projection.at(threshold); },
-            projection.bounds(), asked.options().max_triangles, how, asked.executor());
+            hierarchy, isovalue, [&](double threshold) { return criteria.at(threshold); },
+            criteria.bounds(), asked.options().max_triangles, how, asked.executor());
     }
-    hand_over(isosurface<dimension>(hierarchy, isovalue, projection.at(search.threshold),
-                                    projection.bounds(), how, asked.executor()),
+    hand_over(isosurface<dimension>(hierarchy, isovalue, criteria.at(search.threshold),
+                                    criteria.bounds(), how, asked.executor()),
               search, out);
 }
 
@@ -46,17 +46,17 @@ template <class Real>
 int draw_height_field(const Hierarchy<Real>& hierarchy, double scale, const Asked& asked,
                       nestgrid_surface& out) {
     hierarchy.facts().require_dimension(2);
-    const Projection projection(hierarchy, asked, {});
+    const Criteria criteria = asked.criteria(hierarchy, {});
     const IsosurfaceOptions how = asked.how_to_draw();
     const ShadingOptions options{.elements = how.elements, .progress = how.progress};
-    TriangleBudget search{.threshold = projection.threshold()};
+    TriangleBudget search{.threshold = criteria.projection().least_threshold()};
     if (asked.options().max_triangles > 0) {
         search = find_shading_threshold(
-            hierarchy, [&](double threshold) { return projection.at(threshold); },
-            projection.bounds(), asked.options().max_triangles, options, asked.executor());
+            hierarchy, [&](double threshold) { return criteria.at(threshold); }, criteria.bounds(),
+            asked.options().max_triangles, options, asked.executor());
     }
-    Shading graph = height_field(hierarchy, scale, projection.at(search.threshold),
-                                 projection.bounds(), options, asked.executor());
+    Shading graph = height_field(hierarchy, scale, criteria.at(search.threshold), criteria.bounds(),
+                                 options, asked.executor());
     Isosurface<3> result;
     static_cast<ErrorBounds&>(result) = graph;
     result.surface = std::move(graph.surface);

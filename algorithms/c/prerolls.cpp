@@ -4,14 +4,16 @@
 
 #include "calls.hpp"
 
-void nestgrid_prerolls::require_same(const nestgrid_grid& of_grid, const nestgrid_field& of_field) {
-    const std::scoped_lock lock(mutex);
-    if (used && (grid != of_grid.self || field != of_field.self)) {
+nestgrid::Prerolls& nestgrid_prerolls::of(const nestgrid_grid& grid, const nestgrid_field& field,
+                                          const nestgrid::FieldOnGrid& hierarchy) {
+    const std::scoped_lock lock(mutex_);
+    if (prerolls_ && (grid_ != grid.self || field_ != field.self)) {
         throw nestgrid::InvalidInput("the prerolls were made for another grid or field");
     }
-    used = true;
-    grid = of_grid.self;
-    field = of_field.self;
+    grid_ = grid.self;
+    field_ = field.self;
+    if (!prerolls_) prerolls_.emplace(hierarchy);
+    return *prerolls_;
 }
 
 extern "C" int nestgrid_prerolls_make(nestgrid_prerolls** out, char* message, size_t message_size) {

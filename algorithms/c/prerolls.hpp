@@ -4,31 +4,24 @@
 // Indicators of one grid and field that several calls of a C code share.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <mutex>
+#include <optional>
 
 #include <nestgrid/algorithms/options.h>
-#include <nestgrid/algorithms/swept_indicator.hpp>
+#include <nestgrid/algorithms/prerolls.hpp>
 
 /// Several calls may ask at once; the one that comes first computes.
 struct nestgrid_prerolls {
-    /// Keeps the tables that are asked for first.
-    /// \throw nestgrid::InvalidInput where they are of another grid or field
-    void require_same(const nestgrid_grid& grid, const nestgrid_field& field);
-    /// The indicator that `map` has under a number; make() gives it where there is none yet.
-    template <class Map, class Make>
-    typename Map::mapped_type kept(Map& map, int number, const Make& make) {
-        const std::scoped_lock lock(mutex);
-        auto& entry = map[number];
-        if (entry == nullptr) entry = make();
-        return entry;
-    }
+public:
+    /// The prerolls of the tables that are asked for first. Their hierarchy is that of a call: work
+    /// names its own (Work::same_field).
+    /// \throw nestgrid::InvalidInput where the tables are of another grid or field
+    nestgrid::Prerolls& of(const nestgrid_grid& grid, const nestgrid_field& field,
+                           const nestgrid::FieldOnGrid& hierarchy);
 
-    std::mutex mutex;
-    bool used = false;
-    const void* grid = nullptr;  // `self` of the tables
-    const void* field = nullptr;
-    std::map<int, std::shared_ptr<const nestgrid::HierarchicalIndicator>> of_nodes;
-    std::map<int, std::shared_ptr<const nestgrid::SweptIndicator>> swept;
+private:
+    std::mutex mutex_;
+    const void* grid_ = nullptr;  // `self` of the tables
+    const void* field_ = nullptr;
+    std::optional<nestgrid::Prerolls> prerolls_;
 };

@@ -4,8 +4,8 @@
 
 #include <nestgrid/algorithms/probe.hpp>
 
+#include "asked.hpp"
 #include "calls.hpp"
-#include "projection.hpp"
 
 namespace {
 
@@ -27,8 +27,8 @@ ProbeResult ask(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
         throw InvalidInput("a number of triangles is asked for, but a probe draws none");
     }
     if (asked.everything()) return probe(hierarchy, points);
-    const Projection projection(hierarchy, asked, {});
-    return probe(hierarchy, points, projection.at(projection.threshold()), projection.bounds());
+    const Criteria criteria = asked.criteria(hierarchy, {});
+    return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
 }
 
 /// Hands values to a C code, which frees them.

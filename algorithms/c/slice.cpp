@@ -5,9 +5,9 @@
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
+#include "asked.hpp"
 #include "calls.hpp"
 #include "drawn.hpp"
-#include "projection.hpp"
 
 namespace {
 
@@ -60,14 +60,14 @@ void draw(const Hierarchy<Real>& hierarchy, const LevelFunction& function, const
         hand_over(slice(hierarchy, function, how, asked.executor()), {}, out);
         return;
     }
-    const Projection projection(hierarchy, asked, {});
-    TriangleBudget search{.threshold = projection.threshold()};
+    const Criteria criteria = asked.criteria(hierarchy, {});
+    TriangleBudget search{.threshold = criteria.projection().least_threshold()};
     if (asked.options().max_triangles > 0) {
         search = find_threshold(
-            hierarchy, function, [&](double threshold) { return projection.at(threshold); },
-            projection.bounds(), asked.options().max_triangles, how, asked.executor());
+            hierarchy, function, [&](double threshold) { return criteria.at(threshold); },
+            criteria.bounds(), asked.options().max_triangles, how, asked.executor());
     }
-    hand_over(slice(hierarchy, function, projection.at(search.threshold), projection.bounds(), how,
+    hand_over(slice(hierarchy, function, criteria.at(search.threshold), criteria.bounds(), how,
                     asked.executor()),
               search, out);
 }

@@ -36,6 +36,7 @@ module nestgrid
     integer(c_int), parameter :: NESTGRID_GEOMETRY = 5
     integer(c_int), parameter :: NESTGRID_CUT = 6
     integer(c_int), parameter :: NESTGRID_SLOPE = 7
+    integer(c_int), parameter :: NESTGRID_NORM = 8
 
     integer(c_int), parameter :: NESTGRID_ALL_THREADS = -1
     integer(c_int32_t), parameter :: NESTGRID_NO_ELEMENT = -1_c_int32_t

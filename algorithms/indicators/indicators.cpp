@@ -105,6 +105,18 @@ void IndicatorKind::require(const HierarchyFacts& facts) const {
                        std::string(needed_grids) + ": on this one it is 0 everywhere");
 }
 
+const char* unit_name(ThresholdUnit unit) {
+    switch (unit) {
+        case ThresholdUnit::data:
+            return "data";
+        case ThresholdUnit::length:
+            return "length";
+        case ThresholdUnit::none:
+            break;
+    }
+    return "none";
+}
+
 std::span<const IndicatorKind> indicators() { return all; }
 
 const IndicatorKind& indicator_named(std::string_view name) {

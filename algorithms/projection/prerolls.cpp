@@ -56,7 +56,7 @@ public:
 
     ChosenIndicator choose(const IndicatorKind& kind, double blend,
                            std::span<const double> isovalues, const Work& work) {
-        kind.require(field_.facts());
+        kind.require(work.on(field_).facts());
         if (kind.of_nodes) return of_nodes(*kind.of_nodes, blend, work);
         ChosenIndicator chosen = of_nodes(NodeError::offset, 1, work);
         if (kind.of_level_sets) {
@@ -197,8 +197,9 @@ bool Prerolls::between_frames() const { return kept_->between_frames(); }
 
 ChosenIndicator Prerolls::choose(std::string_view name, double blend,
                                  std::span<const double> isovalues, const Work& work) {
-    const IndicatorKind& kind = name == "error" ? error_indicator(field().facts(), between_frames())
-                                                : indicator_named(name);
+    const IndicatorKind& kind = name == "error"
+                                    ? error_indicator(work.on(field()).facts(), between_frames())
+                                    : indicator_named(name);
     return kept_->choose(kind, blend, isovalues, work);
 }
 

@@ -18,6 +18,7 @@
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
+#include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/slice.hpp>
@@ -246,6 +247,7 @@ TEST(IsosurfacesForC, HaveEveryIndicator) {
         expect(NESTGRID_NUMERICAL, numerical_indicator(scene.grid, scene.first), offsets);
         expect(NESTGRID_WAVELET, wavelet_indicator(scene.grid, scene.first), offsets);
         expect(NESTGRID_VISUAL, visual_indicator(scene.grid, scene.first), offsets);
+        expect(NESTGRID_NORM, norm_indicator(scene.grid, scene.first), offsets);
         expect(NESTGRID_CUT, cut_deviations(scene.grid, scene.first, levels, offsets), offsets);
         expect(NESTGRID_SLOPE, slope_deviations(scene.grid, scene.first, levels, offsets), offsets);
     });
@@ -683,10 +685,11 @@ TEST_F(RefusalsForC, OfOptionsAreSentences) {
     options.max_triangles = 1;
     EXPECT_NE(isosurface_says().find("triangles"), std::string::npos);
     start_again();
-    options.indicator = 8;
-    EXPECT_EQ(isosurface_says(), "the indicator 8 does not exist");
+    options.indicator = NESTGRID_NORM + 1;
+    EXPECT_EQ(isosurface_says(), "the indicator 9 does not exist");
     options.indicator = NESTGRID_GEOMETRY;
-    EXPECT_EQ(isosurface_says(), "NESTGRID_GEOMETRY is for curved grids: on this one it is 0");
+    EXPECT_EQ(isosurface_says(),
+              "the indicator geometry is for curved grids: on this one it is 0 everywhere");
     start_again();
     options.threads = -2;
     EXPECT_EQ(isosurface_says(), "-2 threads are asked for, not -1 to 1024");
@@ -738,7 +741,7 @@ TEST_F(RefusalsForC, OfSlicesAreSentences) {
     options.threshold = 0.1;
     options.indicator = NESTGRID_CUT;
     EXPECT_EQ(slice_says(&function),
-              "NESTGRID_CUT and NESTGRID_SLOPE are for isosurfaces and isolines");
+              "the indicator cut is for isosurfaces and isolines with given values");
     nestgrid_surface surface;
     EXPECT_EQ(refusal([&](char* text, std::size_t size) {
                   return nestgrid_slice(&solid.in_c.table, &solid.field, nullptr, nullptr, nullptr,

@@ -28,7 +28,7 @@ R = TypeVar("R")
 #: Where edges of coarse elements are cut.
 Cuts = Literal["linear", "finest"]
 #: What a threshold is compared with.
-Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
+Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "norm", "geometry"]
 #: What a threshold of an isosurface is compared with: also the errors of that surface alone.
 SurfaceIndicator = Literal[Indicator, "cut", "slope"]
 #: Types of samples, as NumPy calls them.
@@ -305,8 +305,8 @@ SHARED = {
         '"offset": |data - mean| in units of the data; "deviation": |data - what is drawn|, so '
         'that the threshold is the error; "visual": folds, 2 sin(angle / 2), from 0 to 2; '
         '"numerical": jumps of the gradient times the diameter, in units of the data; '
-        '"wavelet": coefficients in units of the data; "geometry": |position - mean| on curved '
-        "grids, in units of length",
+        '"wavelet": coefficients in units of the data; "norm": the Euclidean norm of the offsets '
+        'of all components; "geometry": |position - mean| on curved grids, in units of length',
     ),
     "blend": Argument(
         number,

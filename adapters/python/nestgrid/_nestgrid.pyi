@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
-_Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "geometry"]
+_Indicator = Literal["offset", "deviation", "visual", "numerical", "wavelet", "norm", "geometry"]
 _OfSurface = Literal["error", "cut", "slope"]
 
 class InvalidInput(ValueError):
@@ -100,6 +100,8 @@ class Projection:
         blend: float,
         lens: Lens | None,
     ) -> None: ...
+
+def indicators() -> list[tuple[str, str, str, bool]]: ...
 
 class LevelFunction: ...
 

@@ -3,6 +3,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
+#include <nestgrid/algorithms/indicators.hpp>
 #include <nestgrid/error.hpp>
 
 #include "bind.hpp"
@@ -96,6 +97,13 @@ void bind_requests(py::module_& m) {
              }),
              py::arg("threshold"), py::arg("max_triangles"), py::arg("indicator"), py::arg("blend"),
              py::arg("lens"));
+    m.def("indicators", [] {
+        std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
+        for (const IndicatorKind& kind : indicators()) {
+            all.emplace_back(kind.name, kind.measures, unit_name(kind.unit), kind.of_level_sets);
+        }
+        return all;
+    });
     const py::class_<LevelFunction, std::shared_ptr<LevelFunction>> opaque(m, "LevelFunction");
     m.def(
         "plane",

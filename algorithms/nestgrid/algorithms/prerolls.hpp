@@ -35,7 +35,8 @@ struct ChosenIndicator {
 
 class Prerolls {
 public:
-    /// Keeps the field's hierarchy alive where the field does.
+    /// \param field shared where it is to be kept alive. It is not asked by work that has a field
+    ///        of its own (Work::same_field)
     explicit Prerolls(FieldOnGrid field);
     /// Those of a field between frames.
     /// \param field sum of weight * frame (between.hpp)

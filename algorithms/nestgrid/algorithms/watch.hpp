@@ -55,10 +55,14 @@ private:
 struct Work {
     const Executor& executor = sequential();
     const Watch* watch = nullptr;  ///< or null
+    /// Asked in the place of a field that is the same: for hierarchies that are made anew for each
+    /// call. Or null.
+    const FieldOnGrid* same_field = nullptr;
 
     /// The field as this work asks it.
     FieldOnGrid on(const FieldOnGrid& field) const {
-        return watch == nullptr ? field : watched(field, *watch);
+        const FieldOnGrid& asked = same_field == nullptr ? field : *same_field;
+        return watch == nullptr ? asked : watched(asked, *watch);
     }
 
 private:

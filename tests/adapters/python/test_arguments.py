@@ -3,6 +3,7 @@
 """Every public function says in a sentence which argument is wrong, and help() tells them all."""
 import inspect
 import re
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -186,3 +187,16 @@ def test_what_things_say_of_themselves():
     assert "not finite" in repr(broken)
     with pytest.raises(nestgrid.InvalidInput, match="no sample has a value"):
         nestgrid.Volume(np.full((2, 2, 2), np.nan))
+
+
+def test_indicators_are_those_of_the_library():
+    """The names that Python's types list are those of the compiled list, with their units."""
+    from nestgrid import _arguments, _nestgrid
+
+    listed = _nestgrid.indicators()
+    assert get_args(_arguments.Indicator) == tuple(n for n, _, _, of_level in listed if not of_level)
+    assert set(get_args(_arguments.SurfaceIndicator)) == {name for name, _, _, _ in listed}
+    help = _arguments.SHARED["indicator"].help
+    for name, measures, unit, of_level in listed:
+        assert measures and unit in ("data", "length", "none")
+        assert of_level or f'"{name}"' in help

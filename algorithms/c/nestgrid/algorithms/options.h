@@ -21,7 +21,8 @@ enum {
     NESTGRID_VISUAL,     /* differences of unit normals, 0 to 2 */
     NESTGRID_GEOMETRY,   /* |x - mean of the parents|, in units of length; of curved grids */
     NESTGRID_CUT,        /* the error of level sets, in units of the data; of these alone */
-    NESTGRID_SLOPE       /* their distance, estimated, in units of length; of these alone */
+    NESTGRID_SLOPE,      /* their distance, estimated, in units of length; of these alone */
+    NESTGRID_NORM        /* the Euclidean norm of the offsets of all components */
 };
 
 /** As many threads as the machine runs at a time. */
@@ -66,7 +67,7 @@ typedef struct nestgrid_options {
      * number than 0 ends the drawing, whose result is then a part. */
     int (*progress)(void* progress_data, uint64_t visited, uint64_t extracted);
     void* progress_data;
-    nestgrid_prerolls* prerolls; /* that are used and added to, but for NESTGRID_CUT and SLOPE */
+    nestgrid_prerolls* prerolls; /* that are used and added to; of isovalues the last are kept */
 } nestgrid_options;
 
 /** Makes empty prerolls. Returns 0, or another number and a sentence, as isosurface.h says. Free

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Makes what the algorithms need of the options of a C code: a criterion, bounds and threads.
+// What a C code asks for: its options, and what the algorithms need of them.
 #pragma once
 
 #include <memory>
 #include <span>
 
 #include <nestgrid/algorithms/options.h>
+#include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
-#include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
 
@@ -31,42 +31,23 @@ public:
     bool everything() const {
         return options_.threshold == 0 && options_.error == 0 && options_.max_triangles == 0;
     }
-    /// Whether the rules of the grid know simplices alone.
-    bool rules_of_simplices() const;
-    /// Prerolls of this grid and field that the caller keeps, or null.
-    /// \throw InvalidInput where they are of others
-    nestgrid_prerolls* prerolls() const;
+    /// The criteria that are asked for, from the prerolls that the caller keeps, if any.
+    /// \param isovalues of the level sets; none for other drawings
+    /// \throw InvalidInput where the indicator is not for the drawing or for the grid, and where
+    /// the
+    ///        prerolls are of others
+    Criteria criteria(const FieldOnGrid& field, std::span<const double> isovalues) const;
     /// But for the threshold and the number of triangles.
     IsosurfaceOptions how_to_draw() const;
 
 private:
+    std::string indicator_for(const FieldOnGrid& field, bool level_sets) const;
+    bool rules_of_simplices() const;
+
     nestgrid_options options_{};
     const nestgrid_grid* grid_;
     const nestgrid_field* field_;
     std::unique_ptr<const Executor> executor_;
-};
-
-/// The indicator that was asked for, and the bounds beside it.
-class Projection {
-public:
-    /// \param isovalues of the level sets; none for other drawings
-    /// \throw InvalidInput where the indicator is not for the drawing or for the grid
-    template <class Real>
-    Projection(const Hierarchy<Real>& hierarchy, const Asked& asked,
-               std::span<const double> isovalues);
-
-    double threshold() const { return threshold_; }
-    const HierarchicalIndicator& bounds() const { return *bounds_; }
-    Threshold at(double threshold) const {
-        if (swept_) return {&*swept_, threshold};
-        return {&*bounds_, threshold};
-    }
-
-private:
-    double threshold_;
-    std::shared_ptr<const HierarchicalIndicator> bounds_;
-    std::shared_ptr<const SweptIndicator>
-        swept_;  // where another indicator than the bounds' was asked for
 };
 
 }  // namespace nestgrid

@@ -1,17 +1,13 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "projection.hpp"
+#include "asked.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
 
-#include <nestgrid/algorithms/cut_indicator.hpp>
-#include <nestgrid/algorithms/geometry_indicator.hpp>
-#include <nestgrid/algorithms/numerical_indicator.hpp>
-#include <nestgrid/algorithms/visual_indicator.hpp>
-#include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
 
 #include <threads/thread_executor.hpp>
@@ -24,10 +20,15 @@ namespace {
 
 constexpr int most_threads = 1024;
 
+/// Names of the indicators, from NESTGRID_OFFSET on.
+constexpr std::array<const char*, 9> names{
+    "offset", "deviation", "numerical", "wavelet", "visual", "geometry", "cut", "slope", "norm"};
+static_assert(NESTGRID_NORM + 1 == names.size());
+
 void require_range(const nestgrid_options& options) {
     if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
     if (!(options.error >= 0)) throw InvalidInput("the error is negative or not a number");
-    if (options.indicator < NESTGRID_OFFSET || options.indicator > NESTGRID_SLOPE) {
+    if (options.indicator < NESTGRID_OFFSET || options.indicator > NESTGRID_NORM) {
         throw InvalidInput("the indicator " + std::to_string(options.indicator) +
                            " does not exist");
     }
@@ -73,38 +74,6 @@ bool coarse_simplices(const Hierarchy<Real>& hierarchy) {
     return true;
 }
 
-/// The indicator that is to be compared with the threshold.
-template <class Real>
-int indicator_for(const Asked& asked, const Hierarchy<Real>& hierarchy, bool level_sets) {
-    if (asked.options().error == 0) return asked.options().indicator;
-    return level_sets && asked.rules_of_simplices() && coarse_simplices(hierarchy)
-               ? NESTGRID_CUT
-               : NESTGRID_DEVIATION;
-}
-
-template <class Real>
-SweptIndicator make_swept(int indicator, const Hierarchy<Real>& hierarchy, const Bounds& bounds,
-                          std::span<const double> isovalues, const Executor& executor) {
-    switch (indicator) {
-        case NESTGRID_NUMERICAL:
-            return numerical_indicator(hierarchy);
-        case NESTGRID_WAVELET:
-            return wavelet_indicator(hierarchy);
-        case NESTGRID_VISUAL:
-            return visual_indicator(hierarchy);
-        case NESTGRID_GEOMETRY:
-            if (hierarchy.offers(Feature::new_positions)) return geometry_indicator(hierarchy);
-            throw InvalidInput("NESTGRID_GEOMETRY is for curved grids: on this one it is 0");
-        default:
-            break;
-    }
-    if (isovalues.empty()) {
-        throw InvalidInput("NESTGRID_CUT and NESTGRID_SLOPE are for isosurfaces and isolines");
-    }
-    return indicator == NESTGRID_CUT ? cut_deviations(hierarchy, isovalues, bounds, {}, executor)
-                                     : slope_deviations(hierarchy, isovalues, bounds, {}, executor);
-}
-
 }  // namespace
 
 Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid, const nestgrid_field* field)
@@ -136,9 +105,24 @@ bool Asked::rules_of_simplices() const {
     });
 }
 
-nestgrid_prerolls* Asked::prerolls() const {
-    if (options_.prerolls != nullptr) options_.prerolls->require_same(*grid_, *field_);
-    return options_.prerolls;
+/// Tables do not say at once whether all elements are simplices, as error_indicator() wants it.
+std::string Asked::indicator_for(const FieldOnGrid& field, bool level_sets) const {
+    if (options_.error == 0) return names[static_cast<std::size_t>(options_.indicator)];
+    const bool simplices = level_sets && rules_of_simplices() &&
+                           field.visit([](const auto& each) { return coarse_simplices(each); });
+    return simplices ? "cut" : "deviation";
+}
+
+Criteria Asked::criteria(const FieldOnGrid& field, std::span<const double> isovalues) const {
+    const Projection projection{
+        .threshold = options_.error > 0 ? options_.error : options_.threshold,
+        .max_triangles = options_.max_triangles,
+        .indicator = indicator_for(field, !isovalues.empty())};
+    const Work work{.executor = executor(), .same_field = &field};
+    nestgrid_prerolls* const kept = options_.prerolls;
+    if (kept != nullptr) return {kept->of(*grid_, *field_, field), projection, isovalues, work};
+    Prerolls own(field);
+    return {own, projection, isovalues, work};
 }
 
 IsosurfaceOptions Asked::how_to_draw() const {
@@ -155,30 +139,5 @@ IsosurfaceOptions Asked::how_to_draw() const {
     }
     return how;
 }
-
-template <class Real>
-Projection::Projection(const Hierarchy<Real>& hierarchy, const Asked& asked,
-                       std::span<const double> isovalues)
-    : threshold_{asked.options().error > 0 ? asked.options().error : asked.options().threshold} {
-    const int indicator = indicator_for(asked, hierarchy, !isovalues.empty());
-    nestgrid_prerolls* const kept = asked.prerolls();
-    const bool deviations = indicator == NESTGRID_DEVIATION;
-    const auto make_bounds = [&] {
-        const NodeError error = deviations ? NodeError::deviation : NodeError::offset;
-        return std::make_shared<const HierarchicalIndicator>(hierarchy, error, asked.executor());
-    };
-    const int measured = deviations ? NESTGRID_DEVIATION : NESTGRID_OFFSET;
-    bounds_ = kept == nullptr ? make_bounds() : kept->kept(kept->of_nodes, measured, make_bounds);
-    if (indicator == measured) return;
-    const auto make_own = [&] {
-        return std::make_shared<const SweptIndicator>(
-            make_swept(indicator, hierarchy, *bounds_, isovalues, asked.executor()));
-    };
-    const bool of_isovalues = indicator == NESTGRID_CUT || indicator == NESTGRID_SLOPE;
-    swept_ =
-        kept == nullptr || of_isovalues ? make_own() : kept->kept(kept->swept, indicator, make_own);
-}
-template Projection::Projection(const Hierarchy<float>&, const Asked&, std::span<const double>);
-template Projection::Projection(const Hierarchy<double>&, const Asked&, std::span<const double>);
 
 }  // namespace nestgrid
