@@ -45,6 +45,13 @@ for command in "${iso[*]}" "slice v.vti --axis z --at 17" "boundary v.vti" "isol
     "$program" $command --threshold 1 --threshold 2 | awk 'length > 80 { exit 1 }' || fail "$command: a wide table"
     "$program" $command --threshold 1 --threshold 2 | grep -qE '^in all: 2 surfaces, [0-9,]+ triangles, ' || fail "$command: no sum"
 done
+# The same facts and columns, whatever is drawn.
+for command in "${iso[*]}" "slice v.vti --axis z --at 17" "boundary v.vti" "isolines v.vti --axis z --at 17 --count 3" \
+    "isolines v.vti --on-surface 130 --by x --count 3" "surface ramp.pgm" "height ramp.pgm --scale 1"; do
+    ask "{'nodes', 'leaf_elements', 'preroll_kept_bytes', 'read_seconds', 'least_value'} <= d.keys() and {'triangles',
+        'vertices', 'error_bound', 'open_edges', 'area', 'seconds', 'boundary_edges', 'inspect_calls', 'search_trials',
+        'search_seconds', 'peak_bytes'} <= d['surfaces'][0].keys()" $command --max-triangles 5000
+done
 timed=(isosurface film.nestgrid --value 0.5)
 [ "$(columns "${timed[@]}" --time 0.5)" = "$(columns "${timed[@]}" --frames 3 -o f.vtp)" ] || fail "other columns for a film"
 ask "[s['time'] for s in d['surfaces']] == [0, 0.5, 1] and len(d['files']) == 4" "${timed[@]}" --frames 3 -o f.vtp

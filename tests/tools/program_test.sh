@@ -141,7 +141,7 @@ done
 grep -q '^ *vtkFlyingEdges3D ' out || fail "row of VTK"
 
 "$program" isosurface v.vti --value 900 -o empty.vtp >out 2>err || fail "empty: status"
-grep -q '^empty: the isovalue 900 is outside the range' out || fail "empty: $(cat out)"
+grep -q '^the isosurface is empty: the isovalue 900 is outside the range' out || fail "empty: $(cat out)"
 [ -s empty.vtp ] || fail "empty.vtp is missing"
 run isosurface v.vti --value 900 --threshold 0 --threshold 9
 [ "$(grep -c 'isovalue 900 is outside the range [0-9.]* to [0-9.]* of the data' out)" = 1 ] ||
@@ -209,9 +209,9 @@ refused 1 'image has an empty name' isosurface v.vti --value 130 --image ''
 refused 1 "'' does not exist$" info ''
 head -c 1000 /dev/zero >zeros.raw
 run isosurface zeros.raw --dims 10,10,10 --type uint8 --value 0
-grep -q '^empty: the data have the value 0 everywhere' out || fail "constant data: $(cat out)"
+grep -q '^the isosurface is empty: the data have the value 0 everywhere' out || fail "constant data: $(cat out)"
 run isosurface v.vti --value -900 --cap
-! grep -q '^empty' out || fail "a capped volume is said to be empty: $(cat out)"
+! grep -q 'is empty' out || fail "a capped volume is said to be empty: $(cat out)"
 refused 1 "threshold 'much'" isosurface v.vti --value 130 --threshold much
 refused 1 "threshold '-3'" isosurface v.vti --value 130 --threshold=-3
 refused 2 '--frobnicate' isosurface v.vti --value 130 --frobnicate

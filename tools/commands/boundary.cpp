@@ -2,22 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/boundary_surface.hpp>
 
-#include "drawing/coloured_surface.hpp"
+#include "drawing/draw.hpp"
 
 namespace {
 
-struct BoundaryArguments {
-    Input input;
-    SurfaceOptions surface;
-    LensText lens;
-    TimeOptions time;
-    bool outlines = false;
-    bool collapses = false;
-    double colour_tolerance = 0;
-};
+void run_boundary(DrawingOptions& o, Report& report) {
+    const nestgrid::detail::Everywhere everywhere;
+    DrawingRequest request = o.request();
+    request.function = &everywhere;
+    request.cap = true;
+    request.empty = "the hierarchy has no boundary";
+    draw(o, request, report);
+}
 
 Command add_boundary(CLI::App& program) {
-    auto o = std::make_shared<BoundaryArguments>();
+    auto o = std::make_shared<DrawingOptions>();
     CLI::App* boundary =
         program.add_subcommand("boundary", "draw the boundary of a grid in space, coloured");
     boundary->footer(
@@ -27,24 +26,12 @@ Command add_boundary(CLI::App& program) {
         "  nestgrid boundary part.nestgrid --outlines --image part.png\n");
     add_input(*boundary, o->input);
     add_surface_options(*boundary, o->surface);
-    boundary->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
-    add_colour_option(*boundary, o->colour_tolerance);
+    add_colour_options(*boundary, *o);
     add_time_options(*boundary, o->time);
     add_lens_options(*boundary, o->lens);
-    add_collapse_option(*boundary, o->collapses);
+    add_collapse_option(*boundary, *o);
     add_read_options(*boundary, o->input);
-    return {boundary, [o](Report& report) {
-                const nestgrid::detail::Everywhere everywhere;
-                draw_coloured(o->input, o->surface,
-                              {.function = &everywhere,
-                               .cap = true,
-                               .outlines = o->outlines,
-                               .empty = "the hierarchy has no boundary",
-                               .lens = parse(o->lens),
-                               .colour_tolerance = o->colour_tolerance,
-                               .collapses = o->collapses},
-                              o->time, report);
-            }};
+    return {boundary, [o](Report& report) { run_boundary(*o, report); }};
 }
 
 const RegisteredCommand boundary_command(60, add_boundary);

@@ -6,17 +6,13 @@
 
 #include <nestgrid/error.hpp>
 
-#include "drawing/coloured_surface.hpp"
+#include "drawing/draw.hpp"
 #include "options/slice_options.hpp"
 
 namespace {
 
-struct IsolinesArguments {
-    Input input;
-    SurfaceOptions surface;
+struct IsolinesArguments : DrawingOptions {
     SliceOptions slice;
-    LensText lens;
-    TimeOptions time;
     std::optional<double> isovalue;
     std::vector<double> values;
     int count = 0;
@@ -38,19 +34,20 @@ void run_isolines(IsolinesArguments& o, Report& report) {
     if (o.isovalue && !std::isfinite(*o.isovalue)) {
         throw nestgrid::InvalidInput("--on-surface is not a finite number");
     }
+    if (o.time.frames && o.isovalue && o.count > 0) {
+        throw nestgrid::InvalidInput("a film of isolines on a surface needs --values");
+    }
     SliceFunction f;
     if (is_sliced(o.slice)) f = slice_function(o.slice);
-    draw_coloured(
-        o.input, o.surface,
-        {.function = f.function.get(),
-         .isovalue = o.isovalue,
-         .flat = f.flat || f.function == nullptr,
-         .normal = f.function == nullptr ? nestgrid::Point{0, 0, 1} : f.normal,
-         .empty = o.isovalue ? "the isosurface is empty" : "the slice does not meet the domain",
-         .values = o.values,
-         .value_count = o.count,
-         .lens = parse(o.lens)},
-        o.time, report);
+    DrawingRequest request = o.request();
+    request.function = f.function.get();
+    request.isovalue = o.isovalue;
+    request.values = o.values;
+    request.value_count = o.count;
+    request.flat = f.flat || f.function == nullptr;
+    request.normal = f.function == nullptr ? nestgrid::Point{0, 0, 1} : f.normal;
+    request.empty = o.isovalue ? "the isosurface is empty" : "the slice does not meet the domain";
+    draw(o, request, report);
 }
 
 Command add_isolines(CLI::App& program) {

@@ -1,35 +1,27 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <optional>
 
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/error.hpp>
 
-#include "drawing/extract.hpp"
+#include "drawing/draw.hpp"
 #include "drawing/first_isovalue.hpp"
+#include "drawing/vtk_contour.hpp"
 #include "input/input_file.hpp"
-#include "options/command_line.hpp"
-#include "output/collection.hpp"
-#include "output/film.hpp"
-#include "output/print.hpp"
-#include "picture/picture.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
+using nestgrid::InvalidInput;
 
-struct IsosurfaceArguments {
-    Input input;
-    SurfaceOptions surface;
-    TimeOptions time;
+struct IsosurfaceArguments : DrawingOptions {
     double value = 0;
     std::vector<double> box;
     double box_threshold = 0;
-    LensText lens;
     bool cap = false;
     bool flat = false;
     bool at_nodes = false;
-    bool collapses = false;
     bool keeps_distances = false;
     bool measures = false;
     std::string cuts;
@@ -41,13 +33,10 @@ FineBox fine_box(const IsosurfaceArguments& o) {
     std::copy_n(o.box.begin(), 6, box.bounds.begin());
     for (std::size_t d = 0; d < 3; ++d) {
         if (!(box.bounds[2 * d] <= box.bounds[2 * d + 1])) {
-            throw nestgrid::InvalidInput(
-                "--box is empty: its bounds are x,x,y,y,z,z in ascending order");
+            throw InvalidInput("--box is empty: its bounds are x,x,y,y,z,z in ascending order");
         }
     }
-    if (!(box.threshold >= 0)) {
-        throw nestgrid::InvalidInput("--box-threshold is negative or not a number");
-    }
+    if (!(box.threshold >= 0)) throw InvalidInput("--box-threshold is negative or not a number");
     return box;
 }
 
@@ -57,39 +46,43 @@ std::size_t errors_asked(const IsosurfaceArguments& o) {
     return command.count("--error") + (o.collapses ? command.count("--max-triangles") : 0);
 }
 
-ExtractionRequest request_of(const IsosurfaceArguments& o) {
-    ExtractionRequest request{
-        .isovalue = o.value, .cap = o.cap, .normals = !o.flat, .at_nodes = o.at_nodes};
-    request.collapses = o.collapses;
-    request.keeps_distances =
-        o.keeps_distances || (o.collapses && o.surface.command->count("--distance") > 0);
-    request.measures = o.measures;
-    const SurfaceOptions& s = o.surface;
+/// \throw nestgrid::InvalidInput for options that do not go together
+void check(const IsosurfaceArguments& o) {
+    if (o.collapses && o.surface.command->count("--distance") + errors_asked(o) == 0) {
+        throw InvalidInput("--collapse needs an --error, a --distance or --max-triangles to keep");
+    }
+    if (!o.box.empty() && o.surface.projection.blend != 1) {
+        throw InvalidInput("--box has two thresholds: leave out --blend");
+    }
+    if (!std::isfinite(o.value)) throw InvalidInput("--value is not a finite number");
+    if (o.input.labels.size() > 1 && !o.time.in_use()) {
+        refuse_options(*o.surface.command, {"--against-vtk"}, "is for one part");
+    }
+    refuse_colours(o.surface.picture, "an isosurface has one colour");
+}
+
+DrawingRequest request_of(const IsosurfaceArguments& o) {
+    DrawingRequest request = o.request();
+    request.isovalue = o.value;
+    request.cap = o.cap;
+    request.normals = !o.flat;
+    request.at_nodes = o.at_nodes;
     if (!o.cuts.empty()) {
         request.cuts = o.cuts == "finest" ? nestgrid::Cuts::finest : nestgrid::Cuts::linear;
     }
-    request.budgets.assign(s.budgets.begin(), s.budgets.end());
-    request.threads = s.threads;
-    request.projection = s.projection;
-    request.projection.isovalue = o.value;
-    if (o.collapses && s.command->count("--distance") + errors_asked(o) == 0) {
-        throw nestgrid::InvalidInput(
-            "--collapse needs an --error, a --distance or --max-triangles to keep");
-    }
-    if (o.collapses && !s.budgets.empty()) request.projection.indicator = "deviation";
-    if (!o.box.empty() && s.projection.blend != 1) {
-        throw nestgrid::InvalidInput("--box has two thresholds: leave out --blend");
-    }
     if (!o.box.empty()) request.box = fine_box(o);
-    request.lens = parse(o.lens);
-    for (const std::string& t : s.thresholds) request.thresholds.push_back(parse_threshold(t));
-    if (s.budgets.empty()) set_default_threshold(request.thresholds, request.lens.has_value());
-    if (!std::isfinite(o.value)) throw nestgrid::InvalidInput("--value is not a finite number");
-    request.keep_surfaces = !s.output.empty() || !s.picture.image.empty();
+    request.keeps_distances =
+        o.keeps_distances || (o.collapses && o.surface.command->count("--distance") > 0);
+    request.measures = o.measures;
     return request;
 }
 
-/// IsosurfaceArguments that this field or this file leaves without effect.
+int dimension_of(const InputField& field) {
+    return std::visit([](const auto& frame) { return frame->facts().dimension; },
+                      field.frames.front());
+}
+
+/// Refuses options that this field or this file leaves without effect.
 void check_for(const IsosurfaceArguments& o, const InputField& field) {
     const CLI::App& command = *o.surface.command;
     if (!field.volumes || o.time.in_use()) {
@@ -98,9 +91,7 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
         refuse_options(command, {"--against-vtk"},
                        "is for volumes of which every sample has a value");
     }
-    const int dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
-                                     field.frames.front());
-    if (dimension == 2) {
+    if (dimension_of(field) == 2) {
         refuse_options(command,
                        {"--cap", "--no-normals", "--collapse", "--distance-field", "--measure"},
                        "is for surfaces, not for isolines");
@@ -120,37 +111,10 @@ bool suits_cuts(const InputField& field) {
                       field.frames.front());
 }
 
-/// Writes and paints the surfaces that were kept.
-void keep(const ExtractionRun& run, const SurfaceOptions& s, ProgressLine& progress,
-          Seconds& seconds, Report& report) {
-    std::vector<Panel> panels;
-    std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
-    for (const Extraction& e : run.surfaces) {
-        if (!e.surface) return;
-        surfaces.push_back(e.surface);
-        panels.push_back({.surface = e.surface, .caption = caption(e)});
-        if (run.dimension == 2) panels.back().view = seen_from({0, 0, 1});
-    }
-    if (!s.output.empty()) {
-        progress.show("writing");
-        const double start = now();
-        write_surfaces(surfaces, s.output, report);
-        seconds.write = now() - start;
-    }
-    const fs::path& image = s.picture.image;
-    if (!image.empty()) {
-        progress.show("painting");
-        const double start = now();
-        write_picture(panels, parse(s.picture), image);
-        seconds.draw = now() - start;
-        report.wrote(image, {{"surfaces", panels.size()}});
-    }
-}
-
-void say_what_distances_are(const ExtractionRequest& request, const std::string& unit,
-                            Report& report) {
-    const bool estimates = request.projection.indicator == "slope";
-    if (!estimates && !request.measures) return;
+void say_what_distances_are(const IsosurfaceArguments& o, const DrawingRequest& request,
+                            const std::string& unit, Report& report) {
+    const bool estimates = o.surface.projection.indicator == "slope";
+    if (!estimates && !o.measures) return;
     std::string text =
         "distances are in " + (unit.empty() ? "the unit of the grid, which is not known" : unit);
     if (request.keeps_distances) {
@@ -165,91 +129,21 @@ void say_what_distances_are(const ExtractionRequest& request, const std::string&
     report.say(text);
 }
 
-/// The field of an input, or those of its parts where it has several labels.
-std::vector<InputField> read_parts(IsosurfaceArguments& o) {
-    const auto read = [&](Input& input) {
-        return read_field(input, o.time.more, o.time.times, o.time.wanted());
-    };
-    std::vector<InputField> parts;
-    if (o.input.labels.size() < 2 || o.time.in_use()) {
-        parts.push_back(read(o.input));
-        return parts;
-    }
-    refuse_options(*o.surface.command, {"--against-vtk"}, "is for one part");
-    for (const double label : o.input.labels) {
-        Input input = o.input;
-        input.labels = {label};
-        parts.push_back(read(input));
-    }
-    return parts;
-}
-
-/// Draws the surfaces of all parts, one part after the other.
-ExtractionRun extract_all(const std::vector<InputField>& parts, const IsosurfaceArguments& o,
-                          const fs::path& path, const ExtractionRequest& request) {
-    ExtractionRun all = extract(parts.front(), o.time, path, request);
-    if (parts.size() == 1) return all;
-    for (Extraction& e : all.surfaces) e.label = o.input.labels.front();
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-        ExtractionRun run = extract(parts[i], o.time, path, request);
-        all.preroll_seconds += run.preroll_seconds;
-        all.preroll_peak_bytes = std::max(all.preroll_peak_bytes, run.preroll_peak_bytes);
-        all.preroll_kept_bytes = std::max(all.preroll_kept_bytes, run.preroll_kept_bytes);
-        for (Extraction& e : run.surfaces) {
-            e.label = o.input.labels[i];
-            all.surfaces.push_back(std::move(e));
-        }
-    }
-    for (const Extraction& e : all.surfaces) {
-        if (e.surface) describe(e.surface, "", "", {{"label", *e.label}});
-    }
-    return all;
-}
-
 void run_isosurface(IsosurfaceArguments& o, Report& report) {
-    check(o.surface);
-    check(o.time);
-    check_film(o.time, o.surface);
-    refuse_colours(o.surface.picture, "an isosurface has one colour");
-    ExtractionRequest request = request_of(o);
-    Seconds seconds;
-    std::optional<ProgressLine> progress(std::in_place);
-    request.progress = [&](const std::string& text) { progress->show(text); };
-    request.preroll = [&] { progress->show("preroll", 0, 1); };
-    request.part = [&](double share) { progress->part(share); };
-    request.share = [&](std::size_t done, std::size_t total) {
-        progress->show("drawing", done, total);
+    check(o);
+    DrawingRequest request = request_of(o);
+    ProjectionChoice& projection = o.surface.projection;
+    projection.isovalue = o.value;
+    if (o.collapses && !o.surface.budgets.empty()) projection.indicator = "deviation";
+    request.look = [&](const InputField& field) {
+        check_for(o, field);
+        if (errors_asked(o) > 0 && suits_cuts(field)) projection.indicator = "cut";
     };
-    progress->show("reading");
-    const double start = now();
-    std::optional<Film> film;
-    if (o.time.frames) {
-        film.emplace(o.surface.output);
-        request.drawn = [&film](Extraction& e) {
-            film->add(e.surface, *e.time);
-            e.surface = nullptr;
-        };
-    }
-    const fs::path path = o.input.path;
-    const std::vector<InputField> parts = read_parts(o);
-    const InputField& field = parts.front();
-    check_for(o, field);
-    if (errors_asked(o) > 0 && suits_cuts(field)) request.projection.indicator = "cut";
-    seconds.read = now() - start;
-    const ExtractionRun run = extract_all(parts, o, path, request);
-    if (film) film->finish(report);
-    keep(run, o.surface, *progress, seconds, report);
-    std::optional<Contour> contour;
-    if (o.against_vtk) {
-        progress->show("contouring with VTK");
-        contour = contour_with_vtk(field.volumes->front(), o.value);
-    }
-    progress.reset();
-    report_field(field.name, field.length_unit, report);
-    if (!field.note.empty()) report.say(field.note);
-    report_surfaces(run, o.value, seconds, contour, report);
-    say_what_distances_are(request, field.length_unit, report);
-    say_what_was_kept(o.surface, report);
+    request.add = [&](const InputField& field, Report& to) {
+        if (o.against_vtk) report_contour(field.volumes->front(), o.value, to);
+        say_what_distances_are(o, request, field.length_unit, to);
+    };
+    draw(o, request, report);
 }
 
 /// The range of the data, and a value that shows the thing in them.

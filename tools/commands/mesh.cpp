@@ -7,6 +7,7 @@
 #include "input/hierarchy.hpp"
 #include "options/command_line.hpp"
 #include "output/print.hpp"
+#include "output/surface_file.hpp"
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include "options/command_line.hpp"
 #include "options/encoding_options.hpp"
 #include "output/print.hpp"
+#include "output/surface_file.hpp"
 
 namespace {
 

@@ -6,20 +6,23 @@
 
 #include <nestgrid/error.hpp>
 
-#include "drawing/coloured_surface.hpp"
+#include "drawing/draw.hpp"
 
 namespace {
 
-struct PlaneArguments {
-    Input input;
-    SurfaceOptions surface;
-    LensText lens;
-    TimeOptions time;
+struct PlaneArguments : DrawingOptions {
     double scale = 0;
-    bool outlines = false;
-    bool collapses = false;
-    double colour_tolerance = 0;
 };
+
+void run_plane(PlaneArguments& o, bool lifted, Report& report) {
+    if (!std::isfinite(o.scale) || (lifted && o.scale == 0)) {
+        throw nestgrid::InvalidInput("--scale is 0 or not a finite number");
+    }
+    DrawingRequest request = o.request();
+    request.scale = o.scale;
+    request.empty = "the hierarchy has no elements";
+    draw(o, request, report);
+}
 
 Command add(CLI::App& program, const char* name, const char* what, const char* example,
             bool lifted) {
@@ -38,26 +41,12 @@ Command add(CLI::App& program, const char* name, const char* what, const char* e
             ->required();
     }
     add_surface_options(*command, o->surface);
-    command->add_flag("--outlines", o->outlines, "draw the edges of elements, too");
-    if (!lifted) add_colour_option(*command, o->colour_tolerance);
+    add_colour_options(*command, *o, "Options", !lifted);
     add_time_options(*command, o->time);
     add_lens_options(*command, o->lens);
-    add_collapse_option(*command, o->collapses);
+    add_collapse_option(*command, *o);
     add_read_options(*command, o->input);
-    return {command, [o, lifted](Report& report) {
-                if (!std::isfinite(o->scale) || (lifted && o->scale == 0)) {
-                    throw nestgrid::InvalidInput("--scale is 0 or not a finite number");
-                }
-                draw_coloured(o->input, o->surface,
-                              {.scale = o->scale,
-                               .outlines = o->outlines,
-                               .flat = false,
-                               .empty = "the hierarchy has no elements",
-                               .lens = parse(o->lens),
-                               .colour_tolerance = o->colour_tolerance,
-                               .collapses = o->collapses},
-                              o->time, report);
-            }};
+    return {command, [o, lifted](Report& report) { run_plane(*o, lifted, report); }};
 }
 
 Command add_height(CLI::App& program) {

@@ -6,21 +6,14 @@
 
 #include <nestgrid/error.hpp>
 
-#include "drawing/coloured_surface.hpp"
+#include "drawing/draw.hpp"
 #include "options/slice_options.hpp"
 
 namespace {
 
-struct SliceArguments {
-    Input input;
-    SurfaceOptions surface;
+struct SliceArguments : DrawingOptions {
     SliceOptions slice;
-    LensText lens;
-    TimeOptions time;
     bool cap = false;
-    bool outlines = false;
-    bool collapses = false;
-    double colour_tolerance = 0;
     std::optional<double> isovalue;
 };
 
@@ -29,17 +22,14 @@ void run_slice(SliceArguments& o, Report& report) {
     if (o.isovalue && !std::isfinite(*o.isovalue)) {
         throw nestgrid::InvalidInput("--with-isosurface is not a finite number");
     }
-    const ColouredSurface what{.function = f.function.get(),
-                               .isovalue = o.isovalue,
-                               .cap = o.cap,
-                               .outlines = o.outlines,
-                               .flat = f.flat,
-                               .normal = f.normal,
-                               .empty = "the slice does not meet the domain",
-                               .lens = parse(o.lens),
-                               .colour_tolerance = o.colour_tolerance,
-                               .collapses = o.collapses};
-    draw_coloured(o.input, o.surface, what, o.time, report);
+    DrawingRequest request = o.request();
+    request.function = f.function.get();
+    request.isovalue = o.isovalue;
+    request.cap = o.cap;
+    request.flat = f.flat;
+    request.normal = f.normal;
+    request.empty = "the slice does not meet the domain";
+    draw(o, request, report);
 }
 
 Command add_slice(CLI::App& program) {
@@ -67,11 +57,10 @@ Command add_slice(CLI::App& program) {
                    "or its outside")
         ->group("Slice")
         ->excludes(with_isosurface);
-    slice->add_flag("--outlines", o->outlines, "draw the edges of elements, too")->group("Slice");
-    add_colour_option(*slice, o->colour_tolerance)->group("Slice");
+    add_colour_options(*slice, *o, "Slice");
     add_time_options(*slice, o->time);
     add_lens_options(*slice, o->lens);
-    add_collapse_option(*slice, o->collapses);
+    add_collapse_option(*slice, *o);
     add_read_options(*slice, o->input);
     return {slice, [o](Report& report) { run_slice(*o, report); }};
 }

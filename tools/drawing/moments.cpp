@@ -4,10 +4,15 @@
 
 #include <utility>
 
-#include "drawing/extract.hpp"
+#include "drawing/meter.hpp"
 
 const ChosenIndicator& Moment::indicators() const {
-    if (!indicators_) indicators_.emplace(all_.prerolls(), hierarchy_, weights_);
+    if (!indicators_) {
+        const FramePrerolls& prerolls = all_.prerolls();
+        const Meter meter;
+        indicators_.emplace(prerolls, hierarchy_, weights_);
+        all_.cost_.seconds += meter.seconds();
+    }
     return *indicators_;
 }
 
@@ -26,9 +31,9 @@ Moments::Moments(const InputField& field, const TimeOptions& time,
 
 const FramePrerolls& Moments::prerolls() const {
     if (!prerolls_) {
-        const double start = now();
+        const Meter meter;
         prerolls_.emplace(field_.frames, choice_, lens_, executor_);
-        preroll_seconds_ = now() - start;
+        cost_ = {meter.seconds(), meter.peak_bytes(), prerolls_->memory_bytes()};
     }
     return *prerolls_;
 }

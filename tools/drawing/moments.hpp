@@ -43,6 +43,12 @@ private:
     mutable std::optional<ChosenIndicator> indicators_;
 };
 
+struct PrerollCost {
+    double seconds = 0;
+    std::size_t peak_bytes = 0;
+    std::size_t kept_bytes = 0;
+};
+
 /// All moments of a field that are drawn.
 class Moments {
 public:
@@ -60,10 +66,12 @@ public:
     void for_each(const std::function<void(const Moment&)>& function) const;
     /// Made when first asked for.
     const FramePrerolls& prerolls() const;
-    /// How long the prerolls took; 0 where there are none.
-    double preroll_seconds() const { return preroll_seconds_; }
+    /// Of the prerolls and the indicators made so far.
+    const PrerollCost& preroll_cost() const { return cost_; }
 
 private:
+    friend class Moment;
+
     const InputField& field_;
     const TimeOptions& time_;
     ProjectionChoice choice_;
@@ -71,5 +79,5 @@ private:
     nestgrid::TbbExecutor threads_;
     TellingExecutor executor_;
     mutable std::optional<FramePrerolls> prerolls_;
-    mutable double preroll_seconds_ = 0;
+    mutable PrerollCost cost_;
 };

@@ -1,0 +1,364 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drawing/drawing.hpp"
+
+#include <algorithm>
+
+#include <nestgrid/algorithms/collapse_budget.hpp>
+#include <nestgrid/algorithms/collapse_colours.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
+#include <nestgrid/algorithms/refine_colours.hpp>
+#include <nestgrid/algorithms/region.hpp>
+#include <nestgrid/error.hpp>
+
+#include "drawing/meter.hpp"
+
+namespace {
+
+using nestgrid::InvalidInput;
+using nestgrid::Isosurface;
+using nestgrid::IsosurfaceOptions;
+using nestgrid::TriangleBudget;
+
+void check(const DrawingRequest& request, const SurfaceOptions& options,
+           const nestgrid::HierarchyFacts& facts) {
+    const bool in_space = request.function != nullptr || request.isovalue;
+    if (!in_space && facts.dimension == 3) {
+        throw InvalidInput(
+            "the field is one in space: give a slice, for isolines, or use 'isosurface'");
+    }
+    if (!request.in_one_colour()) facts.require_dimension(in_space ? 3 : 2);
+    if (request.colour_tolerance > 0 && !options.budgets.empty()) {
+        throw InvalidInput("--max-triangles excludes --colour-tolerance");
+    }
+}
+
+std::string millions(std::uint64_t count) {
+    return std::to_string(count / 100000 / 10) + "." + std::to_string(count / 100000 % 10) +
+           " million";
+}
+
+/// Counts triangles, and keeps none.
+class TriangleCounter final : public nestgrid::SimplexSink<3> {
+public:
+    struct Exceeded {};
+
+    /// \param most take() throws Exceeded where there are more
+    TriangleCounter(std::uint64_t& count, std::uint64_t most) : count_{&count}, most_{most} {}
+    void take(const nestgrid::Surface<3>& part) override {
+        *count_ += part.simplices.size();
+        if (*count_ > most_) throw Exceeded{};
+    }
+
+private:
+    std::uint64_t* count_;
+    std::uint64_t most_;
+};
+
+/// Draws the surfaces at one moment.
+template <class Real>
+class Drawing {
+public:
+    Drawing(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& moment,
+            const nestgrid::Executor& executor, const SurfaceOptions& options,
+            const DrawingRequest& request, const nestgrid::Region* region, const Telling& tell)
+        : hierarchy_{hierarchy},
+          moment_{moment},
+          executor_{executor},
+          options_{options},
+          request_{request},
+          region_{region},
+          tell_{tell} {
+        check(request, options, hierarchy.facts());
+    }
+
+    void draw_all(const std::function<void(Drawn&&)>& take) const {
+        if (is_drawn_exactly(request_, options_)) {
+            tell_({});
+            take(reported(draw({}, [&](Drawn& d) { draw_exactly(d); })));
+            return;
+        }
+        std::vector<ThresholdText> thresholds;
+        for (const std::string& text : options_.thresholds) {
+            thresholds.push_back(parse_threshold(text));
+        }
+        if (options_.budgets.empty()) {
+            set_default_threshold(thresholds, request_.lens.has_value());
+        }
+        with_criteria([&](const auto& criterion_at) {
+            for (const std::int64_t budget : options_.budgets) {
+                take(draw_at(criterion_at, find(criterion_at, static_cast<std::uint64_t>(budget))));
+            }
+            for (const ThresholdText& t : thresholds) {
+                Drawn d;
+                d.threshold = indicators().threshold(t);
+                take(draw_at(criterion_at, std::move(d)));
+            }
+        });
+    }
+
+private:
+    const ChosenIndicator& indicators() const { return moment_.indicators(); }
+    const nestgrid::Bounds& bounds() const { return indicators().bounds(); }
+    bool in_plane() const { return hierarchy_.facts().dimension == 2; }
+
+    /// Calls function(criterion_at) with the function that makes a criterion of a threshold.
+    template <class Function>
+    void with_criteria(const Function& function) const {
+        if (!region_) return indicators().with_criteria(function);
+        function([&](double threshold) {
+            return nestgrid::fine_inside(*region_, indicators().chosen(), threshold,
+                                         request_.box->threshold);
+        });
+    }
+
+    /// \param counting whether elements are told, where no share of the work is known
+    IsosurfaceOptions isosurface_options(bool counting) const {
+        const std::string& indicator = options_.projection.indicator;
+        const bool finest =
+            indicator == "slope" || (!options_.budgets.empty() && !request_.collapses &&
+                                     indicator != "deviation" && request_.by.empty());
+        IsosurfaceOptions options{.cuts = request_.cuts.value_or(finest ? nestgrid::Cuts::finest
+                                                                        : nestgrid::Cuts::linear),
+                                  .normals = request_.normals,
+                                  .cap = request_.cap,
+                                  .at_nodes = request_.at_nodes};
+        if (counting) {
+            options.progress = [&](const nestgrid::TraversalCounts& counts) {
+                tell_("looked at " + millions(counts.calls) + " elements");
+                return true;
+            };
+        }
+        return options;
+    }
+
+    /// The least threshold at which the surface keeps within a number of triangles, after collapses
+    /// where there are any.
+    template <class CriterionAt>
+    Drawn find(const CriterionAt& criterion_at, std::uint64_t budget) const {
+        tell_("searching the threshold");
+        const Meter meter;
+        Drawn d;
+        d.search = indicators().with_offsets([&](const auto& offsets) {
+            if (request_.in_one_colour() || !request_.by.empty()) {
+                return find_isosurface(criterion_at, offsets, budget);
+            }
+            return find_coloured(criterion_at, offsets, budget);
+        });
+        d.search_seconds = meter.seconds();
+        d.threshold = d.search.threshold;
+        return d;
+    }
+    template <class CriterionAt, class Offsets>
+    TriangleBudget find_isosurface(const CriterionAt& criterion_at, const Offsets& offsets,
+                                   std::uint64_t budget) const {
+        const double isovalue = *request_.isovalue;
+        const IsosurfaceOptions options = isosurface_options(true);
+        if (in_plane()) {
+            return nestgrid::find_threshold<2>(hierarchy_, isovalue, criterion_at, offsets, budget,
+                                               options, executor_);
+        }
+        if (request_.collapses) {
+            return nestgrid::find_collapse_error(hierarchy_, isovalue, criterion_at, offsets,
+                                                 budget, options, executor_);
+        }
+        return nestgrid::find_threshold<3>(hierarchy_, isovalue, criterion_at, offsets, budget,
+                                           options, executor_);
+    }
+    template <class CriterionAt, class Offsets>
+    TriangleBudget find_coloured(const CriterionAt& criterion_at, const Offsets& offsets,
+                                 std::uint64_t budget) const {
+        if (request_.function == nullptr) {
+            return find_shading_threshold(hierarchy_, criterion_at, offsets, budget, {}, executor_);
+        }
+        if (!request_.isovalue) {
+            return find_threshold(hierarchy_, *request_.function, criterion_at, offsets, budget,
+                                  IsosurfaceOptions{.cap = request_.cap}, executor_);
+        }
+        return nestgrid::least_threshold(
+            [&](double threshold, std::uint64_t most) {
+                return count_both(criterion_at(threshold), most);
+            },
+            offsets.greatest() - offsets.least(), budget);
+    }
+    /// Counts the triangles of the slice and of the isosurface beside it.
+    std::optional<std::uint64_t> count_both(const nestgrid::Criterion& criterion,
+                                            std::uint64_t most) const {
+        std::uint64_t count = 0;
+        const std::vector<TriangleCounter> counters(2, {count, most});
+        try {
+            extract_slices(hierarchy_, {{request_.function}, {*request_.isovalue}}, counters,
+                           criterion, bounds(), {}, executor_);
+        } catch (const TriangleCounter::Exceeded&) {
+            return std::nullopt;
+        }
+        return count;
+    }
+
+    /// The isosurface of all data, where it is compared with.
+    nestgrid::Surface<3> whole() const {
+        if (!request_.measures && !request_.keeps_distances) return {};
+        return nestgrid::isosurface<3>(hierarchy_, *request_.isovalue, nestgrid::Exact{}, bounds(),
+                                       {.elements = false, .at_nodes = request_.at_nodes},
+                                       executor_)
+            .surface;
+    }
+    template <class CriterionAt>
+    Drawn draw_at(const CriterionAt& criterion_at, Drawn d) const {
+        tell_({});
+        const nestgrid::Surface<3> whole = this->whole();
+        const bool collapses = request_.collapses && d.threshold > 0;
+        const double first = collapses ? d.threshold / 2 : d.threshold;
+        d = draw(std::move(d),
+                 [&](Drawn& to) { draw_with(criterion_at(first), first, whole, to); });
+        if (collapses) collapse_one(whole, d);
+        if (request_.measures) measure_one(whole, d);
+        return reported(std::move(d));
+    }
+    template <class DrawInto>
+    Drawn draw(Drawn d, const DrawInto& draw_into) const {
+        d.time = moment_.time();
+        const Meter meter;
+        draw_into(d);
+        d.seconds = meter.seconds();
+        const std::size_t kept = d.result.surface.memory_bytes() + d.segments.memory_bytes() +
+                                 d.isosurface.memory_bytes();
+        d.peak_bytes = meter.peak_bytes() - std::min(meter.peak_bytes(), kept);
+        return d;
+    }
+    static Drawn reported(Drawn d) {
+        d.report = nestgrid::surface_report(d.result.surface);
+        d.isosurface_report = nestgrid::surface_report(d.isosurface);
+        if (d.segments.vertices.empty()) return d;
+        d.report.vertices = d.segments.vertices.size();
+        d.report.triangles = d.segments.simplices.size();
+        return d;
+    }
+
+    void draw_exactly(Drawn& d) const {
+        d.result = request_.function == nullptr
+                       ? triangles(0)
+                       : slice(hierarchy_, *request_.function, {.cap = request_.cap}, executor_);
+        refine(d.result.surface, request_.colour_tolerance);
+    }
+    template <class S>
+    void draw_with(const S& criterion, double threshold, const nestgrid::Surface<3>& whole,
+                   Drawn& d) const {
+        if (request_.function == nullptr && request_.isovalue) {
+            return draw_isosurface(criterion, threshold, whole, d);
+        }
+        const IsosurfaceOptions options{.cap = request_.cap};
+        if (request_.isovalue) {
+            auto both = slices(hierarchy_, {{request_.function}, {*request_.isovalue}}, criterion,
+                               bounds(), options, executor_);
+            d.result = std::move(both[0]);
+            d.isosurface = std::move(both[1].surface);
+        } else if (request_.function != nullptr) {
+            d.result =
+                slice(hierarchy_, *request_.function, criterion, bounds(), options, executor_);
+        } else {
+            d.result = triangles(threshold, criterion, bounds());
+        }
+        if (request_.collapses && request_.scale == 0) {
+            refine(d.result.surface, threshold, criterion, bounds());
+        }
+        refine(d.result.surface, request_.colour_tolerance, criterion, bounds());
+        if (!d.isosurface.attributes.empty()) {
+            refine(d.isosurface, request_.colour_tolerance, criterion, bounds());
+        }
+    }
+    template <class S>
+    void draw_isosurface(const S& criterion, double threshold, const nestgrid::Surface<3>& whole,
+                         Drawn& d) const {
+        const double isovalue = *request_.isovalue;
+        const IsosurfaceOptions options = isosurface_options(executor_.concurrency() == 1);
+        if (in_plane()) {
+            auto lines = nestgrid::isosurface<2>(hierarchy_, isovalue, criterion, bounds(), options,
+                                                 executor_);
+            d.segments = std::move(lines.surface);
+            d.result = {lines, {}, lines.counts};
+            d.result.surface_error = lines.surface_error;
+            d.result.stack_bytes = lines.stack_bytes;
+        } else if (request_.keeps_distances) {
+            auto within = nestgrid::isosurface_within(hierarchy_, isovalue, {whole, threshold},
+                                                      criterion, bounds(), options, executor_);
+            d.far_points = within.points;
+            d.result = std::move(within.isosurface);
+        } else {
+            d.result = nestgrid::isosurface<3>(hierarchy_, isovalue, criterion, bounds(), options,
+                                               executor_);
+        }
+    }
+    /// The grid of dimension 2.
+    template <class... With>
+    Isosurface<3> triangles(double threshold, const With&... with) const {
+        nestgrid::ShadingOptions options;
+        if (request_.collapses) options.flatness = threshold;
+        nestgrid::Shading s = request_.scale == 0 ? shading(hierarchy_, with..., options, executor_)
+                                                  : height_field(hierarchy_, request_.scale,
+                                                                 with..., options, executor_);
+        return {s, std::move(s.surface), s.counts};
+    }
+    /// Makes colours follow the data.
+    /// \param with the criterion and the bounds that the surface was drawn with, or nothing
+    template <class... With>
+    void refine(nestgrid::Surface<3>& surface, double tolerance, const With&... with) const {
+        if (tolerance > 0) refine_colours(surface, hierarchy_, tolerance, with...);
+    }
+
+    /// Takes edges away within the threshold.
+    void collapse_one(const nestgrid::Surface<3>& whole, Drawn& d) const {
+        tell_("collapsing");
+        const Meter meter;
+        nestgrid::Surface<3>& surface = d.result.surface;
+        if (request_.isovalue) {
+            nestgrid::CollapseOptions options;
+            if (request_.keeps_distances) {
+                options.nearness.emplace(nestgrid::Nearness{whole, d.threshold});
+            } else {
+                options.error = d.threshold;
+            }
+            d.collapsed = nestgrid::collapse(surface, hierarchy_, *request_.isovalue, bounds(),
+                                             options, executor_);
+        } else {
+            d.collapsed = nestgrid::collapse_colours(
+                surface, hierarchy_, bounds(), {.errors = {d.threshold}, .scale = request_.scale},
+                executor_);
+        }
+        d.collapse_seconds = meter.seconds();
+        d.collapsed->hand_to(d.result, d.result.surface_error);
+    }
+    void measure_one(const nestgrid::Surface<3>& whole, Drawn& d) const {
+        constexpr std::size_t points = 200000;
+        tell_("measuring");
+        const Meter meter;
+        d.measured = nestgrid::measure_error(d.result.surface, whole, hierarchy_,
+                                             *request_.isovalue, points, executor_);
+        d.measure_seconds = meter.seconds();
+    }
+
+    const nestgrid::Hierarchy<Real>& hierarchy_;
+    const Moment& moment_;
+    const nestgrid::Executor& executor_;
+    const SurfaceOptions& options_;
+    const DrawingRequest& request_;
+    const nestgrid::Region* region_;
+    const Telling& tell_;
+};
+
+}  // namespace
+
+bool is_drawn_exactly(const DrawingRequest& request, const SurfaceOptions& options) {
+    return options.thresholds.empty() && options.budgets.empty() && !request.lens &&
+           !request.isovalue;
+}
+
+void draw_moment(const Moment& moment, const nestgrid::Executor& executor,
+                 const SurfaceOptions& options, const DrawingRequest& request,
+                 const nestgrid::Region* region, const Telling& tell,
+                 const std::function<void(Drawn&&)>& take) {
+    moment.visit([&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy) {
+        Drawing<Real>(hierarchy, moment, executor, options, request, region, tell).draw_all(take);
+    });
+}

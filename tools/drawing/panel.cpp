@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drawing/panel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <vtkAppendPolyData.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataNormals.h>
+
+#include <nestgrid/adapters/vtk_surface.hpp>
+#include <nestgrid/algorithms/outlines.hpp>
+#include <nestgrid/detail/geometry.hpp>
+
+#include "output/surface_file.hpp"
+
+using nestgrid::dot;
+using nestgrid::operator*;
+using nestgrid::operator-;
+
+namespace {
+
+/// Whether the surface lies in a plane across the z axis.
+bool is_level(const nestgrid::Surface<3>& surface) {
+    return std::ranges::all_of(surface.vertices, [&](const nestgrid::Point& x) {
+        return x[2] == surface.vertices.front()[2];
+    });
+}
+
+/// Looks across a flat surface, or, where it is closed to a solid, onto the cut. What is flat has
+/// no shades, so that its colours are those of the legend.
+void set_view(Panel& panel, const DrawingRequest& request, const nestgrid::Surface<3>& surface) {
+    const nestgrid::Point normal = request.flat ? request.normal : nestgrid::Point{0, 0, 1};
+    const bool flat =
+        request.flat || (request.function == nullptr && !request.isovalue && is_level(surface));
+    panel.lit = !flat || request.cap;
+    if (request.isovalue || !flat) return;
+    if (!request.cap) {
+        // A plane across y is looked at from the front, where x runs to the right.
+        const bool across_y = normal[0] == 0 && normal[1] > 0 && normal[2] == 0;
+        panel.view = seen_from(across_y ? -1 * normal : normal);
+        return;
+    }
+    const double side = dot(panel.view.from, normal);
+    if (side > 0) panel.view.from = panel.view.from - 2 * side / dot(normal, normal) * normal;
+}
+
+/// Gives a surface the normals that its shades need, unless it has some. It has an edge where
+/// triangles meet at more than 40 degrees.
+vtkSmartPointer<vtkPolyData> shaded(vtkPolyData* surface) {
+    if (surface->GetPointData()->GetNormals() != nullptr) return surface;
+    const vtkNew<vtkPolyDataNormals> normals;
+    normals->SetInputData(surface);
+    normals->SetFeatureAngle(40);
+    normals->ConsistencyOff();
+    normals->Update();
+    return normals->GetOutput();
+}
+
+/// Words with a number behind them.
+std::string with_number(const std::string& words, const char* format, double number) {
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), format, number);
+    return words + text.data();
+}
+
+/// Which field is drawn, and at which value, of which part, with which threshold, and when. A
+/// threshold is left out where a lens decides alone.
+std::string caption(const Drawn& d, const DrawnField& field, const DrawingRequest& request) {
+    std::vector<std::string> parts;
+    if (!request.in_one_colour()) {
+        parts.push_back(short_name(field.name));
+        if (request.isovalue) {
+            parts.back() += request.has_two_surfaces() ? " and the surface " : " where ";
+            parts.back() +=
+                with_number(short_name(field.input_name) + " = ", "%.4g", *request.isovalue);
+        }
+    }
+    if (d.label) parts.push_back(with_number("label ", "%.10g", *d.label));
+    if (std::isfinite(d.threshold)) parts.push_back(with_number("threshold ", "%.4g", d.threshold));
+    if (d.time) parts.push_back(with_number("time ", "%.4g", *d.time));
+    std::string text;
+    for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+    const bool in_plane = field.dimension == 2 && request.in_one_colour();
+    text += "\n" + std::to_string(d.report.triangles + d.isosurface_report.triangles) +
+            (in_plane ? " segments" : " triangles");
+    if (request.in_one_colour() && !in_plane) {
+        text += ", " + std::to_string(d.report.open_edges) + " open edges";
+    }
+    return text;
+}
+
+}  // namespace
+
+Panel make_panel(const Drawn& d, const DrawnField& field, const DrawingRequest& request) {
+    const auto data = [&](const auto& surface) {
+        return nestgrid::make_poly_data(surface, {field.name});
+    };
+    Panel panel{.surface = data(d.result.surface), .caption = caption(d, field, request)};
+    if (request.in_one_colour()) {
+        if (field.dimension == 3) return panel;
+        panel.surface = data(d.segments);
+        panel.view = seen_from({0, 0, 1});
+        return panel;
+    }
+    if (!d.isosurface.simplices.empty()) panel.veil = data(d.isosurface);
+    panel.colour = {field.name, {field.least, field.greatest}, field.values};
+    if (!field.values.empty()) {
+        panel.lines = data(d.isolines);
+        panel.kind = Lines::isolines;
+    }
+    if (request.outlines) panel.lines = data(nestgrid::outlines(d.result.surface));
+    set_view(panel, request, d.result.surface);
+    return panel;
+}
+
+void shade(Panel& panel) {
+    if (panel.lit) panel.surface = shaded(panel.surface);
+    if (panel.veil != nullptr) panel.veil = shaded(panel.veil);
+}
+
+vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, const Drawn& d, const DrawnField& field,
+                                     const DrawingRequest& request) {
+    vtkSmartPointer<vtkPolyData> data = field.values.empty() ? panel.surface : panel.lines;
+    if (field.values.empty() && (panel.veil != nullptr || panel.lines != nullptr)) {
+        const vtkNew<vtkAppendPolyData> append;
+        for (const auto& part : {panel.surface, panel.veil, panel.lines}) {
+            if (part != nullptr) append->AddInputData(part);
+        }
+        append->Update();
+        data = append->GetOutput();
+    }
+    std::map<std::string, double> values;
+    if (request.in_one_colour()) values[field.input_name] = *request.isovalue;
+    if (d.label) values["label"] = *d.label;
+    describe(data, field.length_unit, field.space, values);
+    return data;
+}

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Drawn surfaces as data of VTK, for files and pictures.
+#pragma once
+
+#include "drawing/request.hpp"
+#include "picture/picture.hpp"
+
+/// The surface with what lies on it and beside it, not yet shaded.
+Panel make_panel(const Drawn& d, const DrawnField& field, const DrawingRequest& request);
+
+/// Adds the normals that shades need, which no file has.
+void shade(Panel& panel);
+
+/// What is written of a surface, as one data set with what is known of it: the isolines alone, or
+/// all.
+vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, const Drawn& d, const DrawnField& field,
+                                     const DrawingRequest& request);
