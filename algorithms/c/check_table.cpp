@@ -34,7 +34,8 @@ std::optional<std::string> check(const Hierarchy<Real>& hierarchy, const nestgri
     const detail::TableField<Real> field(values);
     const auto task = hierarchy.open();
     const engine::ToldBisections<dim, Real> told(hierarchy, task.get());
-    const engine::ToldValues<Real> told_values(*hierarchy.bisection_rows());
+    const engine::ToldValues<Real> told_values(*hierarchy.bisection_rows(),
+                                               hierarchy.facts().gradients_at_nodes);
     detail::TableContext context = grid.make_context();
     return engine::BisectionCheck(grid, field, told, told_values, context).run();
 }

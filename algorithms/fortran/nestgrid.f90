@@ -116,6 +116,7 @@ module nestgrid
         type(c_funptr) :: corner_gradients = c_null_funptr
         type(c_funptr) :: node_values = c_null_funptr
         type(c_funptr) :: last_error = c_null_funptr
+        type(c_funptr) :: node_gradients = c_null_funptr
     end type nestgrid_field
 
     type, bind(c) :: nestgrid_options

@@ -81,7 +81,10 @@ private:
         const Node a = n[bisection.parent[0]];
         const Node b = n[bisection.parent[1]];
         demand(known_.halved(a, b) == (rule != nullptr), "whether the element is split");
-        if constexpr (AnswersInRows<Known>) check_rows(n, a, b);
+        if constexpr (AnswersInRows<Known>) {
+            check_rows(n, a, b);
+            check_gradients(e, n);
+        }
         if (rule == nullptr) return;
         if constexpr (may_offer<Grid>(Feature::outside)) {
             const bool none =
@@ -192,6 +195,22 @@ private:
             }
         }
         return true;
+    }
+
+    /// Demands that gradients in a row are those of single nodes, and those at corners.
+    void check_gradients(const Element& e, const Nodes& n) const {
+        if (!values_.gives_gradients()) return;
+        std::array<Point, corners_> row{};
+        values_.gradients_at(n, row);
+        for (std::size_t k = 0; k < corners_; ++k) {
+            Point one{};
+            values_.gradients_at(std::span(&n[k], 1), std::span(&one, 1));
+            demand(one == row[k], "a gradient in a row");
+        }
+        if (!offers_gradients<Grid>(field_)) return;
+        std::array<Point, corners_> own{};
+        detail::call_corner_gradients(field_, context_, e, std::span<Point>(own));
+        demand(own == row, "the gradient at a corner");
     }
 
     /// Demands that a row of questions gets the answers of single ones.

@@ -33,16 +33,29 @@ concept GivesGradientsAt = requires(const Field& field, Node node) {
     { field.gradient_at(node) } -> std::same_as<Point>;
 };
 
+/// A field that tells gradients of many nodes at once.
+template <class Field, class Node>
+concept TellsGradientsAt = requires(const Field& field, std::span<const Node> nodes,
+                                    std::span<Point> out) {
+    field.gradients_at(nodes, out);
+};
+
+constexpr std::size_t most_pieces = 64;  // that are asked for at once
+
 /// Sets to[i] to a piece of edges[i]: the whole edge or, of its finest pieces, the one that
 /// repeated halving finds, which is a function of the edge and the data on it alone.
 /// \param field with known bisections (known_bisection.hpp)
+/// \param edges most_pieces at most
 template <class Batch, class Field>
 void find_pieces(const Batch& batch, const Field& field, std::span<const BatchEdge> edges,
                  const PieceQuestion& question, EdgePiece* to) {
+    using Node = typename Batch::Node;
     const auto& grid = *batch.grid;
+    EdgePiece* const first = to;
+    std::array<std::array<Node, 2>, most_pieces> ends;
     for (const BatchEdge& edge : edges) {
         std::array node{batch.nodes.all[edge.low], batch.nodes.all[edge.high]};
-        EdgePiece& piece = *to++;
+        EdgePiece& piece = *to;
         piece.value = {static_cast<double>(batch.values.all[edge.low]),
                        static_cast<double>(batch.values.all[edge.high])};
         piece.along = {0, 1};
@@ -57,9 +70,20 @@ void find_pieces(const Batch& batch, const Field& field, std::span<const BatchEd
         }
         for (std::size_t end = 0; end < 2; ++end) {
             piece.x[end] = grid.position(node[end]);
-            if constexpr (GivesGradientsAt<Field, typename Batch::Node>) {
+            if constexpr (GivesGradientsAt<Field, Node>) {
                 if (question.gradients) piece.gradient[end] = field.gradient_at(node[end]);
             }
+        }
+        ends[static_cast<std::size_t>(to++ - first)] = node;
+    }
+    if constexpr (TellsGradientsAt<Field, Node>) {
+        if (!question.gradients || edges.empty()) return;
+        std::array<Point, 2 * most_pieces> gradients;
+        const std::size_t count = 2 * edges.size();
+        field.gradients_at(std::span<const Node>(ends[0].data(), count),
+                           std::span(gradients).first(count));
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            first[i].gradient = {gradients[2 * i], gradients[2 * i + 1]};
         }
     }
 }

@@ -125,7 +125,7 @@ NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::cut_pieces(
     std::span<const BatchEdge> cuts, bool adds, WidePoint* to) {
     const bool normals = adds && target_->normals;
     const Real* const value = patches_->values[0];
-    std::array<EdgePiece, 64> some;
+    std::array<EdgePiece, most_pieces> some;
     while (!cuts.empty()) {
         const auto now = cuts.first(std::min(cuts.size(), some.size()));
         patches_->pieces(now, {level_->value, target_->finest, normals}, some.data());

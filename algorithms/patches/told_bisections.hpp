@@ -121,7 +121,9 @@ class ToldValues {
 public:
     using value_type = Real;
 
-    explicit ToldValues(const detail::BisectionRows<Real>& rows) : rows_{&rows} {}
+    /// \param gradients whether gradients_at() works
+    ToldValues(const detail::BisectionRows<Real>& rows, bool gradients)
+        : rows_{&rows}, gradients_{gradients} {}
 
     template <bool whole>
     Real value_at(std::uint64_t node, NodeKey key) const {
@@ -133,9 +135,14 @@ public:
                    std::span<Real> out) const {
         rows_->values(nodes, keys, out);
     }
+    bool gives_gradients() const { return gradients_; }
+    void gradients_at(std::span<const std::uint64_t> nodes, std::span<Point> out) const {
+        rows_->gradients(nodes, out);
+    }
 
 private:
     const detail::BisectionRows<Real>* rows_;
+    bool gradients_;
 };
 
 /// Walks the bisections below an element in patches: by the rows that the hierarchy tells or, where

@@ -87,7 +87,7 @@ struct HierarchyFacts {
     bool knows_star_positions = false;  ///< star_rows() and node_position() work
     bool knows_patches = false;         ///< bisection_rows() or bisect() work
     bool bisects_means = false;         ///< bisection_rows() or bisect_means() work
-    bool gradients_at_nodes = false;    ///< bisect() hands over gradients at any node
+    bool gradients_at_nodes = false;    ///< rows, or bisect(), hand over gradients at any node
     bool fills_rows = false;            ///< every node is in a star row
     bool decodes = false;               ///< values at new nodes need those at the corners
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
@@ -121,7 +121,12 @@ public:
     virtual void positions(std::span<const Node> nodes, std::span<Point> out) const = 0;
     virtual void values(std::span<const Node> nodes, std::span<const NodeKey> keys,
                         std::span<Real> out) const = 0;
+    /// Gradients of component 0, where facts().gradients_at_nodes.
+    virtual void gradients(std::span<const Node> nodes, std::span<Point> out) const;
 };
+
+template <class Real>
+void BisectionRows<Real>::gradients(std::span<const Node>, std::span<Point>) const {}
 
 }  // namespace detail
 

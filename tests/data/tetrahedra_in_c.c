@@ -74,6 +74,23 @@ static int node_values(const void* self, size_t count, const uint64_t* nodes, co
     return 0;
 }
 
+/* Central differences of samples, one-sided at the boundary. */
+static int node_gradients(const void* self, size_t count, const uint64_t* nodes,
+                          double (*out)[3]) {
+    const samples_in_c* of = (const samples_in_c*)self;
+    for (size_t i = 0; i < count; ++i) {
+        for (int d = 0; d < 3; ++d) {
+            const uint64_t up = at(nodes[i], d) < of->cells ? 1 : 0;
+            const uint64_t down = at(nodes[i], d) > 0 ? 1 : 0;
+            const uint64_t above = number(of, nodes[i] + (up << BITS * d));
+            const uint64_t below = number(of, nodes[i] - (down << BITS * d));
+            const double rise = (double)of->samples[above] - (double)of->samples[below];
+            out[i][d] = up + down == 2 ? 0.5 * rise : rise;
+        }
+    }
+    return 0;
+}
+
 static int middles(const void* self, size_t count, const uint64_t* a, const uint64_t* b,
                    uint64_t* out) {
     (void)self;
@@ -206,5 +223,6 @@ nestgrid_field samples_field_in_c(const samples_in_c* of) {
     t.coarse_values = coarse_values;
     t.new_values = new_values;
     t.node_values = node_values;
+    t.node_gradients = node_gradients;
     return t;
 }

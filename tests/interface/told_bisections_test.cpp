@@ -148,6 +148,53 @@ TEST_F(ToldBisections, GiveTheSurfaceOfThePlainTraversal) {
     }
 }
 
+TEST_F(ToldBisections, GiveTheNormalsOfTheLattice) {
+    for (const SampledField& values : data) {
+        show(values);
+        const LatticeBisection<3> lattice({.samples = {17, 17, 17}});
+        const LatticeField lattice_field(lattice, std::span<const float>(values.values));
+        for (const double threshold : {0.0, 0.01, 0.3}) {
+            for (const IsosurfaceOptions& options : {IsosurfaceOptions{.normals = true},
+                                                     {.cuts = Cuts::finest, .normals = true},
+                                                     // Not drawn in patches.
+                                                     {.normals = true, .at_nodes = true}}) {
+                SCOPED_TRACE(values.name + " at " + std::to_string(threshold));
+                IsosurfaceOptions o = options;
+                o.threshold = threshold * values.range;
+                const auto told = draw(values.isovalue, o);
+                EXPECT_EQ(told.surface.normals.size(), told.surface.vertices.size());
+                expect_same(told, isosurface(lattice, lattice_field, values.isovalue, o));
+                // Gradients at corners give the same by the plain traversal, but for finest pieces,
+                // whose ends are no corners.
+                field.node_gradients = nullptr;
+                field.corner_gradients = [](const void* self, void*, const nestgrid_element* e,
+                                            std::size_t count, double(*out)[3]) {
+                    return right_field.node_gradients(self, count, e->word, out);
+                };
+                if (o.cuts == Cuts::linear) expect_same(told, draw(values.isovalue, o));
+                show(values);
+            }
+        }
+    }
+}
+
+TEST_F(ToldBisections, NeedTheValuesAtNodesForGradients) {
+    const auto facts = [&] { return open_table<float>(grid, field)->facts(); };
+    const auto given = [&] {
+        EXPECT_EQ(facts().gradients_at_nodes, facts().offers(Feature::gradients));
+        return facts().gradients_at_nodes;
+    };
+    EXPECT_TRUE(given());
+    field.size = offsetof(nestgrid_field, node_gradients);
+    EXPECT_FALSE(given());
+    show(data[0]);
+    field.node_values = nullptr;
+    EXPECT_FALSE(given());
+    show(data[0]);
+    grid.middles = nullptr;
+    EXPECT_FALSE(given());
+}
+
 TEST_F(ToldBisections, GiveTheSlicesOfThePlainTraversal) {
     for (const SampledField& values : data) {
         show(values);
@@ -223,6 +270,25 @@ TEST_F(ToldBisections, ThatAreWrongAreFound) {
               }),
               "the value at the new node");
     EXPECT_EQ(found_with([&] {
+                  field.node_gradients = [](const void* self, std::size_t count,
+                                            const std::uint64_t* nodes, double(*out)[3]) {
+                      const int code = right_field.node_gradients(self, count, nodes, out);
+                      if (count > 1) out[1][2] += 1;
+                      return code;
+                  };
+              }),
+              "a gradient in a row");
+    EXPECT_EQ(found_with([&] {
+                  field.corner_gradients = [](const void* self, void*, const nestgrid_element* e,
+                                              std::size_t count, double(*out)[3]) {
+                      const int code = right_field.node_gradients(self, count, e->word, out);
+                      out[3][0] *= 2;
+                      out[3][0] += 1;
+                      return code;
+                  };
+              }),
+              "the gradient at a corner");
+    EXPECT_EQ(found_with([&] {
                   grid.split = [](const void* self, void* context, const nestgrid_element* e,
                                   int* rule) {
                       const int code = right_grid.split(self, context, e, rule);
@@ -244,6 +310,10 @@ TEST_F(ToldBisections, ThatFailAreNamed) {
     };
     EXPECT_EQ(refused_with([&] { field.node_values = [](auto...) { return 7; }; }),
               "the operation 'node_values' of the field failed with code 7");
+    field.node_gradients = [](auto...) { return 9; };
+    EXPECT_EQ(refusal<GridError>([&] { draw(data[0].isovalue, {.normals = true}); }),
+              "the operation 'node_gradients' of the field failed with code 9");
+    show(data[0]);
     EXPECT_EQ(refused_with([&] { grid.middles = [](auto...) { return 3; }; }),
               "the operation 'middles' of the grid failed with code 3");
     EXPECT_EQ(refused_with([&] { grid.node_positions = [](auto...) { return 1; }; }),

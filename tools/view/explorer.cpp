@@ -6,12 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <nestgrid/algorithms/isosurfaces.hpp>
-#include <nestgrid/algorithms/key_frames.hpp>
-#include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
-#include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
@@ -30,33 +27,15 @@ using Clock = std::chrono::steady_clock;
 /// A moving frame is drawn again where its triangles miss the goal by more than this part of it.
 constexpr double tolerance = 0.05;
 
+bool keeps_surface(const FrameRequest& request) {
+    return request.error > 0 || request.distance > 0;
+}
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Ends an extraction that has more triangles than asked for.
-struct TooMany {};
-
-/// Counts triangles and throws TooMany beyond a limit.
-class Counter final : public SimplexSink<3> {
-public:
-    explicit Counter(std::uint64_t most) : most_{most} {}
-    void take(const Surface<3>& part) override {
-        count_ += part.simplices.size();
-        if (count_ > most_) throw TooMany{};
-    }
-
-private:
-    std::uint64_t most_;
-    std::uint64_t count_ = 0;
-};
-
-struct Part {
-    const char* kind;
-    Isosurface<3> drawn;
-};
-
-void write_part(FrameReply& reply, const Part& part, const FrameRequest& request) {
+void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& request) {
     const Surface<3>& surface = part.drawn.surface;
     JsonText& text = reply.header;
     text.open('{').key("kind").string(part.kind);
@@ -77,137 +56,16 @@ void write_part(FrameReply& reply, const Part& part, const FrameRequest& request
 
 }  // namespace
 
-/// The field at the time of a request.
-struct Explorer::Moment {
-    SharedHierarchy hierarchy;
-    std::size_t frame = 0;                         ///< where it is that of a frame
-    std::optional<KeyFrames> between;              ///< where it is not
-    std::vector<float> weights;                    ///< of the frames
-    const HierarchicalIndicator* alone = nullptr;  ///< of offsets or deviations, at a frame
-
-    const Bounds& bounds() const {
-        if (between) return *between;
-        return *alone;
-    }
-};
-
 struct Explorer::Drawn {
     double threshold = 0;
     int draws = 0;
-    std::vector<Part> parts;
+    std::vector<FramePart> parts;
 
     std::uint64_t triangles() const {
         std::uint64_t sum = 0;
-        for (const Part& part : parts) sum += part.drawn.surface.simplices.size();
+        for (const FramePart& part : parts) sum += part.drawn.surface.simplices.size();
         return sum;
     }
-};
-
-/// What a request draws, at any threshold.
-class Explorer::Drawing {
-public:
-    Drawing(const FrameRequest& request, const Moment& moment, const Indicator& indicator,
-            const SweptIndicator* size, const Executor& executor, WatchedSteps& steps)
-        : request_{request},
-          moment_{moment},
-          indicator_{&indicator},
-          executor_(executor, [&steps](double share) { steps.check(share); }),
-          steps_{steps} {
-        if (request.lens) {
-            const LensRequest& l = *request.lens;
-            lens_.emplace(size, Ball{l.centre, l.radius},
-                          LensOptions{.finest = l.finest, .coarsest = l.coarsest});
-        }
-        if (request.plane) plane_.emplace(request.plane->through, request.plane->normal);
-    }
-
-    std::vector<Part> draw(double threshold) const {
-        steps_.begin("Drawing");
-        std::vector<Part> parts;
-        with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
-            IsosurfaceOptions options = watched({.elements = request_.outlines});
-            if (plane_) parts.push_back({"slice", draw_slice(hierarchy, criterion)});
-            if (!request_.isovalue) return;
-            const bool normals = request_.normals != NormalType::none;
-            options.normals = normals && !request_.moving;
-            // Linear cuts keep a deviation.
-            const bool keeps = request_.indicator == IndicatorName::deviation;
-            options.cuts = keeps ? Cuts::linear : Cuts::finest;
-            parts.push_back({"isosurface", isosurface<3>(hierarchy, *request_.isovalue, criterion,
-                                                         moment_.bounds(), options, executor_)});
-            if (parts.back().drawn.cancelled) throw FrameAbandoned{};
-            if (normals && request_.moving) {
-                Surface<3>& surface = parts.back().drawn.surface;
-                surface.normals = normals_from_triangles(surface);
-            }
-        });
-        return parts;
-    }
-
-    /// Whether a threshold gives no more triangles than asked for.
-    bool fits(double threshold) const {
-        steps_.begin("Searching for the detail that keeps within the triangles");
-        bool result = true;
-        with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
-            std::uint64_t most = request_.triangles;
-            if (plane_) {
-                const std::size_t used = draw_slice(hierarchy, criterion).surface.simplices.size();
-                result = used <= most;
-                most -= std::min<std::uint64_t>(used, most);
-            }
-            if (result && request_.isovalue) result = counts_at_most(most, hierarchy, criterion);
-        });
-        return result;
-    }
-
-private:
-    template <class Function>
-    void with_criterion(double threshold, const Function& function) const {
-        const Threshold everywhere(indicator_, threshold);
-        std::visit(
-            [&](const auto& hierarchy) {
-                if (lens_) {
-                    function(*hierarchy, everywhere && *lens_);
-                } else {
-                    function(*hierarchy, everywhere);
-                }
-            },
-            moment_.hierarchy);
-    }
-    template <class Real>
-    Slice draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const {
-        Slice drawn = slice(hierarchy, *plane_, criterion, moment_.bounds(),
-                            watched({.elements = request_.outlines}), executor_);
-        if (drawn.cancelled) throw FrameAbandoned{};
-        return drawn;
-    }
-    /// Options of an extraction that ends where nobody waits for it.
-    IsosurfaceOptions watched(IsosurfaceOptions options) const {
-        options.progress = [this](const TraversalCounts&) { return steps_.tell(); };
-        return options;
-    }
-    template <class Real>
-    bool counts_at_most(std::uint64_t most, const Hierarchy<Real>& hierarchy,
-                        const Criterion& criterion) const {
-        const double isovalue = *request_.isovalue;
-        try {
-            const auto counted = extract_isosurfaces<3>(
-                hierarchy, std::span(&isovalue, 1), std::vector{Counter(most)}, criterion,
-                moment_.bounds(), watched({.elements = false}), executor_);
-            if (counted.front().cancelled) throw FrameAbandoned{};
-        } catch (const TooMany&) {
-            return false;
-        }
-        return true;
-    }
-
-    const FrameRequest& request_;
-    const Moment& moment_;
-    const Indicator* indicator_;
-    std::optional<Lens> lens_;
-    std::optional<Plane> plane_;
-    TellingExecutor executor_;
-    WatchedSteps& steps_;
 };
 
 Explorer::Explorer(ExploredField field, const Executor& executor)
@@ -284,7 +142,9 @@ const HierarchicalIndicator& Explorer::of_nodes(IndicatorName name, std::size_t 
     return *deviations;
 }
 
-Explorer::Moment Explorer::moment_at(const FrameRequest& request, WatchedSteps& steps) {
+Moment Explorer::moment_at(const FrameRequest& request, WatchedSteps& steps) {
+    const IndicatorName name =
+        keeps_surface(request) ? IndicatorName::deviation : request.indicator;
     std::vector<float> weights{1};
     if (request.time && field_.frames.size() == 1 && *request.time != field_.times.front()) {
         throw InvalidInput("there is one frame, and the time asked for is not its time");
@@ -294,18 +154,39 @@ Explorer::Moment Explorer::moment_at(const FrameRequest& request, WatchedSteps& 
     }
     for (std::size_t i = 0; i < weights.size(); ++i) {
         if (weights[i] != 1) continue;
-        const HierarchicalIndicator& alone = of_nodes(request.indicator, i, steps);
+        const HierarchicalIndicator& alone = of_nodes(name, i, steps);
         return {field_.frames[i], i, {}, std::move(weights), &alone};
     }
     std::vector<const HierarchicalIndicator*> frames;
     std::vector<float> of_frames;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         if (weights[i] == 0) continue;
-        frames.push_back(&of_nodes(request.indicator, i, steps));
+        frames.push_back(&of_nodes(name, i, steps));
         of_frames.push_back(weights[i]);
     }
     KeyFrames between(std::move(frames), of_frames);
     return {field_.between(weights), 0, std::move(between), std::move(weights), nullptr};
+}
+
+FrameIndicators Explorer::indicators_for(const FrameRequest& request, const Moment& moment,
+                                         WatchedSteps& steps) {
+    FrameIndicators indicators;
+    if (request.lens) indicators.size = &size_for(moment, request.lens->slope, steps);
+    if (!keeps_surface(request)) {
+        indicators.detail = &indicator_at(moment, request.indicator, steps);
+        return indicators;
+    }
+    indicators.detail = &indicator_at(moment, IndicatorName::deviation, steps);
+    if (!request.isovalue || (request.moving && request.error > 0)) return indicators;
+    surface_errors_.begin(moment, *request.isovalue);
+    const bool cuts =
+        std::visit([](const auto& h) { return cuts_are_errors(h->facts()); }, moment.hierarchy);
+    if (request.error > 0 && cuts && !request.plane) {
+        indicators.detail = &surface_errors_.cuts(moment, *executor_, steps);
+    }
+    if (!request.collapse) indicators.slopes = &surface_errors_.slopes(moment, *executor_, steps);
+    if (request.distance > 0) indicators.detail = indicators.slopes;
+    return indicators;
 }
 
 const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name,
@@ -373,7 +254,7 @@ double Explorer::greatest_threshold(IndicatorName indicator) const {
     return indicator == IndicatorName::numerical ? 16 * range : range;
 }
 
-Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawing& drawing) {
+Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const FrameDrawing& drawing) {
     const auto goal = static_cast<double>(request.triangles);
     const bool known = budget_ && budget_->indicator == request.indicator;
     if (!known) {
@@ -414,8 +295,12 @@ Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const Drawin
     return drawn;
 }
 
-Explorer::Drawn Explorer::draw(const FrameRequest& request, const Drawing& drawing) {
-    if (request.triangles == 0) return {request.threshold, 1, drawing.draw(request.threshold)};
+Explorer::Drawn Explorer::draw(const FrameRequest& request, const FrameDrawing& drawing) {
+    if (request.triangles == 0) {
+        // At most one of them is not 0.
+        const double held = request.threshold + request.error + request.distance;
+        return {held, 1, drawing.draw(held)};
+    }
     const std::optional<Budget> before = budget_;
     try {
         return draw_to_goal(request, drawing);
@@ -425,20 +310,28 @@ Explorer::Drawn Explorer::draw(const FrameRequest& request, const Drawing& drawi
     }
 }
 
+FrameRequest Explorer::at_last_detail(FrameRequest request) const {
+    if (!request.moving || !(request.distance > 0) || triangles_of_distance_ == 0) return request;
+    request.distance = 0;
+    request.triangles = triangles_of_distance_;
+    return request;
+}
+
 std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& watch) {
-    const FrameRequest request = parse_request(text);
+    const FrameRequest request = at_last_detail(parse_request(text));
     const auto start = Clock::now();
     WatchedSteps steps(watch);
     const Moment moment = moment_at(request, steps);
-    const Indicator& indicator = indicator_at(moment, request.indicator, steps);
-    const SweptIndicator* const size =
-        request.lens ? &size_for(moment, request.lens->slope, steps) : nullptr;
-    const Drawing drawing(request, moment, indicator, size, *executor_, steps);
+    const FrameIndicators indicators = indicators_for(request, moment, steps);
+    const FrameDrawing drawing(request, moment, indicators, *executor_, steps);
     const Drawn drawn = draw(request, drawing);
+    if (request.distance > 0) triangles_of_distance_ = drawn.triangles();
     ErrorBounds bounds;
     double visited = 0;
-    for (const Part& part : drawn.parts) {
+    double distance = std::numeric_limits<double>::quiet_NaN();
+    for (const FramePart& part : drawn.parts) {
         bounds.add_bounds(part.drawn);
+        if (std::isfinite(part.distance)) distance = part.distance;
         visited += static_cast<double>(part.drawn.counts.visited);
     }
     const double seconds = seconds_since(start);
@@ -447,9 +340,10 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
     reply.header.key("triangles").number(static_cast<double>(drawn.triangles()));
     reply.header.key("visited").number(visited).key("error_bound").number(bounds.error_bound);
     reply.header.key("bound_says_nothing").boolean(bounds.bound_says_nothing());
+    reply.header.key("distance").number(distance);
     reply.header.key("seconds").number(seconds).key("draws").number(drawn.draws);
     reply.header.key("parts").open('[');
-    for (const Part& part : drawn.parts) write_part(reply, part, request);
+    for (const FramePart& part : drawn.parts) write_part(reply, part, request);
     reply.header.close(']').close('}');
     return reply.bytes();
 }

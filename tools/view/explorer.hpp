@@ -13,7 +13,11 @@
 //   - a moving frame costs one extraction in most cases (FrameBudget); where it misses the number
 //   of
 //     triangles by more than 5 %, it is drawn again, and then searched for like a settled one, but
-//     not once a search has missed the number, too.
+//     not once a search has missed the number, too;
+//   - a frame of an error keeps it. A settled one keeps it with fewer triangles where elements are
+//     simplices and there is no slice: cut deviations are measured anew for each isovalue;
+//   - slopes are measured for settled frames alone: a moving frame of a distance has the number of
+//     triangles of the last settled one.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +32,10 @@
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 
 #include "explored_field.hpp"
+#include "frame_drawing.hpp"
 #include "frame_request.hpp"
 #include "frame_watch.hpp"
+#include "surface_errors.hpp"
 
 namespace nestgrid::view {
 
@@ -52,11 +58,13 @@ public:
     /// \param request as parse_request() takes it
     /// \return the layout of frame_reply.hpp. The text has threshold, triangles, visited,
     ///         error_bound (the greatest of the parts), bound_says_nothing
-    ///         (isosurface_options.hpp), seconds, draws (extractions that the frame took), and a
-    ///         list of parts: kind (isosurface, slice or outlines), triangles (segments), visited,
-    ///         error_bound, and arrays: positions, three float32 a vertex; indices, three uint32 a
-    ///         triangle, two a segment; normals, four int8 (times 1/127; the last is 0) or three
-    ///         float32 a vertex; values, one float32 a vertex
+    ///         (isosurface_options.hpp), distance (of a settled isosurface from that of all data,
+    ///         an estimate, where an error or a distance is asked for and nothing is collapsed;
+    ///         else null), seconds, draws (extractions that the frame took), and a list of parts:
+    ///         kind (isosurface, slice or outlines), triangles (segments), visited, error_bound,
+    ///         and arrays: positions, three float32 a vertex; indices, three uint32 a triangle, two
+    ///         a segment; normals, four int8 (times 1/127; the last is 0) or three float32 a
+    ///         vertex; values, one float32 a vertex
     /// \param watch told what is being done; where it returns false, the next frame is drawn as if
     ///        this one had not been asked for
     /// \throw FrameAbandoned where it does
@@ -65,19 +73,20 @@ public:
     std::vector<std::byte> frame(std::string_view request, const FrameWatch& watch = {});
 
 private:
-    struct Moment;
     struct Drawn;
-    class Drawing;
 
+    FrameRequest at_last_detail(FrameRequest request) const;
     Moment moment_at(const FrameRequest& request, WatchedSteps& steps);
     const HierarchicalIndicator& of_nodes(IndicatorName name, std::size_t frame,
                                           WatchedSteps& steps);
+    FrameIndicators indicators_for(const FrameRequest& request, const Moment& moment,
+                                   WatchedSteps& steps);
     const Indicator& indicator_at(const Moment& moment, IndicatorName name, WatchedSteps& steps);
     const SweptIndicator& swept_of(IndicatorName name, std::size_t frame, WatchedSteps& steps);
     const SweptIndicator& size_for(const Moment& moment, double slope, WatchedSteps& steps);
     double greatest_threshold(IndicatorName indicator) const;
-    Drawn draw(const FrameRequest& request, const Drawing& drawing);
-    Drawn draw_to_goal(const FrameRequest& request, const Drawing& drawing);
+    Drawn draw(const FrameRequest& request, const FrameDrawing& drawing);
+    Drawn draw_to_goal(const FrameRequest& request, const FrameDrawing& drawing);
 
     ExploredField field_;
     const Executor* executor_;
@@ -97,6 +106,8 @@ private:
     };
     std::optional<Swept> swept_;
     std::optional<SweptIndicator> size_;  // the last sizes of elements
+    SurfaceErrors surface_errors_;
+    std::uint64_t triangles_of_distance_ = 0;  // of the last settled frame of a distance
     struct Budget {
         IndicatorName indicator;
         FrameBudget thresholds;

@@ -13,8 +13,8 @@ namespace nestgrid::view {
 namespace {
 
 constexpr const char* known_keys =
-    "isovalue, axis, at, plane, threshold, triangles, motion, indicator, lens, finest, coarsest, "
-    "slope, time, normals and outlines";
+    "isovalue, axis, at, plane, threshold, triangles, error, distance, collapse, motion, "
+    "indicator, lens, finest, coarsest, slope, time, normals and outlines";
 
 Point point_at(const std::vector<double>& numbers, std::size_t first) {
     return {numbers[first], numbers[first + 1], numbers[first + 2]};
@@ -42,19 +42,54 @@ void take_plane(Entries& entries, FrameRequest& request) {
     request.plane->normal[d] = 1;
 }
 
-void take_threshold(Entries& entries, FrameRequest& request) {
-    const bool threshold = entries.take("threshold", [&](auto key, auto text) {
+double positive_number(std::string_view key, std::string_view text) {
+    const double number = number_of(key, text);
+    if (!(number > 0)) refuse(key, "not positive", text);
+    return number;
+}
+
+void take_detail(Entries& entries, FrameRequest& request) {
+    int held = 0;
+    held += entries.take("threshold", [&](auto key, auto text) {
         request.threshold = number_at_least_0(key, text);
     });
-    const bool triangles = entries.take("triangles", [&](auto key, auto text) {
+    held += entries.take("triangles", [&](auto key, auto text) {
         const double number = number_of(key, text);
         if (number != std::floor(number) || number < 1 || number > 1e9) {
             refuse(key, "no count from 1 to 1000000000", text);
         }
         request.triangles = static_cast<std::uint64_t>(number);
     });
-    if (threshold && triangles) {
-        throw InvalidInput("the request has a threshold and a number of triangles: leave out one");
+    held += entries.take("error",
+                         [&](auto key, auto text) { request.error = positive_number(key, text); });
+    held += entries.take(
+        "distance", [&](auto key, auto text) { request.distance = positive_number(key, text); });
+    if (held > 1) {
+        throw InvalidInput(
+            "the request has several of threshold, triangles, error and distance: leave out all "
+            "but one");
+    }
+}
+
+bool is_on(std::string_view key, std::string_view text) {
+    return choice_of<bool, 2>(key, text, {{{"on", true}, {"off", false}}});
+}
+
+/// What does not go together with an error or a distance.
+void check_detail(const FrameRequest& request, bool names_indicator) {
+    const bool by_surface = request.error > 0 || request.distance > 0;
+    if (by_surface && names_indicator) {
+        throw InvalidInput("an error and a distance have indicators of their own: leave it out");
+    }
+    if (request.distance > 0 && !request.isovalue) {
+        throw InvalidInput("a distance is that of an isosurface: give isovalue");
+    }
+    if (!request.collapse) return;
+    if (!(request.error > 0) || !request.isovalue) {
+        throw InvalidInput("collapse needs the error of an isosurface that is to be kept");
+    }
+    if (request.outlines) {
+        throw InvalidInput("triangles that are collapsed have no outlines of elements");
     }
 }
 
@@ -86,12 +121,12 @@ FrameRequest parse_request(std::string_view text) {
     entries.take("isovalue",
                  [&](auto key, auto value) { request.isovalue = number_of(key, value); });
     take_plane(entries, request);
-    take_threshold(entries, request);
+    take_detail(entries, request);
     take_lens(entries, request);
     entries.take("motion", [&](auto key, auto value) {
         request.moving = choice_of<bool, 2>(key, value, {{{"moving", true}, {"settled", false}}});
     });
-    entries.take("indicator", [&](auto key, auto value) {
+    const bool names_indicator = entries.take("indicator", [&](auto key, auto value) {
         request.indicator = choice_of<IndicatorName, 5>(key, value,
                                                         {{{"offset", IndicatorName::offset},
                                                           {"deviation", IndicatorName::deviation},
@@ -106,13 +141,13 @@ FrameRequest parse_request(std::string_view text) {
                                                      {"int8", NormalType::int8},
                                                      {"float32", NormalType::float32}}});
     });
-    entries.take("outlines", [&](auto key, auto value) {
-        request.outlines = choice_of<bool, 2>(key, value, {{{"on", true}, {"off", false}}});
-    });
+    entries.take("outlines", [&](auto key, auto value) { request.outlines = is_on(key, value); });
+    entries.take("collapse", [&](auto key, auto value) { request.collapse = is_on(key, value); });
     entries.require_empty(known_keys);
     if (!request.isovalue && !request.plane) {
         throw InvalidInput("nothing is to be drawn: give isovalue, plane, or axis and at");
     }
+    check_detail(request, names_indicator);
     return request;
 }
 

@@ -36,10 +36,15 @@ struct FrameRequest {
     std::optional<double> isovalue{};     ///< isovalue=NUMBER; where there is none, no isosurface
     std::optional<PlaneRequest> plane{};  ///< plane=x,y,z,x,y,z, a point and the normal; or axis=x
                                           ///< (y, z) with at=COORDINATE
-    double threshold = 0;                 ///< threshold=NUMBER, in units of the indicator
-    std::uint64_t triangles = 0;  ///< triangles=COUNT, a goal beside which there is no threshold
-    bool moving = false;          ///< motion=moving: the goal is missed by a few percent; or
-                                  ///< motion=settled: it is not exceeded
+    // Detail is held at one of these, or all of it is drawn.
+    double threshold = 0;         ///< threshold=NUMBER, in units of the indicator
+    std::uint64_t triangles = 0;  ///< triangles=COUNT, a goal
+    double error = 0;  ///< error=NUMBER that is kept, in units of the data; 0 where there is none
+    double distance =
+        0;  ///< distance=NUMBER, an estimate in units of length; 0 where there is none
+    bool collapse = false;  ///< collapse=on: fewer triangles of the same error
+    bool moving = false;    ///< motion=moving: the goal is missed by a few percent; or
+                            ///< motion=settled: it is not exceeded
     IndicatorName indicator = IndicatorName::offset;  ///< indicator=offset (visual, ...)
     std::optional<LensRequest> lens{};  ///< lens=x,y,z,r with finest=, coarsest= and slope=
     std::optional<double> time{};       ///< time=NUMBER
@@ -47,6 +52,9 @@ struct FrameRequest {
     /// moving.
     NormalType normals = NormalType::none;
     bool outlines = false;  ///< outlines=on or off: edges of extracted elements
+
+    /// Edges are collapsed when nothing moves.
+    bool collapses() const { return collapse && !moving; }
 };
 
 /// \throw InvalidInput with one sentence for a key that is unknown or given twice, for a value that

@@ -206,6 +206,9 @@ public:
     bool offers(Feature feature) const {
         return feature == Feature::gradients && table_.corner_gradients != nullptr;
     }
+    /// Whether the table gives values at nodes that the grid tells in rows, and gradients.
+    bool tells_values() const { return table_.node_values != nullptr; }
+    bool tells_gradients() const { return tells_values() && table_.node_gradients != nullptr; }
     void corner_gradients(const nestgrid_element& e, std::span<Point> out, TableContext& c) const {
         check(table_.corner_gradients(table_.self, c.state(), &e, out.size(), as_rows(out.data())),
               "corner_gradients", &c);
@@ -213,6 +216,11 @@ public:
     /// Values at nodes that the grid tells in rows.
     void node_values(std::span<const std::uint64_t> nodes, std::span<const NodeKey> keys,
                      std::span<Real> out) const;
+    /// Gradients at such nodes.
+    void node_gradients(std::span<const std::uint64_t> nodes, std::span<Point> out) const {
+        check(table_.node_gradients(table_.self, nodes.size(), nodes.data(), as_rows(out.data())),
+              "node_gradients", nullptr);
+    }
 
 private:
     std::size_t nodes_in(std::span<Real> values) const {

@@ -81,6 +81,10 @@ public:
         facts.conforming = grid_.conforming();
         facts.knows_patches = tells_rows();
         facts.bisects_means = tells_rows() && facts.dimension == 3;
+        facts.gradients_at_nodes = tells_rows() && field_.first().tells_gradients();
+        if (facts.gradients_at_nodes) {
+            facts.features |= static_cast<unsigned>(Feature::gradients);
+        }
     }
 
     std::size_t coarse_count() const override { return grid_.coarse_count(); }
@@ -143,7 +147,11 @@ public:
     }
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         if (!this->offers(Feature::gradients)) return;
-        field_.first().corner_gradients(of(element), out, context_of(task));
+        if (field_.first().offers(Feature::gradients)) {
+            return field_.first().corner_gradients(of(element), out, context_of(task));
+        }
+        // An element that is told in rows is nothing but its corners.
+        gradients(std::span(of(element).word).first(out.size()), out);
     }
 
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
@@ -162,7 +170,7 @@ private:
     };
     bool tells_rows() const {
         return grid_.tells_bisections() && field_.components() == 1 &&
-               field_.first().table().node_values != nullptr;
+               field_.first().tells_values();
     }
     static TableContext& context_of(Task* task) { return static_cast<OpenTask*>(task)->context; }
     static const nestgrid_element& of(const Handle& element) {
@@ -190,6 +198,9 @@ private:
     void values(std::span<const Node> nodes, std::span<const NodeKey> keys,
                 std::span<Real> out) const override {
         field_.first().node_values(nodes, keys, out);
+    }
+    void gradients(std::span<const Node> nodes, std::span<Point> out) const override {
+        field_.first().node_gradients(nodes, out);
     }
 
     TableGrid grid_;

@@ -105,6 +105,10 @@ try {
     await page.click('#picture-dialog button[value=cancel]');
     await opened.go('#slice=z&lens=cursor&detail=threshold&projection=parallel');
     await look(`${scheme} slice`);
+    await opened.go('#detail=error&collapse=on');
+    await look(`${scheme} error`);
+    await opened.go('#detail=distance');
+    await look(`${scheme} distance`);
     await page.setViewport({ width: 390, height: 844 });
     await look(`${scheme} narrow`);
     await page.setViewport({ width: 1280, height: 800 });

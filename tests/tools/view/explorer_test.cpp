@@ -7,6 +7,8 @@
 
 #include <explored_samples.hpp>
 #include <nestgrid/adapters/tbb.hpp>
+#include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/slice.hpp>
@@ -251,6 +253,110 @@ TYPED_TEST(Explored, FramesKeepErrors) {
     });
 }
 
+/// A field on a grid of a family, and the error that is asked for.
+template <class Family, class Function>
+void for_each_error(const Function& function) {
+    for_each_field_at_sphere<Family>(2, 6, [&](const auto& grid, const NodalSamples& samples) {
+        using Grid = std::decay_t<decltype(grid)>;
+        const NodeField<Grid, double> field(grid, samples.values);
+        const HierarchicalIndicator deviations(grid, field, NodeError::deviation);
+        const SequentialExecutor executor;
+        Explorer explorer(borrowed_field(grid, samples.values), executor);
+        function(explorer, grid, field, deviations,
+                 0.1 * (deviations.greatest() - deviations.least()));
+    });
+}
+
+constexpr double at_zero = 0;  // an isovalue that the fields cross
+
+TYPED_TEST(Explored, ErrorsAreThoseOfTheDataAndOfTheSurfaceOnceNothingMoves) {
+    for_each_error<TypeParam>([](Explorer& explorer, const auto& grid, const auto& field,
+                                 const HierarchicalIndicator& deviations, double error) {
+        const std::string what = "isovalue=0&error=" + text_of(error);
+        const auto of_data = isosurface(grid, field, at_zero, deviations, {.threshold = error});
+        const Frame moving = frame_of(explorer, what + "&motion=moving");
+        expect_part(moving, "isosurface", of_data.surface);
+        EXPECT_FALSE(moving.has_number("distance"));
+        const SweptIndicator cuts = cut_deviations(grid, field, std::span(&at_zero, 1), deviations);
+        const Threshold s(&cuts, error);
+        const bool of_one = cuts_are_errors(erase(grid, field).facts());
+        const auto of_surface = isosurface(grid, field, at_zero, s, deviations);
+        const Frame settled = frame_of(explorer, what);
+        expect_part(settled, "isosurface", of_one ? of_surface.surface : of_data.surface);
+        EXPECT_EQ(settled.number("error_bound"),
+                  of_one ? of_surface.error_bound : of_data.error_bound);
+        // A slice keeps the error of all data.
+        const Frame sliced = frame_of(explorer, what + "&axis=x&at=0.41");
+        expect_part(sliced, "isosurface", of_data.surface);
+        EXPECT_TRUE(sliced.has("slice"));
+    });
+}
+
+TYPED_TEST(Explored, DistancesAreThoseOfSlopes) {
+    for_each_error<TypeParam>([](Explorer& explorer, const auto& grid, const auto& field,
+                                 const HierarchicalIndicator& deviations, double error) {
+        constexpr double distance = 0.04;
+        const SweptIndicator slopes =
+            slope_deviations(grid, field, std::span(&at_zero, 1), deviations);
+        const auto expected = isosurface(grid, field, at_zero, Threshold(&slopes, distance),
+                                         deviations, {.cuts = Cuts::finest});
+        const auto at_distance = [&](double d) {
+            return frame_of(explorer, "isovalue=0&distance=" + text_of(d));
+        };
+        const Frame frame = at_distance(distance);
+        expect_part(frame, "isosurface", expected.surface);
+        EXPECT_LE(frame.number("distance"), distance);
+        // The distance that is told of an error drops all that the error drops, and a lesser one
+        // does not.
+        const Frame kept = frame_of(explorer, "isovalue=0&error=" + text_of(error));
+        const double told = kept.number("distance");
+        if (told == 0) return;  // all is drawn
+        EXPECT_LE(at_distance(told).number("triangles"), kept.number("triangles"));
+        EXPECT_EQ(at_distance(told).number("distance"), told);
+        EXPECT_LT(at_distance(0.99 * told).number("distance"), told);
+    });
+}
+
+TYPED_TEST(Explored, CollapsedFramesKeepTheError) {
+    for_each_error<TypeParam>([](Explorer& explorer, const auto& grid, const auto& field,
+                                 const HierarchicalIndicator& deviations, double error) {
+        const std::string what = "isovalue=0&collapse=on&error=" + text_of(error);
+        const SweptIndicator cuts = cut_deviations(grid, field, std::span(&at_zero, 1), deviations);
+        const bool of_one = cuts_are_errors(erase(grid, field).facts());
+        const Indicator& indicator = of_one ? static_cast<const Indicator&>(cuts) : deviations;
+        auto drawn = isosurface(grid, field, at_zero, Threshold(&indicator, error / 2), deviations);
+        collapse(drawn.surface, grid, field, at_zero, deviations, {.error = error})
+            .hand_to(drawn, drawn.surface_error);
+        const Frame frame = frame_of(explorer, what);
+        expect_part(frame, "isosurface", drawn.surface);
+        EXPECT_EQ(frame.number("error_bound"), drawn.error_bound);
+        EXPECT_FALSE(frame.has_number("distance"));
+        // Nothing is collapsed while something moves.
+        expect_part(frame_of(explorer, what + "&motion=moving"), "isosurface",
+                    isosurface(grid, field, at_zero, deviations, {.threshold = error}).surface);
+    });
+}
+
+TEST(MovingFrames, OfADistanceHaveTheTrianglesOfTheLastSettledOne) {
+    for (const SampledField& field : generic_fields(65)) {
+        SCOPED_TRACE(field.name);
+        Volume volume(field, 65);
+        const auto at = [&](double part, const std::string& motion) {
+            return frame_of(volume.explorer, "distance=0.004&motion=" + motion + "&isovalue=" +
+                                                 text_of(field.isovalue + part * field.range));
+        };
+        // Nothing is settled yet.
+        EXPECT_GT(at(0, "moving").number("distance"), 0);
+        const double goal = at(0, "settled").number("triangles");
+        for (const double part : {0.01, 0.02, 0.03}) {
+            const Frame frame = at(part, "moving");
+            EXPECT_NEAR(frame.number("triangles"), goal, 0.05 * goal);
+            EXPECT_FALSE(frame.has_number("distance"));
+        }
+        EXPECT_LE(at(0.03, "settled").number("distance"), 0.004);
+    }
+}
+
 TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
     const auto first = field_named("sphere", 33).values;
     const auto second = field_named("gyroid", 33).values;
@@ -285,6 +391,25 @@ TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
         frame_of(explorer, what + "&time=3&indicator=wavelet"), "isosurface",
         isosurface(grid, between, 0.4, Threshold(&wavelets, 0.02), indicator, finest).surface);
     expect_refused([&] { explorer.frame(what + "&time=3&indicator=visual"); }, "between frames");
+
+    constexpr double isovalue = 0.4;
+    const HierarchicalIndicator errors_of_a(grid, a, NodeError::deviation);
+    const HierarchicalIndicator errors_of_b(grid, b, NodeError::deviation);
+    const KeyFrames errors({&errors_of_a, &errors_of_b}, weights);
+    const SweptIndicator cuts = cut_deviations(grid, between, std::span(&isovalue, 1), errors);
+    expect_part(frame_of(explorer, "isovalue=0.4&error=0.05&time=3"), "isosurface",
+                isosurface(grid, between, isovalue, Threshold(&cuts, 0.05), errors).surface);
+    const SweptIndicator slopes = slope_deviations(grid, between, std::span(&isovalue, 1), errors);
+    expect_part(
+        frame_of(explorer, "isovalue=0.4&distance=0.01&time=3"), "isosurface",
+        isosurface(grid, between, isovalue, Threshold(&slopes, 0.01), errors, finest).surface);
+    // The same isovalue at another time is another surface, as is another isovalue.
+    for (const double value : {isovalue, 0.1}) {
+        const SweptIndicator of_first = cut_deviations(grid, a, std::span(&value, 1), errors_of_a);
+        expect_part(frame_of(explorer, "isovalue=" + text_of(value) + "&error=0.005&time=2"),
+                    "isosurface",
+                    isosurface(grid, a, value, Threshold(&of_first, 0.005), errors_of_a).surface);
+    }
     expect_refused([&] { explorer.frame(what + "&time=7"); }, "7");
     expect_refused([&] { alone.frame(what + "&time=7"); }, "one frame");
 }
@@ -369,7 +494,8 @@ TEST(Frames, ForWhichNobodyWaitsEndAtOnceAndLeaveNoTrace) {
              {"isovalue=0.1&indicator=numerical&threshold=0.1",
               "isovalue=0.1&indicator=visual&triangles=9000", "isovalue=0.1",
               "isovalue=0.1&triangles=9000", "axis=x&at=0.5",
-              "isovalue=0.1&lens=0.5,0.5,0.5,0.1&triangles=20000"}) {
+              "isovalue=0.1&lens=0.5,0.5,0.5,0.1&triangles=20000", "isovalue=0.1&error=0.2",
+              "isovalue=0.1&distance=0.01", "isovalue=0.1&error=0.2&collapse=on"}) {
             for (const int patience : {0, 1, 3, 10}) {
                 int told = 0;
                 bool over = false;
@@ -419,7 +545,22 @@ TEST(Requests, ThatAreMalformedAreRefusedInOneSentence) {
         {"isovalue=1&triangles=0", "triangles is no count"},
         {"isovalue=1&triangles=1.5", "triangles is no count"},
         {"isovalue=1&triangles=1e10", "triangles is no count"},
-        {"isovalue=1&triangles=100&threshold=1", "leave out one"},
+        {"isovalue=1&triangles=100&threshold=1", "leave out all but one"},
+        {"isovalue=1&error=0", "error is not positive"},
+        {"isovalue=1&error=-1", "error is not positive"},
+        {"isovalue=1&error=1%", "error is no finite number"},
+        {"isovalue=1&distance=0", "distance is not positive"},
+        {"isovalue=1&distance=nan", "distance is no finite number"},
+        {"isovalue=1&distance=1mm", "distance is no finite number"},
+        {"isovalue=1&error=1&distance=1", "leave out all but one"},
+        {"isovalue=1&error=1&triangles=10", "leave out all but one"},
+        {"isovalue=1&error=1&indicator=offset", "indicators of their own"},
+        {"axis=x&at=1&distance=1", "that of an isosurface"},
+        {"isovalue=1&collapse=on", "collapse needs the error"},
+        {"isovalue=1&distance=1&collapse=on", "collapse needs the error"},
+        {"axis=x&at=1&error=1&collapse=on", "collapse needs the error"},
+        {"isovalue=1&error=1&collapse=yes", "collapse is none of on, off"},
+        {"isovalue=1&error=1&collapse=on&outlines=on", "no outlines"},
         {"isovalue=1&motion=fast", "motion is none of moving, settled"},
         {"isovalue=1&indicator=best", "indicator is none of offset"},
         {"isovalue=1&normals=yes", "normals is none of"},
@@ -466,6 +607,10 @@ TEST(Requests, SayWhatTheyAskFor) {
     EXPECT_EQ(r.time, 3);
     EXPECT_EQ(r.normals, NormalType::int8);
     EXPECT_TRUE(r.outlines);
+    EXPECT_EQ(parse_request("isovalue=1&distance=0.5").distance, 0.5);
+    const FrameRequest collapsed = parse_request("isovalue=1&error=0.25&collapse=on");
+    EXPECT_EQ(collapsed.error, 0.25);
+    EXPECT_TRUE(collapsed.collapse);
 }
 
 }  // namespace

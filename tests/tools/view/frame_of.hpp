@@ -28,6 +28,10 @@ public:
     double number(const std::string& name, const std::string& kind = "") const {
         return std::stod(text_.substr(behind("\"" + name + "\":", part(kind))));
     }
+    /// Whether a number of the frame is told, and not null.
+    bool has_number(const std::string& name) const {
+        return text_.compare(behind("\"" + name + "\":", 0), 4, "null") != 0;
+    }
     bool has(const std::string& kind) const {
         return text_.find(R"("kind":")" + kind + "\"") != std::string::npos;
     }

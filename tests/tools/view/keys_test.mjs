@@ -194,7 +194,16 @@ try {
   await slide('triangles', /^about [\d,]+ triangles$/);
   await press('Tab', 'Shift');
   await press('ArrowDown');
-  await page.waitForFunction(() => document.getElementById('by-threshold').checked);
+  const checked = (id) => page.waitForFunction((radio) => document.getElementById(radio).checked, {}, id);
+  await checked('by-error');
+  await slide('error', /^at most .*% of the range/);
+  await press('Tab', 'Shift');
+  await press('ArrowDown');
+  await checked('by-distance');
+  await slide('distance', /^about [\d.e-]+/);
+  await press('Tab', 'Shift');
+  await press('ArrowDown');
+  await checked('by-threshold');
   await slide('threshold', /% of the range/);
   if (volumes.length > 1 && !opened.takesFiles) {
     await page.evaluate(() => document.activeElement.blur());

@@ -81,6 +81,11 @@ std::vector<std::string> requests(double scale) {
         list.push_back("isovalue=" + at(0.5 + 0.05 * i) +
                        "&triangles=1500&motion=moving&normals=int8");
     }
+    for (const char* const more : {"", "&motion=moving", "&collapse=on", "&axis=z&at=0.4"}) {
+        list.push_back("isovalue=" + at(0.6) + "&error=" + at(0.03) + "&normals=int8" + more);
+    }
+    list.push_back("isovalue=" + at(0.6) + "&distance=0.01");
+    list.push_back("isovalue=" + at(0.62) + "&distance=0.01&motion=moving");
     list.push_back("axis=z&at=0.4&threshold=" + at(0.02) + "&outlines=on");
     list.push_back("isovalue=" + at(0.6) + "&plane=0.4,0.5,0.4,1,2,3&triangles=2000");
     list.push_back("isovalue=" + at(0.6) + "&threshold=0&lens=0.5,0.5,0.4,0.1&slope=1");

@@ -70,6 +70,11 @@ export function readableCount(n) {
   return Math.round(n).toString().replace(/\B(?=(\d{3})+$)/g, ',');
 }
 
+/** A part of the range of the data, of two digits; its number where there is no range. */
+export function percent(x, range) {
+  return range > 0 ? `${Number(((100 * x) / range).toPrecision(2))} %` : readable(x);
+}
+
 /** A number as text with its unit, which may be '' or not known. */
 export function withUnit(text, unit) {
   return unit ? `${text} ${unit}` : text;

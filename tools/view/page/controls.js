@@ -3,8 +3,8 @@
 //
 // Sliders and selections. They show a state and say which part of it the reader changes; while a
 // slider is dragged the change is 'moving', when it is let go 'settled'.
-import { readable, readableCount, withUnit } from './colours.js';
-import { diagonalOf } from './state.js';
+import { percent, readable, readableCount, withUnit } from './colours.js';
+import { collapses, diagonalOf, heldAt } from './state.js';
 import { setControl, setWhy } from './status.js';
 
 const byId = (id) => document.getElementById(id);
@@ -20,6 +20,8 @@ const logarithmic = (from, to) => ({
   position: (x) => (x > 0 ? Math.log(x / from) / Math.log(to / from) : 0),
 });
 
+/** What detail may be held at; each has a choice and controls. */
+const details = ['triangles', 'error', 'distance', 'threshold'];
 const trianglesScale = logarithmic(1000, 3000000);
 
 /** A count of two digits. */
@@ -42,14 +44,16 @@ export class Controls {
     this.#slider('isovalue', (t) => ({ isovalue: this.#valueScale.value(t) }));
     this.#slider('triangles', (t) => ({ triangles: rounded(trianglesScale.value(t)) }));
     this.#slider('threshold', (t) => ({ threshold: t === 0 ? 0 : this.#thresholdScale.value(t) }));
+    this.#slider('error', (t) => ({ error: this.#errorScale.value(t) }));
+    this.#slider('distance', (t) => ({ distance: this.#distanceScale.value(t) }));
     this.#slider('slice-at', (t) => ({ at: this.#placeScale.value(t) }));
     this.#slider('lens-radius', (t) => ({ radius: this.#radiusScale.value(t) }));
     this.#slider('time', (t) => ({ time: this.#timeAt(t) }));
-    for (const id of ['surface', 'outlines']) {
+    for (const id of ['surface', 'outlines', 'collapse']) {
       byId(id).addEventListener('change', (e) => change({ [id]: e.target.checked }, 'settled'));
     }
-    for (const id of ['by-triangles', 'by-threshold']) {
-      byId(id).addEventListener('change', (e) => change({ detail: e.target.value }, 'settled'));
+    for (const held of details) {
+      byId(`by-${held}`).addEventListener('change', (e) => change({ detail: e.target.value }, 'settled'));
     }
     byId('lens').addEventListener('change', (e) => {
       change({ lens: e.target.value, centre: null }, 'settled');
@@ -78,12 +82,14 @@ export class Controls {
     this.#info = info;
     byId('surface').checked = state.surface;
     byId('outlines').checked = state.outlines;
-    byId('by-triangles').checked = state.detail === 'triangles';
-    byId('by-threshold').checked = state.detail === 'threshold';
+    byId('collapse').checked = state.collapse;
+    const held = heldAt(state);
+    for (const detail of details) {
+      byId(`by-${detail}`).checked = held === detail;
+      byId(`${detail}-controls`).hidden = held !== detail;
+    }
     for (const id of ['indicator', 'slice', 'lens']) byId(id).value = state[id];
     byId('isovalue-controls').hidden = !state.surface;
-    byId('triangles-controls').hidden = state.detail !== 'triangles';
-    byId('threshold-controls').hidden = state.detail !== 'threshold';
     byId('slice-controls').hidden = state.slice === 'none';
     byId('slice-face').hidden = state.slice !== 'view';
     byId('lens-controls').hidden = state.lens === 'off';
@@ -91,16 +97,28 @@ export class Controls {
     this.#place('isovalue', this.#valueScale.position(state.isovalue));
     this.#place('triangles', trianglesScale.position(state.triangles));
     this.#place('threshold', this.#thresholdScale.position(state.threshold));
+    this.#place('error', this.#errorScale.position(state.error));
+    this.#place('distance', this.#distanceScale.position(state.distance));
     this.#place('slice-at', this.#placeScale.position(state.at));
     this.#place('lens-radius', this.#radiusScale.position(state.radius));
     this.#place('time', linear(info.times[0], info.times.at(-1)).position(state.time));
     this.#showTexts(state, info);
+    this.#showWhyNot(state, held);
+  }
+
+  /** Dims what means nothing at the moment, and says why. */
+  #showWhyNot(state, held) {
     const nothing = !state.surface && state.slice === 'none';
     for (const section of ['detail-section', 'lens-section', 'outlines-section']) {
       setWhy(section, nothing ? 'Nothing is drawn: choose the isosurface or a slice.' : '');
     }
-    const all = state.detail === 'threshold' && state.threshold === 0;
-    if (!nothing) setControl(byId('indicator'), all ? 'all detail is kept' : '');
+    if (nothing) return;
+    const all = held === 'threshold' && state.threshold === 0;
+    const own = held === 'error' || held === 'distance' ? `the ${held} decides` : '';
+    setControl(byId('indicator'), all ? 'all detail is kept' : own);
+    setControl(byId('by-distance'), state.surface ? '' : 'only of an isosurface');
+    setControl(byId('collapse'), state.surface ? '' : 'only of an isosurface');
+    if (collapses(state)) setWhy('outlines-section', 'Collapsed triangles have no elements.');
   }
 
   #showTexts(state, info) {
@@ -115,6 +133,8 @@ export class Controls {
     this.#say('isovalue', null, withUnit(readable(state.isovalue, range), info.unit));
     this.#say('triangles', 'triangles-text', `about ${readableCount(state.triangles)} triangles`);
     this.#say('threshold', 'threshold-text', this.#thresholdText(state, info));
+    this.#say('error', 'error-text', `at most ${this.#shareText(state.error, info)}`);
+    this.#say('distance', 'distance-text', `about ${length(state.distance)}`);
     this.#say('slice-at', 'slice-text', `${place} ${length(state.at)}`);
     this.#say('lens-radius', 'lens-text', `radius ${length(state.radius)}`);
     this.#say('time', 'time-text', `time ${readable(state.time)}`);
@@ -135,9 +155,12 @@ export class Controls {
       const degrees = 2 * Math.asin(Math.min(state.threshold / 2, 1)) * (180 / Math.PI);
       return `folds up to ${readable(degrees)}°`;
     }
-    const percent = (100 * state.threshold) / (info.greatest - info.least);
-    const text = `${readable(state.threshold)} (${Number(percent.toPrecision(2))} % of the range)`;
+    const text = this.#shareText(state.threshold, info);
     return state.indicator === 'deviation' ? `error at most ${text}` : text;
+  }
+
+  #shareText(x, { least, greatest }) {
+    return `${readable(x)} (${percent(x, greatest - least)} of the range)`;
   }
 
   get #valueScale() {
@@ -146,6 +169,14 @@ export class Controls {
   get #thresholdScale() {
     const range = this.#state.indicator === 'visual' ? 2 : this.#info.greatest - this.#info.least;
     return logarithmic(range / 10000, range / 2);
+  }
+  get #errorScale() {
+    const range = this.#info.greatest - this.#info.least;
+    return logarithmic(range / 10000, range / 2);
+  }
+  get #distanceScale() {
+    const diagonal = diagonalOf(this.#info.box);
+    return logarithmic(diagonal / 20000, diagonal / 20);
   }
   get #radiusScale() {
     const diagonal = diagonalOf(this.#info.box);

@@ -3,11 +3,11 @@
 //
 // The page of a field: each frame is what the controls ask for.
 import { Controls } from './controls.js';
-import { readable, readableCount, withUnit } from './colours.js';
+import { percent, readable, readableCount, withUnit } from './colours.js';
 import { FrameLoop } from './frame.js';
 import { drawHistogram } from './legend.js';
 import { Picture } from './picture.js';
-import { addressOf, chosenOf, defaultState, planeOf, requestOf, stateFromAddress } from './state.js';
+import { addressOf, chosenOf, defaultState, heldAt, planeOf, requestOf, stateFromAddress } from './state.js';
 import { showEmpty, showMessage, showNumbers, tell } from './status.js';
 
 const byId = (id) => document.getElementById(id);
@@ -22,8 +22,9 @@ function describe({ samples, nodes, box: [low, high], length_unit: unit, space, 
 }
 
 /** Why a frame that has settled has not about as many triangles as were asked for; '' where it has. */
-function whyNot({ detail, triangles: goal, lens, centre }, { triangles, threshold }) {
-  if (detail !== 'triangles' || triangles === 0) return '';
+function whyNot(state, { triangles, threshold }) {
+  const { triangles: goal, lens, centre } = state;
+  if (heldAt(state) !== 'triangles' || triangles === 0) return '';
   const most = readableCount(goal);
   if (triangles > goal) {
     return lens !== 'off' && centre
@@ -33,6 +34,25 @@ function whyNot({ detail, triangles: goal, lens, centre }, { triangles, threshol
   if (threshold === 0) return triangles < 0.9 * goal ? 'This is all of the surface: the data have no more detail.' : '';
   return triangles < 0.9 * goal
     ? `Much detail is alike: the next finer surface has more than ${most} triangles.` : '';
+}
+
+/** What detail was held at, as a row of numbers: [name, meaning]. */
+const heldNames = {
+  triangles: ['threshold', 'Detail up to this is left out'],
+  threshold: ['threshold', 'Detail up to this is left out'],
+  error: ['error asked for', 'The data differ from their value on the surface by no more'],
+  distance: ['distance asked for', 'From the surface of all data, an estimate'],
+};
+
+const nearnessMeans = 'The error in percent of the range of the data, and about how far it is from the surface of all '
+  + 'data, where that is measured: when nothing moves, for an error or a distance';
+
+/** How near a frame is to the data: the error as a part of their range, and the distance where it is told. */
+function nearness({ error_bound: bound, bound_says_nothing: nothing, distance }, range, unit) {
+  const parts = [];
+  if (!nothing && Number.isFinite(bound)) parts.push(percent(bound, range));
+  if (distance !== null) parts.push(withUnit(readable(Number(distance.toPrecision(2))), unit));
+  return parts.join(' · ');
 }
 
 export class ExploredPage {
@@ -117,8 +137,8 @@ export class ExploredPage {
   /** Values of one frame say something of another one, those of a component or array do not. */
   #stateBehind(kept, changed) {
     if (changed === 'frame') return kept;
-    const { isovalue, threshold } = this.#start;
-    return { ...kept, isovalue, threshold, detail: this.#start.detail };
+    const { isovalue, threshold, error, detail } = this.#start;
+    return { ...kept, isovalue, threshold, error, detail };
   }
 
   /** Draws what a lost engine has not drawn. */
@@ -216,18 +236,23 @@ export class ExploredPage {
   }
 
   #showNumbers(frame, bound, { motion }) {
+    const { least, greatest, length_unit: lengthUnit } = this.#info;
+    const within = nearness(frame, greatest - least, lengthUnit);
     if (motion === 'settled') {
-      tell('frame', `${readableCount(frame.triangles)} triangles, error at most: ${bound}`);
+      const near = within === '' ? '' : `, within ${within}`;
+      tell('frame', `${readableCount(frame.triangles)} triangles, error at most: ${bound}${near}`);
     }
     const why = motion === 'settled' ? whyNot(this.#seen, frame) : '';
     byId('triangles-why').textContent = why;
     byId('triangles-why').hidden = why === '';
-    const { least, greatest } = this.#info;
-    const range = this.#seen.indicator === 'visual' ? 2 : greatest - least;
+    const held = heldAt(this.#seen);
+    const [name, meaning] = heldNames[held];
+    const asked = held === 'error' || held === 'distance' ? this.#seen[held] : frame.threshold;
     showNumbers([
       ['triangles', 'triangles', readableCount(frame.triangles)],
       ['bound', 'error at most', bound, 'On the surface, the data differ from its value by no more'],
-      ['threshold', 'threshold', readable(frame.threshold, range), 'Detail up to this is left out'],
+      ...(within === '' ? [] : [['within', 'within', within, nearnessMeans]]),
+      ['threshold', name, readable(asked), meaning],
       ['visited', 'visited', `${readableCount(frame.visited)} elements`,
         'Elements that the search entered'],
       ['ms', 'extraction', `${readable(1000 * frame.seconds)} ms`, 'Time to extract the surface'],

@@ -19,6 +19,9 @@ export function defaultState(info) {
     detail: 'triangles',
     triangles: 50000,
     threshold: 0.01 * (info.greatest - info.least),
+    error: 0.02 * (info.greatest - info.least),
+    distance: diagonalOf(info.box) / 500,
+    collapse: false,
     indicator: 'offset',
     outlines: false,
     slice: 'none',
@@ -59,7 +62,7 @@ export function choiceFromAddress(hash, files) {
 }
 
 const choices = {
-  detail: ['triangles', 'threshold'],
+  detail: ['triangles', 'error', 'distance', 'threshold'],
   indicator: ['offset', 'deviation', 'visual', 'numerical', 'wavelet'],
   slice: ['none', 'x', 'y', 'z', 'view'],
   lens: ['off', 'cursor', 'click'],
@@ -86,6 +89,9 @@ export function stateFromAddress(hash, start) {
   }
   if (state.triangles < 1) state.triangles = start.triangles;
   if (state.threshold < 0) state.threshold = start.threshold;
+  for (const key of ['error', 'distance']) {
+    if (!(state[key] > 0)) state[key] = start[key];
+  }
   if (state.radius < 0) state.radius = start.radius;
   return state;
 }
@@ -120,6 +126,25 @@ export function planeOf({ slice, at, normal }, { box: [low, high] }) {
   return { point: along.map((x) => x * at), normal: along };
 }
 
+/** What detail is held at: a distance is that of an isosurface. */
+export function heldAt({ detail, surface }) {
+  return detail === 'distance' && !surface ? 'triangles' : detail;
+}
+
+/** Whether triangles of an isosurface are taken away while the error is kept. */
+export function collapses(state) {
+  return state.collapse && state.surface && state.detail === 'error';
+}
+
+/** Errors and distances have indicators of their own. */
+function detailOf(state) {
+  const held = heldAt(state);
+  if (held === 'distance') return [`distance=${state.distance}`];
+  if (held === 'error') return [`error=${state.error}`, ...(collapses(state) ? ['collapse=on'] : [])];
+  const number = held === 'triangles' ? Math.round(state.triangles) : state.threshold;
+  return [`${held}=${number}`, `indicator=${state.indicator}`];
+}
+
 /** A request as frame_request.hpp describes it, or null where nothing is to be drawn. */
 export function requestOf(state, info, motion) {
   const entries = [];
@@ -131,13 +156,11 @@ export function requestOf(state, info, motion) {
     entries.push(`axis=${state.slice}`, `at=${state.at}`);
   }
   if (entries.length === 0) return null;
-  if (state.detail === 'triangles') entries.push(`triangles=${Math.round(state.triangles)}`);
-  else entries.push(`threshold=${state.threshold}`);
-  entries.push(`indicator=${state.indicator}`, `motion=${motion}`, 'normals=int8');
+  entries.push(...detailOf(state), `motion=${motion}`, 'normals=int8');
   if (state.lens !== 'off' && state.centre) {
     entries.push(`lens=${[...state.centre, state.radius].join(',')}`, 'slope=1');
   }
   if (info.times.length > 1) entries.push(`time=${state.time}`);
-  if (state.outlines) entries.push('outlines=on');
+  if (state.outlines && !collapses(state)) entries.push('outlines=on');
   return entries.join('&');
 }
