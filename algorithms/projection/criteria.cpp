@@ -13,7 +13,7 @@ Criteria::Criteria(Prerolls& prerolls, Projection projection, std::span<const do
     projection_.check();
     chosen_ = prerolls.choose(projection_.indicator, projection_.blend, isovalues, work);
     if (!projection_.lens) return;
-    sizes_ = prerolls.sizes({.factor = projection_.blend, .slope = projection_.lens->slope}, work);
+    sizes_ = prerolls.sizes(projection_.sizes_spread(), work);
 }
 
 AnyCriterion Criteria::at(double threshold) const {

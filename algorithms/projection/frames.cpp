@@ -84,14 +84,20 @@ std::shared_ptr<Prerolls> Frames::at(std::span<const float> weights) const {
     return std::make_shared<Prerolls>(between_(weights), std::move(counted), of_counted);
 }
 
-std::array<double, 2> Frames::range(const Work& work) const {
+std::array<double, 2> Frames::prepare(const Projection& projection, const Work& work) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::array<double, 2> range{infinity, -infinity};
     for (const std::shared_ptr<Prerolls>& frame : prerolls_) {
-        const std::shared_ptr<const Bounds> bounds = frame->bounds(work);
+        const std::shared_ptr<const Bounds> bounds = frame->prepare(projection, count() > 1, work);
         range = {std::min(range[0], bounds->least()), std::max(range[1], bounds->greatest())};
     }
     return range;
+}
+
+std::size_t Frames::memory_bytes() const {
+    std::size_t bytes = 0;
+    for (const std::shared_ptr<Prerolls>& frame : prerolls_) bytes += frame->memory_bytes();
+    return bytes;
 }
 
 void Frames::clear() {

@@ -57,8 +57,10 @@ public:
     ChosenIndicator choose(const IndicatorKind& kind, double blend,
                            std::span<const double> isovalues, const Work& work) {
         kind.require(work.on(field_).facts());
-        if (kind.of_nodes) return of_nodes(*kind.of_nodes, blend, work);
-        ChosenIndicator chosen = of_nodes(NodeError::offset, 1, work);
+        ChosenIndicator chosen = kind.of_nodes ? of_nodes(*kind.of_nodes, blend, work)
+                                               : of_nodes(NodeError::offset, 1, work);
+        chosen.kind = &kind;
+        if (kind.of_nodes) return chosen;
         if (kind.of_level_sets) {
             chosen.indicator = of_level_sets(kind, blend, isovalues, *chosen.bounds, work);
         } else if (between_frames() && kind.between_frames) {
@@ -75,28 +77,37 @@ public:
     std::shared_ptr<const SweptIndicator> sizes(const Spread& spread, const Work& work) {
         if (between_frames()) return frames_.front()->kept_->sizes(spread, work);
         const std::scoped_lock lock(mutex_);
-        return kept_in(sizes_, {spread.factor, spread.slope}, [&] {
-            return work.on(field_).visit([&](const auto& hierarchy) {
+        const auto same = [&](const Spread& kept) {
+            return kept.factor == spread.factor && kept.slope == spread.slope;
+        };
+        if (!sizes_ || !same(sizes_->spread())) {
+            sizes_ = work.on(field_).visit([&](const auto& hierarchy) {
                 return std::make_shared<const SweptIndicator>(mesh_size(hierarchy, spread));
             });
-        });
+        }
+        return sizes_;
+    }
+
+    std::size_t node_count(const Work& work) {
+        Kept& frame = between_frames() ? *frames_.front()->kept_ : *this;
+        return frame.own_of_nodes(NodeError::offset, 1, work)->node_count();
     }
 
     void clear() {
         const std::scoped_lock lock(mutex_);
         of_nodes_.clear();
         swept_.clear();
-        sizes_.clear();
-        of_level_sets_ = {};
+        sizes_.reset();
+        of_level_sets_.clear();
     }
 
     std::size_t memory_bytes() const {
         const std::scoped_lock lock(mutex_);
-        std::size_t bytes = of_level_sets_.made ? of_level_sets_.made->memory_bytes() : 0;
+        std::size_t bytes = 0;
+        for (const auto& [key, each] : of_level_sets_) bytes += each.memory_bytes();
         for (const auto& [key, each] : of_nodes_) bytes += each->memory_bytes();
         for (const auto& [key, each] : swept_) bytes += each->memory_bytes();
-        for (const auto& [key, each] : sizes_) bytes += each->memory_bytes();
-        return bytes;
+        return bytes + (sizes_ ? sizes_->memory_bytes() : 0);
     }
 
 private:
@@ -107,10 +118,10 @@ private:
         if (between_frames()) {
             const auto sum = sum_of_frames<KeyFrames>(
                 [&](Kept& frame) { return frame.own_of_nodes(error, blend, work); });
-            return {sum, sum};
+            return {nullptr, sum, sum};
         }
         const auto own = own_of_nodes(error, blend, work);
-        return {own, own};
+        return {nullptr, own, own};
     }
     std::shared_ptr<const HierarchicalIndicator> own_of_nodes(NodeError error, double blend,
                                                               const Work& work) {
@@ -134,12 +145,11 @@ private:
                                " is for isosurfaces and isolines with given values");
         }
         const std::scoped_lock lock(mutex_);
-        OfLevelSets& last = of_level_sets_;
-        if (last.kind == &kind && last.blend == blend &&
-            std::ranges::equal(last.isovalues, isovalues)) {
+        OfLevelSets& last = of_level_sets_[&kind];
+        if (last.made && last.blend == blend && std::ranges::equal(last.isovalues, isovalues)) {
             return last.made;
         }
-        last = {&kind, blend, std::vector(isovalues.begin(), isovalues.end()),
+        last = {blend, std::vector(isovalues.begin(), isovalues.end()),
                 make(kind, blend, isovalues, bounds, work)};
         return last.made;
     }
@@ -161,11 +171,13 @@ private:
         return weighted_sum<Sum>(std::move(of_frames), weights_);
     }
 
+    /// Made for the isovalues that were asked for last.
     struct OfLevelSets {
-        const IndicatorKind* kind = nullptr;
         double blend = 1;
         std::vector<double> isovalues{};
         Made made{};
+
+        std::size_t memory_bytes() const { return made ? made->memory_bytes() : 0; }
     };
 
     FieldOnGrid field_;
@@ -174,8 +186,8 @@ private:
     mutable std::mutex mutex_;
     std::map<std::pair<NodeError, double>, std::shared_ptr<const HierarchicalIndicator>> of_nodes_;
     std::map<std::pair<const IndicatorKind*, double>, Made> swept_;
-    std::map<std::pair<double, double>, Made> sizes_;
-    OfLevelSets of_level_sets_;
+    Made sizes_;
+    std::map<const IndicatorKind*, OfLevelSets> of_level_sets_;
 };
 
 Prerolls::Prerolls(FieldOnGrid field)
@@ -203,6 +215,19 @@ ChosenIndicator Prerolls::choose(std::string_view name, double blend,
     return kept_->choose(kind, blend, isovalues, work);
 }
 
+std::shared_ptr<const Bounds> Prerolls::prepare(const Projection& projection, bool shared,
+                                                const Work& work) {
+    const bool between = shared || between_frames();
+    const IndicatorKind& kind = projection.indicator == "error"
+                                    ? error_indicator(work.on(field()).facts(), between)
+                                    : indicator_named(projection.indicator);
+    if (projection.lens) sizes(projection.sizes_spread(), work);
+    if (kind.of_nodes || (shared && kind.between_frames)) {
+        return kept_->choose(kind, projection.blend, {}, work).bounds;
+    }
+    return bounds(work);
+}
+
 std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) {
     return choose("offset", 1, {}, work).bounds;
 }
@@ -210,6 +235,8 @@ std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) {
 std::shared_ptr<const SweptIndicator> Prerolls::sizes(const Spread& spread, const Work& work) {
     return kept_->sizes(spread, work);
 }
+
+std::size_t Prerolls::node_count(const Work& work) { return kept_->node_count(work); }
 
 void Prerolls::clear() { kept_->clear(); }
 

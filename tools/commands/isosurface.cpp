@@ -77,10 +77,7 @@ DrawingRequest request_of(const IsosurfaceArguments& o) {
     return request;
 }
 
-int dimension_of(const InputField& field) {
-    return std::visit([](const auto& frame) { return frame->facts().dimension; },
-                      field.frames.front());
-}
+int dimension_of(const InputField& field) { return field.dimension(); }
 
 /// Refuses options that this field or this file leaves without effect.
 void check_for(const IsosurfaceArguments& o, const InputField& field) {
@@ -106,9 +103,7 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
 /// without a preroll of each moment; in shapes other than simplices, cut deviations count the
 /// flatness of triangles several times.
 bool suits_cuts(const InputField& field) {
-    if (field.frames.size() > 1) return false;
-    return std::visit([](const auto& frame) { return nestgrid::cuts_are_errors(frame->facts()); },
-                      field.frames.front());
+    return nestgrid::error_indicator(field.first().facts(), field.frames.count() > 1).of_level_sets;
 }
 
 void say_what_distances_are(const IsosurfaceArguments& o, const DrawingRequest& request,
@@ -132,8 +127,7 @@ void say_what_distances_are(const IsosurfaceArguments& o, const DrawingRequest& 
 void run_isosurface(IsosurfaceArguments& o, Report& report) {
     check(o);
     DrawingRequest request = request_of(o);
-    ProjectionChoice& projection = o.surface.projection;
-    projection.isovalue = o.value;
+    nestgrid::Projection& projection = o.surface.projection;
     if (o.collapses && !o.surface.budgets.empty()) projection.indicator = "deviation";
     request.look = [&](const InputField& field) {
         check_for(o, field);

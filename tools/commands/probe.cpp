@@ -26,7 +26,7 @@ struct ProbeArguments {
     int count = 100;
     fs::path points;
     std::vector<std::string> threshold;  ///< at most one
-    ProjectionChoice projection;
+    nestgrid::Projection projection;
     LensText lens;
     TimeOptions time;
     fs::path output;
@@ -75,14 +75,9 @@ nestgrid::ProbeResult probe_at(const Moment& moment, const std::vector<Point>& p
     return moment.visit([&](const auto& hierarchy) {
         if (exactly) return nestgrid::probe(hierarchy, points);
         set_default_threshold(threshold, with_lens);
-        const ChosenIndicator& indicators = moment.indicators();
-        nestgrid::ProbeResult result;
-        indicators.with_criteria([&](const auto& criterion_at) {
-            result = nestgrid::probe(hierarchy, points,
-                                     criterion_at(indicators.threshold(threshold.front())),
-                                     indicators.bounds());
-        });
-        return result;
+        const nestgrid::Criteria& criteria = moment.criteria();
+        return nestgrid::probe(hierarchy, points, criteria.at(moment.threshold(threshold.front())),
+                               criteria.bounds());
     });
 }
 
@@ -120,10 +115,10 @@ void add_rows(const nestgrid::ProbeResult& result, const std::vector<Point>& poi
 void probe_all(ProbeArguments& o, const std::vector<Point>& points, Report& report) {
     std::vector<ThresholdText> threshold;
     for (const std::string& text : o.threshold) threshold.push_back(parse_threshold(text));
-    const std::optional<LensRequest> lens = parse(o.lens);
+    o.projection.lens = parse(o.lens);
     const fs::path path = o.input.path;
     const InputField field = read_field(o.input, o.time.more, o.time.times, o.time.wanted());
-    const Moments moments(field, o.time, path, o.projection, lens, 0);
+    const Moments moments(field, o.time, path, o.projection, {}, 0);
     const bool several = o.time.frames.has_value();
     const bool as_rows = report.json() && o.output.empty();
     std::ostringstream out;
@@ -131,7 +126,7 @@ void probe_all(ProbeArguments& o, const std::vector<Point>& points, Report& repo
     out << (several ? "time," : "") << "x,y,z," << field.name << ",level\n";
     std::uint64_t count = 0;
     moments.for_each([&](const Moment& moment) {
-        const auto result = probe_at(moment, points, threshold, lens.has_value());
+        const auto result = probe_at(moment, points, threshold, o.projection.lens.has_value());
         const std::optional<double> time = several ? moment.time() : std::nullopt;
         count += points.size();
         if (as_rows) {
@@ -162,7 +157,7 @@ void check(const ProbeArguments& o) {
     if (!o.output.empty()) check_writable(o.output);
     for (const std::string& text : o.threshold) parse_threshold(text);
     if (o.threshold.empty()) require_threshold(*o.input.command);
-    check(o.projection);
+    ::check(o.projection);
     check(o.time);
 }
 

@@ -104,8 +104,7 @@ private:
         field_.space = read.space;
         field_.nodes = read.nodes;
         field_.leaf_elements = read.leaf_elements;
-        field_.dimension = std::visit([](const auto& frame) { return frame->facts().dimension; },
-                                      read.frames.front());
+        field_.dimension = read.dimension();
         field_.values = request_.values;
     }
     /// Makes the prerolls of all frames, where they are needed.
@@ -113,23 +112,25 @@ private:
         const bool spreads_values = film_ && request_.value_count > 0;
         if (is_drawn_exactly(request_, options_.surface) && !spreads_values) return;
         progress_.show("preroll", 0, 1);
-        const FramePrerolls& all = moments.prerolls();
+        const auto& [least, greatest] = moments.range();
         if (request_.in_one_colour() && field_.surfaces.empty()) {
-            field_.least = all.least();
-            field_.greatest = all.greatest();
+            field_.least = least;
+            field_.greatest = greatest;
         }
         if (request_.isovalue && field_.surfaces.empty()) {
-            field_.outside = outside_range(*request_.isovalue, all.least(), all.greatest());
+            field_.outside = outside_range(*request_.isovalue, least, greatest);
         }
         // The range of all surfaces is known too late for a film: that of the frames takes its
         // place.
         if (spreads_values) {
-            field_.values = values_between(all.least(), all.greatest(), request_.value_count);
+            field_.values = values_between(least, greatest, request_.value_count);
         }
     }
     void draw_part(const InputField& part, const std::optional<double>& label) {
-        const Moments moments(part, options_.time, options_.input.path, options_.surface.projection,
-                              request_.lens, options_.surface.threads,
+        nestgrid::Projection projection = options_.surface.projection;
+        projection.lens = request_.lens;
+        const Moments moments(part, options_.time, options_.input.path, std::move(projection),
+                              request_.isovalue, options_.surface.threads,
                               [&](double share) { progress_.part(share); });
         preroll(moments);
         const auto region = region_of(request_.box, field_.dimension, part);

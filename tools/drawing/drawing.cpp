@@ -16,6 +16,7 @@
 
 namespace {
 
+using nestgrid::AnyCriterion;
 using nestgrid::InvalidInput;
 using nestgrid::Isosurface;
 using nestgrid::IsosurfaceOptions;
@@ -86,31 +87,29 @@ public:
         if (options_.budgets.empty()) {
             set_default_threshold(thresholds, request_.lens.has_value());
         }
-        with_criteria([&](const auto& criterion_at) {
-            for (const std::int64_t budget : options_.budgets) {
-                take(draw_at(criterion_at, find(criterion_at, static_cast<std::uint64_t>(budget))));
-            }
-            for (const ThresholdText& t : thresholds) {
-                Drawn d;
-                d.threshold = indicators().threshold(t);
-                take(draw_at(criterion_at, std::move(d)));
-            }
-        });
+        for (const std::int64_t budget : options_.budgets) {
+            take(draw_at(find(static_cast<std::uint64_t>(budget))));
+        }
+        for (const ThresholdText& t : thresholds) {
+            Drawn d;
+            d.threshold = moment_.threshold(t);
+            take(draw_at(std::move(d)));
+        }
     }
 
 private:
-    const ChosenIndicator& indicators() const { return moment_.indicators(); }
-    const nestgrid::Bounds& bounds() const { return indicators().bounds(); }
+    const nestgrid::Criteria& criteria() const { return moment_.criteria(); }
+    const nestgrid::Bounds& bounds() const { return criteria().bounds(); }
     bool in_plane() const { return hierarchy_.facts().dimension == 2; }
 
-    /// Calls function(criterion_at) with the function that makes a criterion of a threshold.
-    template <class Function>
-    void with_criteria(const Function& function) const {
-        if (!region_) return indicators().with_criteria(function);
-        function([&](double threshold) {
-            return nestgrid::fine_inside(*region_, indicators().chosen(), threshold,
-                                         request_.box->threshold);
-        });
+    AnyCriterion criterion_at(double threshold) const {
+        if (!region_) return criteria().at(threshold);
+        return nestgrid::fine_inside(*region_, criteria().indicator(), threshold,
+                                     request_.box->threshold);
+    }
+    /// The same as a function.
+    auto criteria_at() const {
+        return [this](double threshold) { return criterion_at(threshold); };
     }
 
     /// \param counting whether elements are told, where no share of the work is known
@@ -135,52 +134,44 @@ private:
 
     /// The least threshold at which the surface keeps within a number of triangles, after collapses
     /// where there are any.
-    template <class CriterionAt>
-    Drawn find(const CriterionAt& criterion_at, std::uint64_t budget) const {
+    Drawn find(std::uint64_t budget) const {
         tell_("searching the threshold");
         const Meter meter;
         Drawn d;
-        d.search = indicators().with_offsets([&](const auto& offsets) {
-            if (request_.in_one_colour() || !request_.by.empty()) {
-                return find_isosurface(criterion_at, offsets, budget);
-            }
-            return find_coloured(criterion_at, offsets, budget);
-        });
+        const bool of_isosurface = request_.in_one_colour() || !request_.by.empty();
+        d.search = of_isosurface ? find_isosurface(budget) : find_coloured(budget);
         d.search_seconds = meter.seconds();
         d.threshold = d.search.threshold;
         return d;
     }
-    template <class CriterionAt, class Offsets>
-    TriangleBudget find_isosurface(const CriterionAt& criterion_at, const Offsets& offsets,
-                                   std::uint64_t budget) const {
+    TriangleBudget find_isosurface(std::uint64_t budget) const {
         const double isovalue = *request_.isovalue;
         const IsosurfaceOptions options = isosurface_options(true);
         if (in_plane()) {
-            return nestgrid::find_threshold<2>(hierarchy_, isovalue, criterion_at, offsets, budget,
-                                               options, executor_);
+            return nestgrid::find_threshold<2>(hierarchy_, isovalue, criteria_at(), bounds(),
+                                               budget, options, executor_);
         }
         if (request_.collapses) {
-            return nestgrid::find_collapse_error(hierarchy_, isovalue, criterion_at, offsets,
+            return nestgrid::find_collapse_error(hierarchy_, isovalue, criteria_at(), bounds(),
                                                  budget, options, executor_);
         }
-        return nestgrid::find_threshold<3>(hierarchy_, isovalue, criterion_at, offsets, budget,
+        return nestgrid::find_threshold<3>(hierarchy_, isovalue, criteria_at(), bounds(), budget,
                                            options, executor_);
     }
-    template <class CriterionAt, class Offsets>
-    TriangleBudget find_coloured(const CriterionAt& criterion_at, const Offsets& offsets,
-                                 std::uint64_t budget) const {
+    TriangleBudget find_coloured(std::uint64_t budget) const {
         if (request_.function == nullptr) {
-            return find_shading_threshold(hierarchy_, criterion_at, offsets, budget, {}, executor_);
+            return find_shading_threshold(hierarchy_, criteria_at(), bounds(), budget, {},
+                                          executor_);
         }
         if (!request_.isovalue) {
-            return find_threshold(hierarchy_, *request_.function, criterion_at, offsets, budget,
+            return find_threshold(hierarchy_, *request_.function, criteria_at(), bounds(), budget,
                                   IsosurfaceOptions{.cap = request_.cap}, executor_);
         }
         return nestgrid::least_threshold(
             [&](double threshold, std::uint64_t most) {
                 return count_both(criterion_at(threshold), most);
             },
-            offsets.greatest() - offsets.least(), budget);
+            bounds().greatest() - bounds().least(), budget);
     }
     /// Counts the triangles of the slice and of the isosurface beside it.
     std::optional<std::uint64_t> count_both(const nestgrid::Criterion& criterion,
@@ -204,8 +195,7 @@ private:
                                        executor_)
             .surface;
     }
-    template <class CriterionAt>
-    Drawn draw_at(const CriterionAt& criterion_at, Drawn d) const {
+    Drawn draw_at(Drawn d) const {
         tell_({});
         const nestgrid::Surface<3> whole = this->whole();
         const bool collapses = request_.collapses && d.threshold > 0;
@@ -242,9 +232,8 @@ private:
                        : slice(hierarchy_, *request_.function, {.cap = request_.cap}, executor_);
         refine(d.result.surface, request_.colour_tolerance);
     }
-    template <class S>
-    void draw_with(const S& criterion, double threshold, const nestgrid::Surface<3>& whole,
-                   Drawn& d) const {
+    void draw_with(const AnyCriterion& criterion, double threshold,
+                   const nestgrid::Surface<3>& whole, Drawn& d) const {
         if (request_.function == nullptr && request_.isovalue) {
             return draw_isosurface(criterion, threshold, whole, d);
         }
@@ -268,9 +257,8 @@ private:
             refine(d.isosurface, request_.colour_tolerance, criterion, bounds());
         }
     }
-    template <class S>
-    void draw_isosurface(const S& criterion, double threshold, const nestgrid::Surface<3>& whole,
-                         Drawn& d) const {
+    void draw_isosurface(const AnyCriterion& criterion, double threshold,
+                         const nestgrid::Surface<3>& whole, Drawn& d) const {
         const double isovalue = *request_.isovalue;
         const IsosurfaceOptions options = isosurface_options(executor_.concurrency() == 1);
         if (in_plane()) {

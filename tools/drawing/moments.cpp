@@ -6,42 +6,49 @@
 
 #include "drawing/meter.hpp"
 
-const ChosenIndicator& Moment::indicators() const {
-    if (!indicators_) {
-        const FramePrerolls& prerolls = all_.prerolls();
+const nestgrid::Criteria& Moment::criteria() const {
+    if (!criteria_) {
+        all_.range();
         const Meter meter;
-        indicators_.emplace(prerolls, hierarchy_, weights_);
+        std::vector<double> isovalues;
+        if (all_.isovalue_) isovalues.push_back(*all_.isovalue_);
+        criteria_.emplace(*prerolls_, all_.projection_, isovalues,
+                          nestgrid::Work{.executor = all_.executor()});
         all_.cost_.seconds += meter.seconds();
     }
-    return *indicators_;
+    return *criteria_;
+}
+
+double Moment::threshold(const ThresholdText& text) const {
+    const std::array<double, 2>& range = all_.range();
+    return text.in_units(criteria().kind(), range[1] - range[0]);
 }
 
 Moments::Moments(const InputField& field, const TimeOptions& time,
-                 const std::filesystem::path& path, ProjectionChoice choice,
-                 std::optional<LensRequest> lens, int threads,
+                 const std::filesystem::path& path, nestgrid::Projection projection,
+                 std::optional<double> isovalue, int threads,
                  const std::function<void(double share)>& tell)
     : field_{field},
       time_{time},
-      choice_{std::move(choice)},
-      lens_{std::move(lens)},
+      projection_{std::move(projection)},
+      isovalue_{isovalue},
       threads_(threads),
       executor_(threads_, tell) {
-    require_frames(time, field.times, path);
+    require_frames(time, field.times(), path);
 }
 
-const FramePrerolls& Moments::prerolls() const {
-    if (!prerolls_) {
+const std::array<double, 2>& Moments::range() const {
+    if (!range_) {
         const Meter meter;
-        prerolls_.emplace(field_.frames, choice_, lens_, executor_);
-        cost_ = {meter.seconds(), meter.peak_bytes(), prerolls_->memory_bytes()};
+        range_ = field_.frames.prepare(projection_, {.executor = executor_});
+        cost_ = {meter.seconds(), meter.peak_bytes(), field_.frames.memory_bytes()};
     }
-    return *prerolls_;
+    return *range_;
 }
 
 void Moments::for_each(const std::function<void(const Moment&)>& function) const {
-    if (!time_.in_use()) return function(Moment(*this, field_.frames.front(), {}, {}));
-    for (const double t : time_.drawn_times(field_.times)) {
-        const std::vector<float> weights = time_.weights(field_.times, t);
-        function(Moment(*this, field_.between(weights), t, weights));
+    if (!time_.in_use()) return function(Moment(*this, field_.frames[0], {}));
+    for (const double t : time_.drawn_times(field_.times())) {
+        function(Moment(*this, field_.frames.at(time_.weights(field_.times(), t)), t));
     }
 }

@@ -5,42 +5,43 @@
 // draws each moment in one way, whichever it is.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <optional>
 
 #include <nestgrid/adapters/tbb.hpp>
+#include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/watch.hpp>
 
-#include "drawing/telling_executor.hpp"
 #include "input/input_field.hpp"
 #include "options/time_options.hpp"
 
 /// A field at one moment.
 class Moment {
 public:
-    const SharedHierarchy& hierarchy() const { return hierarchy_; }
     /// Calls function(hierarchy) with a nestgrid::Hierarchy<float> or <double>.
     template <class Function>
     decltype(auto) visit(Function&& function) const {
-        return std::visit(
-            [&](const auto& hierarchy) -> decltype(auto) { return function(*hierarchy); },
-            hierarchy_);
+        return prerolls_->field().visit(function);
     }
     /// Where it is between frames; nothing for a field without frames.
     std::optional<double> time() const { return time_; }
     /// Made when first asked for. The prerolls of frames are made once for all moments.
-    /// \throw nestgrid::InvalidInput, nestgrid::GridError as ChosenIndicator
-    const ChosenIndicator& indicators() const;
+    /// \throw nestgrid::InvalidInput, nestgrid::GridError as nestgrid::Criteria
+    const nestgrid::Criteria& criteria() const;
+    /// \throw nestgrid::InvalidInput as ThresholdText::in_units()
+    double threshold(const ThresholdText& text) const;
 
 private:
     friend class Moments;
-    Moment(const class Moments& all, SharedHierarchy hierarchy, std::optional<double> time,
-           std::vector<float> weights)
-        : all_{all}, hierarchy_{std::move(hierarchy)}, time_{time}, weights_{std::move(weights)} {}
+    Moment(const class Moments& all, std::shared_ptr<nestgrid::Prerolls> prerolls,
+           std::optional<double> time)
+        : all_{all}, prerolls_{std::move(prerolls)}, time_{time} {}
 
     const Moments& all_;
-    SharedHierarchy hierarchy_;
+    std::shared_ptr<nestgrid::Prerolls> prerolls_;
     std::optional<double> time_;
-    std::vector<float> weights_;
-    mutable std::optional<ChosenIndicator> indicators_;
+    mutable std::optional<nestgrid::Criteria> criteria_;
 };
 
 struct PrerollCost {
@@ -54,18 +55,19 @@ class Moments {
 public:
     /// \param field must outlive the moments
     /// \param path of its file, for sentences
+    /// \param isovalue of the isosurface; nothing where none is drawn
     /// \param tell told the share that is done of the work at hand, from 0 to 1, where there are
     ///        several threads; may be empty
     /// \throw nestgrid::InvalidInput as require_frames()
     Moments(const InputField& field, const TimeOptions& time, const std::filesystem::path& path,
-            ProjectionChoice choice, std::optional<LensRequest> lens, int threads,
+            nestgrid::Projection projection, std::optional<double> isovalue, int threads,
             const std::function<void(double share)>& tell = {});
 
     const nestgrid::Executor& executor() const { return executor_; }
     /// Calls function(moment) for each, in the order of their times.
     void for_each(const std::function<void(const Moment&)>& function) const;
-    /// Made when first asked for.
-    const FramePrerolls& prerolls() const;
+    /// The least and the greatest value of all frames. Makes their prerolls, when first asked for.
+    const std::array<double, 2>& range() const;
     /// Of the prerolls and the indicators made so far.
     const PrerollCost& preroll_cost() const { return cost_; }
 
@@ -74,10 +76,10 @@ private:
 
     const InputField& field_;
     const TimeOptions& time_;
-    ProjectionChoice choice_;
-    std::optional<LensRequest> lens_;
+    nestgrid::Projection projection_;
+    std::optional<double> isovalue_;
     nestgrid::TbbExecutor threads_;
-    TellingExecutor executor_;
-    mutable std::optional<FramePrerolls> prerolls_;
+    nestgrid::TellingExecutor executor_;
+    mutable std::optional<std::array<double, 2>> range_;
     mutable PrerollCost cost_;
 };

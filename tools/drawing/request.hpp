@@ -50,7 +50,7 @@ struct DrawingRequest {
     /// for, but for deviations and collapses, whose error linear cuts keep.
     std::optional<nestgrid::Cuts> cuts{};
     std::optional<FineBox> box{};
-    std::optional<LensRequest> lens{};
+    std::optional<nestgrid::LensRequest> lens{};
     /// Triangles are split until colours follow the data within this; 0 splits none.
     double colour_tolerance = 0;
     /// Whether edges are collapsed while the errors, or where distances are kept these, keep within

@@ -18,7 +18,8 @@ void set_samples(InputField& field, const nestgrid::LatticeGeometry<dimension>& 
     const auto grid = std::make_shared<const Grid>(geometry);
     std::vector<nestgrid::LatticeField<Grid, Sample>> fields;
     for (const auto& samples : each) fields.emplace_back(*grid, samples);
-    set_frames(field, grid, std::move(fields), std::move(times), std::move(memory));
+    field.frames =
+        nestgrid::shared_frames(grid, std::move(fields), std::move(times), std::move(memory));
     field.nodes = grid->sample_count();
     field.region = [grid](const InputField::Inside& inside) {
         return nestgrid::Region(*grid, inside);
@@ -31,13 +32,13 @@ void set_samples(InputField& field, const nestgrid::LatticeGeometry<dimension>& 
 
 /// \param given the times of the option --times
 InputField volume_field(Input& input, const Paths& paths, const std::vector<double>& given,
-                        Frames frames) {
+                        WantedFrames frames) {
     InputField field;
     const auto volumes = std::make_shared<std::vector<Volume>>();
     const bool one = paths.size() == 1;
     for (const auto& path : paths) {
         input.path = path;
-        for (Volume& volume : read_volumes(input, one && frames == Frames::all)) {
+        for (Volume& volume : read_volumes(input, one && frames == WantedFrames::all)) {
             volumes->push_back(std::move(volume));
         }
     }
@@ -75,7 +76,7 @@ InputField volume_field(Input& input, const Paths& paths, const std::vector<doub
     }
     const bool any_missing =
         std::ranges::any_of(*volumes, [](const Volume& volume) { return volume.missing > 0; });
-    if (any_missing) hide_missing(field);
+    if (any_missing) field.frames = field.frames.without_missing();
     field.leaf_elements = leaf_count(first.geometry);
     field.name_in_file = first.name;
     field.length_unit = first.length_unit;
@@ -88,7 +89,7 @@ InputField volume_field(Input& input, const Paths& paths, const std::vector<doub
 }  // namespace
 
 InputField read_field(Input& input, const Paths& more, const std::vector<double>& times,
-                      Frames frames) {
+                      WantedFrames frames) {
     check(input);
     Paths paths{input.path};
     paths.insert(paths.end(), more.begin(), more.end());

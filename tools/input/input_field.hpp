@@ -32,7 +32,7 @@ struct InputField : FrameField {
 };
 
 /// Which frames of a file that has several.
-enum class Frames { one, all };
+enum class WantedFrames { one, all };
 
 /// Reads one or more files of one layout, whose frames must be as many as there are times. The
 /// samples of a volume or a picture are the corners of bisected boxes. To be called before there
@@ -43,7 +43,7 @@ enum class Frames { one, all };
 /// \throw nestgrid::IoError, nestgrid::InvalidInput as read_volume(), with_hierarchy(),
 /// field_named(), append_frames() and times_of_frames()
 InputField read_field(Input& input, const Paths& more, const std::vector<double>& times,
-                      Frames frames);
+                      WantedFrames frames);
 
 /// The same for hierarchies.
 InputField read_hierarchies(const Input& input, const Paths& paths,

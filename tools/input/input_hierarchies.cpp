@@ -37,15 +37,16 @@ InputField frames_of(nestgrid::StoredHierarchy<Family> stored, const Input& inpu
         const auto others = fields_of(*other);
         std::vector<FieldPair<nestgrid::NodeField<Grid, double>>> pairs;
         for (std::size_t i = 0; i < fields.size(); ++i) pairs.emplace_back(fields[i], others[i]);
-        set_frames(field, grid, std::move(pairs), all.times, kept);
+        field.frames = nestgrid::shared_frames(grid, std::move(pairs), all.times, kept);
     } else {
-        set_frames(field, grid, std::move(fields), all.times, kept);
+        field.frames = nestgrid::shared_frames(grid, std::move(fields), all.times, kept);
     }
     const auto any_missing = [](const nestgrid::NamedField* each) {
         return each != nullptr &&
                std::ranges::any_of(each->values, [](double value) { return std::isnan(value); });
     };
-    if (any_missing(&named) || any_missing(find_field(all.fields, input.by))) hide_missing(field);
+    if (any_missing(&named) || any_missing(find_field(all.fields, input.by)))
+        field.frames = field.frames.without_missing();
     field.name = named.name;
     field.nodes = grid->used_node_count();
     field.leaf_elements = grid->leaf_count();

@@ -58,7 +58,7 @@ std::vector<Volume> read_volumes(Input& input, bool all_frames);
 struct SurfaceOptions {
     std::vector<std::string> thresholds;
     std::vector<std::int64_t> budgets;
-    ProjectionChoice projection;
+    nestgrid::Projection projection;
     int threads = 0;
     std::filesystem::path output;
     PictureOptions picture;

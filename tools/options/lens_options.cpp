@@ -140,7 +140,7 @@ void add_lens_options(CLI::App& command, LensText& text) {
         ->needs(lens);
 }
 
-std::optional<LensRequest> parse(const LensText& text) {
+std::optional<nestgrid::LensRequest> parse(const LensText& text) {
     if (text.domains.empty()) return {};
     if (!(text.finest >= 0) || !std::isfinite(text.finest)) {
         throw nestgrid::InvalidInput("--finest is negative or not a finite number");
@@ -155,6 +155,5 @@ std::optional<LensRequest> parse(const LensText& text) {
     for (std::size_t i = 1; i < text.domains.size(); ++i) {
         all = nestgrid::union_of(std::move(all), domain_of(text.domains[i]));
     }
-    return LensRequest{
-        std::move(all), {.finest = text.finest, .coarsest = text.coarsest}, {.slope = text.slope}};
+    return nestgrid::LensRequest{std::move(all), text.finest, text.coarsest, text.slope};
 }

@@ -11,8 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <nestgrid/algorithms/lens.hpp>
-#include <nestgrid/algorithms/mesh_size.hpp>
+#include <nestgrid/algorithms/projection.hpp>
 
 struct LensText {
     std::vector<std::string> domains;  ///< such as ball:x,y,z,r
@@ -22,18 +21,7 @@ struct LensText {
 };
 void add_lens_options(CLI::App& command, LensText& text);
 
-/// A lens by the size of elements.
-struct LensRequest {
-    nestgrid::Distance distance;
-    nestgrid::LensOptions options;
-    nestgrid::Spread spread;
-
-    nestgrid::Lens criterion(const nestgrid::SweptIndicator& size) const {
-        return {&size, distance, options};
-    }
-};
-
 /// Nothing where there is no domain; of several domains the union.
 /// \throw nestgrid::InvalidInput for a domain that is none, and a number out of range
 /// \throw nestgrid::IoError where a file cannot be read
-std::optional<LensRequest> parse(const LensText& text);
+std::optional<nestgrid::LensRequest> parse(const LensText& text);

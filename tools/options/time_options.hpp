@@ -21,7 +21,7 @@ struct TimeOptions {
     /// Whether anything is drawn between frames.
     bool in_use() const { return time || frames; }
     /// The frames of a file that are needed.
-    Frames wanted() const { return in_use() ? Frames::all : Frames::one; }
+    WantedFrames wanted() const { return in_use() ? WantedFrames::all : WantedFrames::one; }
     /// \param of_frames times of the frames
     std::vector<double> drawn_times(const std::vector<double>& of_frames) const;
     /// \throw nestgrid::InvalidInput where t does not lie between the first and the last frame

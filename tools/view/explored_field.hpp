@@ -98,20 +98,20 @@ std::array<Point, 2> box_of(const Hierarchy<Real>& hierarchy);
 /// that of the coarse grid. \param times one for each field, ascending \param memory that the grid
 /// and the fields borrow from; may be null
 template <class Grid, class Field>
-ExploredField moving_field(std::shared_ptr<const Grid> grid, std::vector<Field> fields,
+ExploredField moving_field(const std::shared_ptr<const Grid>& grid, std::vector<Field> fields,
                            std::vector<double> times,
-                           std::shared_ptr<const void> memory = nullptr) {
+                           const std::shared_ptr<const void>& memory = nullptr) {
     ExploredField f;
-    set_frames(f, std::move(grid), std::move(fields), std::move(times), std::move(memory));
-    f.box = std::visit([](const auto& first) { return box_of(*first); }, f.frames.front());
+    f.frames = shared_frames(grid, std::move(fields), std::move(times), memory);
+    f.box = f.first().visit([](const auto& first) { return box_of(first); });
     return f;
 }
 
 /// The same for one field.
 template <class Grid, class Field>
-ExploredField still_field(std::shared_ptr<const Grid> grid, const Field& field,
-                          std::shared_ptr<const void> memory = nullptr) {
-    return moving_field(std::move(grid), std::vector{field}, {0}, std::move(memory));
+ExploredField still_field(const std::shared_ptr<const Grid>& grid, const Field& field,
+                          const std::shared_ptr<const void>& memory = nullptr) {
+    return moving_field(grid, std::vector{field}, {0}, memory);
 }
 
 }  // namespace nestgrid::view

@@ -31,31 +31,28 @@ void describe_volumes(ExploredField& field, const std::vector<Volume>& volumes) 
 
 ExploredField read_explored(Input& input, const Paths& more, const std::vector<double>& times) {
     const std::filesystem::path path = input.path;
-    InputField read = read_field(input, more, times, Frames::all);
-    return std::visit(
-        [&](const auto& first) {
-            if (first->facts().dimension != 3) {
-                throw InvalidInput("'" + path.string() +
-                                   "' has 2 dimensions; only fields in space can be explored");
-            }
-            ExploredField f;
-            static_cast<FrameField&>(f) = read;
-            f.box = read.geometry ? box_of(*read.geometry) : box_of(*first);
-            if (read.volumes) {
-                describe_volumes(f, *read.volumes);
-                f.name = !input.array.empty()         ? input.array
-                         : !read.name_in_file.empty() ? read.name_in_file
-                                                      : stem_of(path);
-            } else {
-                describe_values(f, read.value_count, read.value);
-            }
-            f.length_unit = read.length_unit;
-            f.note = read.note;
-            f.title = path.filename().string();
-            if (!more.empty()) f.title += " … " + more.back().filename().string();
-            return f;
-        },
-        read.frames.front());
+    InputField read = read_field(input, more, times, WantedFrames::all);
+    if (read.dimension() != 3) {
+        throw InvalidInput("'" + path.string() +
+                           "' has 2 dimensions; only fields in space can be explored");
+    }
+    ExploredField f;
+    static_cast<FrameField&>(f) = read;
+    f.box = read.geometry ? box_of(*read.geometry)
+                          : read.first().visit([](const auto& first) { return box_of(first); });
+    if (read.volumes) {
+        describe_volumes(f, *read.volumes);
+        f.name = !input.array.empty()         ? input.array
+                 : !read.name_in_file.empty() ? read.name_in_file
+                                              : stem_of(path);
+    } else {
+        describe_values(f, read.value_count, read.value);
+    }
+    f.length_unit = read.length_unit;
+    f.note = read.note;
+    f.title = path.filename().string();
+    if (!more.empty()) f.title += " … " + more.back().filename().string();
+    return f;
 }
 
 }  // namespace nestgrid::view

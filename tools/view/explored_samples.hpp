@@ -42,7 +42,7 @@ void hide_missing_samples(ExploredField& field,
         const auto has_missing = [](std::span<const Sample> frame) {
             return std::ranges::any_of(frame, [](Sample value) { return std::isnan(value); });
         };
-        if (std::ranges::any_of(frames, has_missing)) hide_missing(field);
+        if (std::ranges::any_of(frames, has_missing)) field.frames = field.frames.without_missing();
     }
 }
 
@@ -51,11 +51,10 @@ void hide_missing_samples(ExploredField& field,
 /// \throw InvalidInput as LatticeBisection and LatticeField
 template <class Sample>
 ExploredField explored_samples(const LatticeGeometry<3>& geometry, std::span<const Sample> samples,
-                               std::shared_ptr<const void> memory = nullptr) {
+                               const std::shared_ptr<const void>& memory = nullptr) {
     using Grid = LatticeBisection<3>;
     const auto grid = std::make_shared<const Grid>(geometry);
-    ExploredField f =
-        still_field(grid, LatticeField<Grid, Sample>(*grid, samples), std::move(memory));
+    ExploredField f = still_field(grid, LatticeField<Grid, Sample>(*grid, samples), memory);
     hide_missing_samples(f, std::vector{samples});
     f.box = box_of(geometry);
     describe_samples(f, std::vector{samples});
@@ -68,12 +67,12 @@ template <class Sample>
 ExploredField explored_samples(const LatticeGeometry<3>& geometry,
                                const std::vector<std::span<const Sample>>& frames,
                                std::vector<double> times,
-                               std::shared_ptr<const void> memory = nullptr) {
+                               const std::shared_ptr<const void>& memory = nullptr) {
     using Grid = LatticeBisection<3>;
     const auto grid = std::make_shared<const Grid>(geometry);
     std::vector<LatticeField<Grid, Sample>> fields;
     for (const auto& samples : frames) fields.emplace_back(*grid, samples);
-    ExploredField f = moving_field(grid, std::move(fields), std::move(times), std::move(memory));
+    ExploredField f = moving_field(grid, std::move(fields), std::move(times), memory);
     hide_missing_samples(f, frames);
     f.box = box_of(geometry);
     describe_samples(f, frames);

@@ -14,8 +14,8 @@ if(NOT EMSCRIPTEN)
 endif()
 nestgrid_warnings(nestgrid_frames)
 
-set(explorer_sources explored_field.cpp explorer.cpp frame_drawing.cpp surface_errors.cpp
-                     ../drawing/first_isovalue.cpp ../drawing/frame_field.cpp frame_request.cpp)
+set(explorer_sources explored_field.cpp explorer.cpp frame_drawing.cpp
+                     ../drawing/first_isovalue.cpp frame_request.cpp)
 list(TRANSFORM explorer_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
 add_library(nestgrid_explorer STATIC ${explorer_sources} $<TARGET_OBJECTS:nestgrid_frames>)
 target_include_directories(nestgrid_explorer PUBLIC ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/..)

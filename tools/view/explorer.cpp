@@ -6,14 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <nestgrid/algorithms/cut_indicator.hpp>
-#include <nestgrid/algorithms/mesh_size.hpp>
-#include <nestgrid/algorithms/numerical_indicator.hpp>
-#include <nestgrid/algorithms/visual_indicator.hpp>
-#include <nestgrid/algorithms/wavelet_indicator.hpp>
 #include <nestgrid/error.hpp>
 
-#include "drawing/telling_executor.hpp"
 #include "frame_reply.hpp"
 #include "surface_arrays.hpp"
 #include "watched_work.hpp"
@@ -71,27 +65,14 @@ struct Explorer::Drawn {
 Explorer::Explorer(ExploredField field, const Executor& executor)
     : field_{std::move(field)}, executor_{&executor} {
     const auto start = Clock::now();
-    if (field_.frames.empty() || field_.frames.size() != field_.times.size()) {
-        throw InvalidInput("a field to explore needs at least one frame, and a time for each");
+    if (field_.dimension() != 3) {
+        throw InvalidInput("only fields in space can be explored; this one has " +
+                           std::to_string(field_.dimension()) + " dimensions");
     }
-    for (const SharedHierarchy& frame : field_.frames) {
-        std::visit(
-            [&](const auto& hierarchy) {
-                if (hierarchy->facts().dimension != 3) {
-                    throw InvalidInput("only fields in space can be explored; this one has " +
-                                       std::to_string(hierarchy->facts().dimension) +
-                                       " dimensions");
-                }
-                offsets_.emplace_back(*hierarchy, LeafErrors{}, executor);
-            },
-            frame);
-    }
-    least_ = offsets_.front().least();
-    greatest_ = offsets_.front().greatest();
-    for (const HierarchicalIndicator& frame : offsets_) {
-        least_ = std::min(least_, frame.least());
-        greatest_ = std::max(greatest_, frame.greatest());
-    }
+    const auto& [least, greatest] = field_.frames.prepare({}, {.executor = executor});
+    least_ = least;
+    greatest_ = greatest;
+    nodes_ = field_.frames[0]->node_count({.executor = executor});
     if (field_.range) {
         least_ = (*field_.range)[0];
         greatest_ = (*field_.range)[1];
@@ -108,7 +89,7 @@ std::string Explorer::info() const {
     text.key("least").number(least_).key("greatest").number(greatest_);
     text.key("usual_range").numbers(usual_range_).key("box").open('[');
     for (const Point& corner : field_.box) text.numbers(corner);
-    text.close(']').key("times").numbers(field_.times);
+    text.close(']').key("times").numbers(field_.times());
     text.key("isovalue").number(field_.isovalue.value_or((least_ + greatest_) / 2));
     text.key("histogram").open('{').key("least").number(h.least);
     text.key("greatest").number(h.greatest).key("counts");
@@ -117,148 +98,64 @@ std::string Explorer::info() const {
     text.key("samples")
         .number(static_cast<double>(field_.samples))
         .key("nodes")
-        .number(static_cast<double>(offsets_.front().node_count()));
+        .number(static_cast<double>(nodes_));
     text.key("preroll_seconds").number(preroll_seconds_);
     return text.close('}').text();
 }
 
-const HierarchicalIndicator& Explorer::of_nodes(IndicatorName name, std::size_t frame,
-                                                WatchedSteps& steps) {
-    if (name != IndicatorName::deviation) return offsets_[frame];
-    deviations_.resize(offsets_.size());
-    std::optional<HierarchicalIndicator>& deviations = deviations_[frame];
-    if (deviations) return *deviations;
-    steps.begin("Measuring errors");
-    steps.check();
-    const TellingExecutor executor(*executor_, [&steps](double share) { steps.check(share); });
-    deviations.emplace(std::visit(
-        [&](const auto& hierarchy) {
-            if (executor.concurrency() > 1) {
-                return HierarchicalIndicator(*hierarchy, NodeError::deviation, executor);
-            }
-            return HierarchicalIndicator(WatchedHierarchy(*hierarchy, steps), NodeError::deviation);
-        },
-        field_.frames[frame]));
-    return *deviations;
-}
-
-Moment Explorer::moment_at(const FrameRequest& request, WatchedSteps& steps) {
-    const IndicatorName name =
-        keeps_surface(request) ? IndicatorName::deviation : request.indicator;
-    std::vector<float> weights{1};
-    if (request.time && field_.frames.size() == 1 && *request.time != field_.times.front()) {
+Prerolls& Explorer::moment_at(const FrameRequest& request) {
+    const std::vector<double>& times = field_.times();
+    if (request.time && times.size() == 1 && *request.time != times.front()) {
         throw InvalidInput("there is one frame, and the time asked for is not its time");
     }
-    if (field_.frames.size() > 1) {
-        weights = linear_weights(field_.times, request.time.value_or(field_.times.front()));
+    std::vector<float> weights{1};
+    if (times.size() > 1) weights = linear_weights(times, request.time.value_or(times.front()));
+    if (moment_ == nullptr || weights != weights_) {
+        moment_ = field_.frames.at(weights);
+        weights_ = std::move(weights);
     }
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (weights[i] != 1) continue;
-        const HierarchicalIndicator& alone = of_nodes(name, i, steps);
-        return {field_.frames[i], i, {}, std::move(weights), &alone};
-    }
-    std::vector<const HierarchicalIndicator*> frames;
-    std::vector<float> of_frames;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (weights[i] == 0) continue;
-        frames.push_back(&of_nodes(name, i, steps));
-        of_frames.push_back(weights[i]);
-    }
-    KeyFrames between(std::move(frames), of_frames);
-    return {field_.between(weights), 0, std::move(between), std::move(weights), nullptr};
+    return *moment_;
 }
 
-FrameIndicators Explorer::indicators_for(const FrameRequest& request, const Moment& moment,
-                                         WatchedSteps& steps) {
-    FrameIndicators indicators;
-    if (request.lens) indicators.size = &size_for(moment, request.lens->slope, steps);
+FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& moment,
+                                     const Work& work, WatchedSteps& steps) const {
+    const std::vector<double> isovalues(request.isovalue ? 1 : 0, request.isovalue.value_or(0));
+    Projection projection{.indicator = request.indicator, .lens = request.lens};
     if (!keeps_surface(request)) {
-        indicators.detail = &indicator_at(moment, request.indicator, steps);
-        return indicators;
+        steps.begin("Measuring what counts as detail");
+        Criteria detail(moment, projection, isovalues, work);
+        return {detail, detail.shared_bounds()};
     }
-    indicators.detail = &indicator_at(moment, IndicatorName::deviation, steps);
-    if (!request.isovalue || (request.moving && request.error > 0)) return indicators;
-    surface_errors_.begin(moment, *request.isovalue);
-    const bool cuts =
-        std::visit([](const auto& h) { return cuts_are_errors(h->facts()); }, moment.hierarchy);
-    if (request.error > 0 && cuts && !request.plane) {
-        indicators.detail = &surface_errors_.cuts(moment, *executor_, steps);
+    steps.begin("Measuring errors");
+    FrameCriteria criteria{
+        Criteria(moment, {.indicator = "deviation", .lens = request.lens}, isovalues, work),
+        moment.choose("deviation", 1, {}, work).bounds};
+    if (!request.isovalue || (request.moving && request.error > 0)) return criteria;
+    if (!request.collapse || request.distance > 0) {
+        steps.begin("Measuring distances of the surface");
+        criteria.slopes = moment.choose("slope", 1, isovalues, work).indicator;
     }
-    if (!request.collapse) indicators.slopes = &surface_errors_.slopes(moment, *executor_, steps);
-    if (request.distance > 0) indicators.detail = indicators.slopes;
-    return indicators;
+    if (request.plane && request.distance == 0) return criteria;
+    steps.begin("Measuring errors of the surface");
+    projection.indicator = request.distance > 0 ? "slope" : "error";
+    criteria.detail = Criteria(moment, projection, isovalues, work);
+    return criteria;
 }
 
-const Indicator& Explorer::indicator_at(const Moment& moment, IndicatorName name,
-                                        WatchedSteps& steps) {
-    if (name == IndicatorName::offset || name == IndicatorName::deviation) {
-        if (moment.between) return *moment.between;
-        return *moment.alone;
-    }
-    if (!moment.between) return swept_of(name, moment.frame, steps);
-    if (name == IndicatorName::visual) {
-        throw InvalidInput(
-            "between frames there is no visual indicator: take another one, or the time of a "
-            "frame");
-    }
-    std::vector<const SweptIndicator*> frames;
-    std::vector<float> weights;
-    for (std::size_t i = 0; i < moment.weights.size(); ++i) {
-        if (moment.weights[i] == 0) continue;
-        frames.push_back(&swept_of(name, i, steps));
-        weights.push_back(moment.weights[i]);
-    }
-    return swept_->between.emplace(std::move(frames), weights);
-}
-
-const SweptIndicator& Explorer::swept_of(IndicatorName name, std::size_t frame,
-                                         WatchedSteps& steps) {
-    if (!swept_ || swept_->name != name) {
-        swept_.emplace(Swept{name, {}, {}});
-        swept_->frames.resize(field_.frames.size());
-    }
-    std::optional<SweptIndicator>& swept = swept_->frames[frame];
-    if (swept) return *swept;
-    const double tau = 0x1p-20 * (usual_range_[1] - usual_range_[0]);
-    steps.begin("Measuring what counts as detail");
-    steps.check();
-    swept.emplace(std::visit(
-        [&](const auto& hierarchy) {
-            const WatchedHierarchy watched(*hierarchy, steps);
-            if (name == IndicatorName::visual) return visual_indicator(watched, {.tau = tau});
-            if (name == IndicatorName::numerical) return numerical_indicator(watched);
-            return wavelet_indicator(watched);
-        },
-        field_.frames[frame]));
-    return *swept;
-}
-
-const SweptIndicator& Explorer::size_for(const Moment& moment, double slope, WatchedSteps& steps) {
-    if (!size_ || size_->spread().slope != slope) {
-        steps.begin("Measuring the sizes of elements");
-        size_.emplace(std::visit(
-            [&](const auto& hierarchy) {
-                return mesh_size(WatchedHierarchy(*hierarchy, steps), Spread{.slope = slope});
-            },
-            moment.hierarchy));
-    }
-    return *size_;
-}
-
-double Explorer::greatest_threshold(IndicatorName indicator) const {
-    if (indicator == IndicatorName::visual) return 2;
+double Explorer::greatest_threshold(const IndicatorKind& indicator) const {
+    if (indicator.unit == ThresholdUnit::none) return 2;
     const double range = usual_range_[1] - usual_range_[0];
     if (!(range > 0)) return 1;
     // A gradient changes by a few ranges over the height of an element, which is a part of its
     // diameter.
-    return indicator == IndicatorName::numerical ? 16 * range : range;
+    return indicator.name == "numerical" ? 16 * range : range;
 }
 
 Explorer::Drawn Explorer::draw_to_goal(const FrameRequest& request, const FrameDrawing& drawing) {
     const auto goal = static_cast<double>(request.triangles);
     const bool known = budget_ && budget_->indicator == request.indicator;
     if (!known) {
-        const double greatest = greatest_threshold(request.indicator);
+        const double greatest = greatest_threshold(indicator_named(request.indicator));
         budget_.emplace(Budget{request.indicator, FrameBudget(goal, greatest), false});
     }
     FrameBudget& thresholds = budget_->thresholds;
@@ -321,9 +218,10 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
     const FrameRequest request = at_last_detail(parse_request(text));
     const auto start = Clock::now();
     WatchedSteps steps(watch);
-    const Moment moment = moment_at(request, steps);
-    const FrameIndicators indicators = indicators_for(request, moment, steps);
-    const FrameDrawing drawing(request, moment, indicators, *executor_, steps);
+    const WatchedWork work(*executor_, steps);
+    Prerolls& moment = moment_at(request);
+    const FrameCriteria criteria = criteria_for(request, moment, work.work(), steps);
+    const FrameDrawing drawing(request, moment.field(), criteria, work, steps);
     const Drawn drawn = draw(request, drawing);
     if (request.distance > 0) triangles_of_distance_ = drawn.triangles();
     ErrorBounds bounds;

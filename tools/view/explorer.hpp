@@ -28,14 +28,11 @@
 
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/frame_budget.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
-#include <nestgrid/algorithms/swept_key_frames.hpp>
 
 #include "explored_field.hpp"
 #include "frame_drawing.hpp"
 #include "frame_request.hpp"
 #include "frame_watch.hpp"
-#include "surface_errors.hpp"
 
 namespace nestgrid::view {
 
@@ -43,8 +40,7 @@ class Explorer {
 public:
     /// Makes the prerolls of all frames.
     /// \param executor borrowed
-    /// \throw InvalidInput where the field is not one of dimension 3, where there is no frame or
-    ///        not one time for each, and as HierarchicalIndicator
+    /// \throw InvalidInput where the field is not one of dimension 3, and as HierarchicalIndicator
     /// \throw GridError as HierarchicalIndicator
     explicit Explorer(ExploredField field, const Executor& executor);
 
@@ -69,47 +65,34 @@ public:
     ///        this one had not been asked for
     /// \throw FrameAbandoned where it does
     /// \throw InvalidInput with one sentence where the request is malformed, asks for a time
-    ///        outside the frames, or for the visual indicator between frames
+    ///        outside the frames
     std::vector<std::byte> frame(std::string_view request, const FrameWatch& watch = {});
 
 private:
     struct Drawn;
 
     FrameRequest at_last_detail(FrameRequest request) const;
-    Moment moment_at(const FrameRequest& request, WatchedSteps& steps);
-    const HierarchicalIndicator& of_nodes(IndicatorName name, std::size_t frame,
-                                          WatchedSteps& steps);
-    FrameIndicators indicators_for(const FrameRequest& request, const Moment& moment,
-                                   WatchedSteps& steps);
-    const Indicator& indicator_at(const Moment& moment, IndicatorName name, WatchedSteps& steps);
-    const SweptIndicator& swept_of(IndicatorName name, std::size_t frame, WatchedSteps& steps);
-    const SweptIndicator& size_for(const Moment& moment, double slope, WatchedSteps& steps);
-    double greatest_threshold(IndicatorName indicator) const;
+    Prerolls& moment_at(const FrameRequest& request);
+    FrameCriteria criteria_for(const FrameRequest& request, Prerolls& moment, const Work& work,
+                               WatchedSteps& steps) const;
+    double greatest_threshold(const IndicatorKind& indicator) const;
     Drawn draw(const FrameRequest& request, const FrameDrawing& drawing);
     Drawn draw_to_goal(const FrameRequest& request, const FrameDrawing& drawing);
 
     ExploredField field_;
     const Executor* executor_;
-    std::vector<HierarchicalIndicator> offsets_;  // of the frames
-    /// Deviations by frame, measured when a request first needs those of the frame.
-    std::vector<std::optional<HierarchicalIndicator>> deviations_;
-    double least_ = 0;  // of all frames
+    std::size_t nodes_ = 0;  // of a frame
+    double least_ = 0;       // of all frames
     double greatest_ = 0;
     std::array<double, 2> usual_range_{};  // of the values, or of nearly all
     double preroll_seconds_ = 0;
 
-    /// The last indicator other than offsets: of the frames that have needed it, and between them.
-    struct Swept {
-        IndicatorName name;
-        std::vector<std::optional<SweptIndicator>> frames;
-        std::optional<SweptKeyFrames> between;
-    };
-    std::optional<Swept> swept_;
-    std::optional<SweptIndicator> size_;  // the last sizes of elements
-    SurfaceErrors surface_errors_;
+    /// The field at the time of the last request, and what was made for it.
+    std::shared_ptr<Prerolls> moment_;
+    std::vector<float> weights_;               // of the frames, there
     std::uint64_t triangles_of_distance_ = 0;  // of the last settled frame of a distance
     struct Budget {
-        IndicatorName indicator;
+        std::string indicator;
         FrameBudget thresholds;
         bool in_steps;  ///< no threshold gives the number of triangles: integer data, say
     };

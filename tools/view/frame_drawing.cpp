@@ -31,34 +31,27 @@ private:
 
 }  // namespace
 
-FrameDrawing::FrameDrawing(const FrameRequest& request, const Moment& moment,
-                           const FrameIndicators& indicators, const Executor& executor,
+FrameDrawing::FrameDrawing(const FrameRequest& request, const FieldOnGrid& field,
+                           const FrameCriteria& criteria, const WatchedWork& work,
                            WatchedSteps& steps)
     : request_{request},
-      moment_{moment},
-      indicators_{indicators},
-      executor_(executor, [&steps](double share) { steps.check(share); }),
+      field_{field},
+      criteria_{criteria},
+      executor_{work.executor()},
       steps_{steps} {
-    if (request.lens) {
-        const LensRequest& l = *request.lens;
-        lens_.emplace(indicators.size, Ball{l.centre, l.radius},
-                      LensOptions{.finest = l.finest, .coarsest = l.coarsest});
-    }
     if (request.plane) plane_.emplace(request.plane->through, request.plane->normal);
 }
 
 std::vector<FramePart> FrameDrawing::draw(double threshold) const {
     steps_.begin("Drawing");
     std::vector<FramePart> parts;
-    if (plane_) {
-        with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
-            parts.push_back({"slice", draw_slice(hierarchy, criterion)});
-        });
-    }
-    if (!request_.isovalue) return parts;
-    const double first = request_.collapses() ? threshold / 2 : threshold;
-    with_criterion(first, [&](const auto& hierarchy, const Criterion& criterion) {
-        parts.push_back(draw_isosurface(hierarchy, criterion));
+    field_.visit([&](const auto& hierarchy) {
+        if (plane_) {
+            parts.push_back({"slice", draw_slice(hierarchy, criteria_.detail.at(threshold))});
+        }
+        if (!request_.isovalue) return;
+        const double first = request_.collapses() ? threshold / 2 : threshold;
+        parts.push_back(draw_isosurface(hierarchy, criteria_.detail.at(first)));
         if (request_.collapses()) collapse_edges(parts.back(), hierarchy);
     });
     return parts;
@@ -66,31 +59,16 @@ std::vector<FramePart> FrameDrawing::draw(double threshold) const {
 
 bool FrameDrawing::fits(double threshold) const {
     steps_.begin("Searching for the detail that keeps within the triangles");
-    bool result = true;
-    with_criterion(threshold, [&](const auto& hierarchy, const Criterion& criterion) {
+    const AnyCriterion criterion = criteria_.detail.at(threshold);
+    return field_.visit([&](const auto& hierarchy) {
         std::uint64_t most = request_.triangles;
         if (plane_) {
             const std::size_t used = draw_slice(hierarchy, criterion).surface.simplices.size();
-            result = used <= most;
-            most -= std::min<std::uint64_t>(used, most);
+            if (used > most) return false;
+            most -= used;
         }
-        if (result && request_.isovalue) result = counts_at_most(most, hierarchy, criterion);
+        return !request_.isovalue || counts_at_most(most, hierarchy, criterion);
     });
-    return result;
-}
-
-template <class Function>
-void FrameDrawing::with_criterion(double threshold, const Function& function) const {
-    const Threshold everywhere(indicators_.detail, threshold);
-    std::visit(
-        [&](const auto& hierarchy) {
-            if (lens_) {
-                function(*hierarchy, everywhere && *lens_);
-            } else {
-                function(*hierarchy, everywhere);
-            }
-        },
-        moment_.hierarchy);
 }
 
 template <class Real>
@@ -101,14 +79,14 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
     IsosurfaceOptions options = watched({.elements = request_.outlines});
     options.normals = normals && !quickly;
     // Linear cuts keep an error.
-    const bool keeps = request_.error > 0 || request_.indicator == IndicatorName::deviation;
+    const bool keeps = request_.error > 0 || request_.indicator == "deviation";
     options.cuts = keeps ? Cuts::linear : Cuts::finest;
-    const DroppedNodes dropped(criterion, indicators_.slopes);
-    const Criterion& asked = indicators_.slopes == nullptr ? criterion : dropped;
+    const DroppedNodes dropped(criterion, criteria_.slopes.get());
+    const Criterion& asked = criteria_.slopes == nullptr ? criterion : dropped;
     FramePart part{"isosurface", isosurface<3>(hierarchy, *request_.isovalue, asked,
-                                               moment_.bounds(), options, executor_)};
+                                               *criteria_.bounds, options, executor_)};
     if (part.drawn.cancelled) throw FrameAbandoned{};
-    if (indicators_.slopes != nullptr && !request_.collapses()) part.distance = dropped.greatest();
+    if (criteria_.slopes != nullptr && !request_.collapses()) part.distance = dropped.greatest();
     if (normals && quickly) {
         Surface<3>& surface = part.drawn.surface;
         surface.normals = normals_from_triangles(surface);
@@ -120,14 +98,14 @@ template <class Real>
 void FrameDrawing::collapse_edges(FramePart& part, const Hierarchy<Real>& hierarchy) const {
     steps_.begin("Taking triangles away");
     Isosurface<3>& drawn = part.drawn;
-    collapse(drawn.surface, hierarchy, *request_.isovalue, moment_.bounds(),
+    collapse(drawn.surface, hierarchy, *request_.isovalue, *criteria_.bounds,
              {.error = request_.error}, executor_)
         .hand_to(drawn, drawn.surface_error);
 }
 
 template <class Real>
 Slice FrameDrawing::draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const {
-    Slice drawn = slice(hierarchy, *plane_, criterion, moment_.bounds(),
+    Slice drawn = slice(hierarchy, *plane_, criterion, *criteria_.bounds,
                         watched({.elements = request_.outlines}), executor_);
     if (drawn.cancelled) throw FrameAbandoned{};
     return drawn;
@@ -146,7 +124,7 @@ bool FrameDrawing::counts_at_most(std::uint64_t most, const Hierarchy<Real>& hie
     try {
         const auto counted = extract_isosurfaces<3>(
             hierarchy, std::span(&isovalue, 1), std::vector{Counter(most)}, criterion,
-            moment_.bounds(), watched({.elements = false}), executor_);
+            *criteria_.bounds, watched({.elements = false}), executor_);
         if (counted.front().cancelled) throw FrameAbandoned{};
     } catch (const TooMany&) {
         return false;

@@ -8,31 +8,14 @@
 #include <optional>
 #include <vector>
 
+#include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/key_frames.hpp>
-#include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 
-#include "drawing/frame_field.hpp"
-#include "drawing/telling_executor.hpp"
 #include "frame_request.hpp"
-#include "frame_watch.hpp"
+#include "watched_work.hpp"
 
 namespace nestgrid::view {
-
-/// The field at the time of a request.
-struct Moment {
-    SharedHierarchy hierarchy;
-    std::size_t frame = 0;                         ///< where it is that of a frame
-    std::optional<KeyFrames> between;              ///< where it is not
-    std::vector<float> weights;                    ///< of the frames
-    const HierarchicalIndicator* alone = nullptr;  ///< of offsets or deviations, at a frame
-
-    const Bounds& bounds() const {
-        if (between) return *between;
-        return *alone;
-    }
-};
 
 struct FramePart {
     const char* kind;
@@ -43,19 +26,20 @@ struct FramePart {
     double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The numbers that thresholds are compared with. Borrowed.
-struct FrameIndicators {
-    const Indicator* detail = nullptr;
-    const SweptIndicator* size = nullptr;    ///< of elements, for a lens
-    const SweptIndicator* slopes = nullptr;  ///< slope deviations, for FramePart::distance, or null
+/// What a request is drawn with.
+struct FrameCriteria {
+    Criteria detail;
+    std::shared_ptr<const Bounds> bounds;
+    /// Slope deviations, for FramePart::distance; or null.
+    std::shared_ptr<const Indicator> slopes{};
 };
 
 /// What a request draws, at any threshold.
 class FrameDrawing {
 public:
     /// Borrows everything.
-    FrameDrawing(const FrameRequest& request, const Moment& moment,
-                 const FrameIndicators& indicators, const Executor& executor, WatchedSteps& steps);
+    FrameDrawing(const FrameRequest& request, const FieldOnGrid& field,
+                 const FrameCriteria& criteria, const WatchedWork& work, WatchedSteps& steps);
 
     /// \throw FrameAbandoned where nobody waits for the frame
     std::vector<FramePart> draw(double threshold) const;
@@ -63,8 +47,6 @@ public:
     bool fits(double threshold) const;
 
 private:
-    template <class Function>
-    void with_criterion(double threshold, const Function& function) const;
     template <class Real>
     FramePart draw_isosurface(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const;
     template <class Real>
@@ -77,11 +59,10 @@ private:
     IsosurfaceOptions watched(IsosurfaceOptions options) const;
 
     const FrameRequest& request_;
-    const Moment& moment_;
-    FrameIndicators indicators_;
-    std::optional<Lens> lens_;
+    const FieldOnGrid& field_;
+    const FrameCriteria& criteria_;
     std::optional<Plane> plane_;
-    TellingExecutor executor_;
+    const Executor& executor_;
     WatchedSteps& steps_;
 };
 

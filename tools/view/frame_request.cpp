@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame_request.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nestgrid/error.hpp>
@@ -15,6 +16,14 @@ namespace {
 constexpr const char* known_keys =
     "isovalue, axis, at, plane, threshold, triangles, error, distance, collapse, motion, "
     "indicator, lens, finest, coarsest, slope, time, normals and outlines";
+
+std::string names_of(const std::vector<const IndicatorKind*>& kinds) {
+    std::string names;
+    for (const IndicatorKind* const kind : kinds) {
+        names += (names.empty() ? "" : ", ") + std::string(kind->name);
+    }
+    return names;
+}
 
 Point point_at(const std::vector<double>& numbers, std::size_t first) {
     return {numbers[first], numbers[first + 1], numbers[first + 2]};
@@ -98,8 +107,7 @@ void take_lens(Entries& entries, FrameRequest& request) {
     const bool ball = entries.take("lens", [&](auto key, auto text) {
         const std::vector<double> n = numbers_of(key, text, 4);
         if (n[3] < 0) refuse(key, "a ball with a negative radius", text);
-        lens.centre = point_at(n, 0);
-        lens.radius = n[3];
+        lens.distance = Ball{point_at(n, 0), n[3]};
     });
     bool sized = false;
     for (const auto& [key, number] : {std::pair{"finest", &lens.finest},
@@ -115,6 +123,14 @@ void take_lens(Entries& entries, FrameRequest& request) {
 
 }  // namespace
 
+std::vector<const IndicatorKind*> page_indicators() {
+    std::vector<const IndicatorKind*> kinds;
+    for (const IndicatorKind& kind : indicators()) {
+        if (!kind.needs && !kind.of_level_sets) kinds.push_back(&kind);
+    }
+    return kinds;
+}
+
 FrameRequest parse_request(std::string_view text) {
     Entries entries(text);
     FrameRequest request;
@@ -127,12 +143,12 @@ FrameRequest parse_request(std::string_view text) {
         request.moving = choice_of<bool, 2>(key, value, {{{"moving", true}, {"settled", false}}});
     });
     const bool names_indicator = entries.take("indicator", [&](auto key, auto value) {
-        request.indicator = choice_of<IndicatorName, 5>(key, value,
-                                                        {{{"offset", IndicatorName::offset},
-                                                          {"deviation", IndicatorName::deviation},
-                                                          {"visual", IndicatorName::visual},
-                                                          {"numerical", IndicatorName::numerical},
-                                                          {"wavelet", IndicatorName::wavelet}}});
+        const auto kinds = page_indicators();
+        const auto named = [&](const IndicatorKind* kind) { return kind->name == value; };
+        if (std::ranges::none_of(kinds, named)) {
+            refuse(key, "none of " + names_of(kinds), value);
+        }
+        request.indicator = value;
     });
     entries.take("time", [&](auto key, auto value) { request.time = number_of(key, value); });
     entries.take("normals", [&](auto key, auto value) {

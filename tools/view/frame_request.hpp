@@ -7,29 +7,21 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
-#include <nestgrid/shape.hpp>
+#include <nestgrid/algorithms/indicators.hpp>
+#include <nestgrid/algorithms/projection.hpp>
 
 namespace nestgrid::view {
 
-enum class IndicatorName { offset, deviation, visual, numerical, wavelet };
 enum class NormalType { none, int8, float32 };
 
 struct PlaneRequest {
     Point through{};
     Point normal{};
-};
-
-/// Elements are small in a ball, and grow with the distance from it.
-struct LensRequest {
-    Point centre{};
-    double radius = 0;
-    double finest = 0;  ///< size of elements in the ball, in units of length
-    double coarsest = std::numeric_limits<double>::infinity();
-    double slope = 0.5;  ///< by which elements may grow with the distance
 };
 
 struct FrameRequest {
@@ -42,10 +34,10 @@ struct FrameRequest {
     double error = 0;  ///< error=NUMBER that is kept, in units of the data; 0 where there is none
     double distance =
         0;  ///< distance=NUMBER, an estimate in units of length; 0 where there is none
-    bool collapse = false;  ///< collapse=on: fewer triangles of the same error
-    bool moving = false;    ///< motion=moving: the goal is missed by a few percent; or
-                            ///< motion=settled: it is not exceeded
-    IndicatorName indicator = IndicatorName::offset;  ///< indicator=offset (visual, ...)
+    bool collapse = false;              ///< collapse=on: fewer triangles of the same error
+    bool moving = false;                ///< motion=moving: the goal is missed by a few percent; or
+                                        ///< motion=settled: it is not exceeded
+    std::string indicator = "offset";   ///< indicator=offset (visual, ...), as of page_indicators()
     std::optional<LensRequest> lens{};  ///< lens=x,y,z,r with finest=, coarsest= and slope=
     std::optional<double> time{};       ///< time=NUMBER
     /// normals=none (int8, float32), of isosurfaces: from gradients, and from triangles while
@@ -56,6 +48,10 @@ struct FrameRequest {
     /// Edges are collapsed when nothing moves.
     bool collapses() const { return collapse && !moving; }
 };
+
+/// The indicators that a page offers: those of the library for any surface and slice, on grids
+/// that files hold.
+std::vector<const IndicatorKind*> page_indicators();
 
 /// \throw InvalidInput with one sentence for a key that is unknown or given twice, for a value that
 ///        is malformed or out of range, and where nothing is to be drawn

@@ -25,8 +25,11 @@ public:
     AnyCriterion criterion() const { return at(projection_.least_threshold()); }
 
     const Projection& projection() const { return projection_; }
+    /// The row of the indicator, also where the projection asks for an error.
+    const IndicatorKind& kind() const { return *chosen_.kind; }
     const Indicator& indicator() const { return *chosen_.indicator; }
     const Bounds& bounds() const { return *chosen_.bounds; }
+    const std::shared_ptr<const Bounds>& shared_bounds() const { return chosen_.bounds; }
 
 private:
     Projection projection_;

@@ -21,6 +21,8 @@ public:
     /// Makes the field between the frames, from one weight for each.
     using Between = std::function<FieldOnGrid(std::span<const float> weights)>;
 
+    /// No frames, until others are assigned.
+    Frames() = default;
     /// \param times of the frames, ascending
     /// \param between may be empty where there is one frame
     /// \throw InvalidInput where there is no frame, or not one time for each
@@ -42,8 +44,13 @@ public:
     /// where its weight is 1 and the others are 0. It keeps the frames alive.
     /// \throw InvalidInput where there is not one finite weight for each frame
     std::shared_ptr<Prerolls> at(std::span<const float> weights) const;
-    /// The least and the greatest value of all frames.
-    std::array<double, 2> range(const Work& work) const;
+    /// Makes of each frame what all times between them share: bounds, and the indicator where it
+    /// serves between frames.
+    /// \return the least and the greatest value of all frames
+    /// \throw InvalidInput as Prerolls::choose()
+    std::array<double, 2> prepare(const Projection& projection, const Work& work) const;
+    /// Of what the prerolls keep.
+    std::size_t memory_bytes() const;
     /// Drops what all prerolls keep.
     void clear();
 

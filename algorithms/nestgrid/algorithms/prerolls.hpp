@@ -12,7 +12,7 @@
 //     them;
 //   - several threads may ask at once: the one that comes first makes, the others wait. Where its
 //     work is ended by an exception, nothing is kept, and the next one makes it.
-// Memory: that of what was asked for; of indicators of level sets the last one is kept.
+// Memory: that of what was asked for; of sizes, and of each indicator of level sets, the last ones.
 #pragma once
 
 #include <array>
@@ -29,6 +29,7 @@ namespace nestgrid {
 
 /// An indicator to compare thresholds with, and bounds of the data for the search and the error.
 struct ChosenIndicator {
+    const IndicatorKind* kind = nullptr;
     std::shared_ptr<const Indicator> indicator;
     std::shared_ptr<const Bounds> bounds;
 };
@@ -59,10 +60,19 @@ public:
     ///        one of level sets is asked for without isovalues, and as the functions that make them
     ChosenIndicator choose(std::string_view name, double blend, std::span<const double> isovalues,
                            const Work& work);
+    /// Makes what a projection needs whatever is drawn.
+    /// \param shared whether fields between this one and others are drawn: then also the indicator
+    ///        where it serves between frames
+    /// \return the bounds, which know the range of the data
+    std::shared_ptr<const Bounds> prepare(const Projection& projection, bool shared,
+                                          const Work& work);
     /// The offsets, which bound the data and know their range.
     std::shared_ptr<const Bounds> bounds(const Work& work);
     /// Sizes of elements (mesh_size.hpp), for a lens.
     std::shared_ptr<const SweptIndicator> sizes(const Spread& spread, const Work& work);
+
+    /// How many nodes the hierarchy has. Makes the offsets.
+    std::size_t node_count(const Work& work);
 
     /// Drops what is kept: the data have changed. Work that goes on keeps what it uses. Frames keep
     /// theirs.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/domains.hpp>
 
 namespace nestgrid {
@@ -43,6 +44,8 @@ struct Projection {
     bool draws_everything() const {
         return least_threshold() == 0 && max_triangles == 0 && blend == 1;
     }
+    /// How the sizes of elements are spread, which the lens is compared with.
+    Spread sizes_spread() const { return {.factor = blend, .slope = lens->slope}; }
     /// \throw InvalidInput where a number is out of range, with its name
     void check() const;
 };

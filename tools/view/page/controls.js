@@ -193,12 +193,9 @@ export class Controls {
     return linear(low[d], high[d]);
   }
 
-  /** Between frames there is no visual indicator. */
   #timeAt(t) {
     const { times } = this.#info;
-    const time = linear(times[0], times.at(-1)).value(t);
-    if (this.#state.indicator !== 'visual') return time;
-    return times.reduce((a, b) => (Math.abs(b - time) < Math.abs(a - time) ? b : a));
+    return linear(times[0], times.at(-1)).value(t);
   }
 
   #chooseIndicator(indicator) {
@@ -206,11 +203,6 @@ export class Controls {
     const range = this.#info.greatest - this.#info.least;
     const visual = indicator === 'visual';
     if (visual !== (this.#state.indicator === 'visual')) changes.threshold = visual ? 0.1 : 0.01 * range;
-    if (visual) {
-      const { times } = this.#info;
-      const near = (a, b) => Math.abs(b - this.#state.time) < Math.abs(a - this.#state.time);
-      changes.time = times.reduce((a, b) => (near(a, b) ? b : a));
-    }
     this.#change(changes, 'settled');
   }
 
