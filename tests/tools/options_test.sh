@@ -116,6 +116,9 @@ for command in isosurface slice isolines boundary probe info; do
     differ $command --label "v.mha $half $keep --label 130" "v.mha $half $keep"
     effect $command "v.mha $options $keep" --mask half.mhd
     differ $command --missing "half.mhd $half $keep --missing 0" "half.mhd $half $keep"
+    # Streams have a test of their own.
+    void $command 'is for standard input' "v.mha $options" --input-format mha
+    echo "$command --input-format" >>covered
     refused 1 'exclude each other' $command vectors.mha $options --component 0 --magnitude
     void $command "not for 'two.nestgrid'" "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
     refused 1 'give --dims' $command v.raw $options && echo "$command --dims" >>covered
@@ -163,6 +166,8 @@ refused 1 'no point data array' info v.vti --array none && echo "info --array" >
 # What is drawn.
 for command in isosurface slice isolines boundary; do
     effect $command "$raw ${base[$command]}" --max-triangles 3000
+    void $command 'is for standard output' "$raw ${base[$command]}" --output-format ply
+    echo "$command --output-format" >>covered
     effect $command "$raw ${base[$command]}" --error 30
     case $command in slice | boundary) effect $command "$raw ${base[$command]} --error 30" --collapse ;; esac
     for option in '--threshold 1' '--max-triangles 900' '--indicator visual'; do
@@ -262,6 +267,9 @@ for command in height surface; do
     keep='-o kept/x.vtp'
     differ $command --array "plane.nestgrid $options --array x" "plane.nestgrid $options --array x*y"
     void $command 'is for .dcm, .vti and .nestgrid' "hills.pgm $options" --array value
+    void $command 'is for standard input' "hills.pgm $options" --input-format pgm
+    void $command 'is for standard output' "hills.pgm $options" --output-format ply
+    for name in input output; do echo "$command --$name-format" >>covered; done
     refused 1 'within 1e-06 seconds' $command hills.pgm $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
     void $command 'does not say where its axes point' "hills.pgm $options" --space ras
     differ $command --space "body.mha $options $keep --space ras" "body.mha $options $keep --space lps"

@@ -9,7 +9,6 @@
 #include "drawing/draw.hpp"
 #include "drawing/first_isovalue.hpp"
 #include "drawing/vtk_contour.hpp"
-#include "input/input_file.hpp"
 
 namespace {
 
@@ -96,7 +95,7 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
                        {"--cap", "--no-normals", "--collapse", "--distance-field", "--measure"},
                        "is for surfaces, not for isolines");
     }
-    const std::string format = ending_of(o.surface.output);
+    const std::string format = o.surface.output_ending();
     if (o.surface.picture.image.empty() && format == ".stl") {
         refuse_options(command, {"--no-normals"}, "changes no " + format + " file");
     }

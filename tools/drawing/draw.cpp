@@ -13,6 +13,7 @@
 #include "drawing/panel.hpp"
 #include "drawing/table.hpp"
 #include "expression/expression.hpp"
+#include "input/standard_input.hpp"
 #include "output/collection.hpp"
 #include "output/film.hpp"
 
@@ -206,7 +207,7 @@ private:
         for (std::size_t i = 0; i < panels.size(); ++i) {
             data.push_back(data_of(panels[i], field_.surfaces[i], field_, request_));
         }
-        write_surfaces(data, options_.surface.output, report);
+        write_surfaces(data, options_.surface.output, options_.surface.output_ending(), report);
         field_.write_seconds = meter.seconds();
     }
     void paint(std::vector<Panel>& panels, Report& report) {
@@ -271,6 +272,9 @@ void draw(DrawingOptions& options, const DrawingRequest& request, Report& report
     check_film(options.time, options.surface);
     if (request.collapses && !request.isovalue && options.surface.command->count("--error") == 0) {
         throw InvalidInput("--collapse needs an --error to keep");
+    }
+    if (is_standard_stream(options.surface.output) && options.input.labels.size() > 1) {
+        throw InvalidInput("standard output takes one surface: give -o a name for several");
     }
     for (const std::string& text : options.surface.thresholds) parse_threshold(text);
     Surfaces(options, request).run(report);

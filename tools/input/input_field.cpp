@@ -89,7 +89,7 @@ InputField volume_field(Input& input, const Paths& paths, const std::vector<doub
 
 InputField read_field(Input& input, const Paths& more, const std::vector<double>& times,
                       Frames frames) {
-    check(input);
+    open(input);
     Paths paths{input.path};
     paths.insert(paths.end(), more.begin(), more.end());
     if (is_hierarchy(input.path)) return read_hierarchies(input, paths, times);

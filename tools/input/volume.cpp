@@ -93,8 +93,7 @@ std::string unknown_format(const fs::path& path) {
     if (format != nullptr && format->read_mesh != nullptr) {
         return " is a mesh without data: 'nestgrid mesh' makes a hierarchy of it";
     }
-    std::vector<std::string> known = endings_for(&Format::read_samples);
-    known.emplace_back(".nestgrid");
+    const std::vector<std::string> known = endings_of_fields();
     return " is of no known format (" + listed(known) + ")" + did_you_mean(ending_of(path), known);
 }
 

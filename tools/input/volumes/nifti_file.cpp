@@ -156,6 +156,7 @@ FileSamples read_nifti(const fs::path& path, const WantedSamples& wanted) {
 const RegisteredFormat nifti({.name = "NIfTI",
                               .endings = {".nii.gz", ".nii", ".hdr", ".img"},
                               .holds = "samples in space, several frames",
+                              .detached = {".hdr", ".img"},
                               .read_samples = read_nifti});
 
 }  // namespace
