@@ -15,6 +15,7 @@
 #include "formats.hpp"
 #include "input/input_file.hpp"
 #include "input/standard_input.hpp"
+#include "joined.hpp"
 #include "output/surface_file.hpp"
 #include "suggestion.hpp"
 #include "text_header.hpp"
@@ -165,12 +166,7 @@ std::string formats_with(const std::string& option) {
     for (const Format& format : formats()) {
         if (applies(option, format)) endings.push_back(format.endings.front());
     }
-    std::string text;
-    for (std::size_t i = 0; i < endings.size(); ++i) {
-        const bool last = i + 1 == endings.size();
-        text += (i == 0 ? "" : last ? " and " : ", ") + endings[i];
-    }
-    return text;
+    return joined(endings, "and");
 }
 
 }  // namespace
@@ -240,8 +236,9 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_iso
         ->excludes("--threshold")
         ->excludes("--max-triangles");
     command
-        .add_option("-o,--output", options.output,
-                    "write .vtp, .ply, .stl, .obj or .gltf; - is standard output")
+        .add_option(
+            "-o,--output", options.output,
+            "write " + joined(endings_for(&Format::write_surface), "or") + "; - is standard output")
         ->type_name("FILE");
     command
         .add_option("--output-format", options.output_format,
