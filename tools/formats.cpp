@@ -24,6 +24,7 @@ void add(const Format& more, Format& format) {
     format.options.insert(format.options.end(), more.options.begin(), more.options.end());
     format.detached.insert(format.detached.end(), more.detached.begin(), more.detached.end());
     format.single_precision = format.single_precision || more.single_precision;
+    format.keeps_elements = format.keeps_elements || more.keeps_elements;
     format.reads_beside = format.reads_beside || more.reads_beside;
     format.fills_complexes = format.fills_complexes || more.fills_complexes;
     format.keeps_hierarchies = format.keeps_hierarchies || more.keeps_hierarchies;

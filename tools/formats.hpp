@@ -28,6 +28,7 @@ struct Format {
     std::vector<std::string> options{};   ///< of those that say how it is read, which apply to it
 
     bool single_precision = false;  ///< of points in files that are written
+    bool keeps_elements = false;    ///< in files that are written: values of triangles
     bool reads_beside = false;      ///< other files of the folder, too
     bool fills_complexes = false;   ///< which takes longer than reading
     /// Whether files keep hierarchies with their fields, which are read and written as such

@@ -170,6 +170,13 @@ for command in isosurface slice isolines boundary; do
     echo "$command --output-format" >>covered
     effect $command "$raw ${base[$command]}" --error 30
     case $command in slice | boundary) effect $command "$raw ${base[$command]} --error 30" --collapse ;; esac
+    if [ $command != isolines ]; then
+        effect $command "$raw ${base[$command]} -o kept/x.vtp" --elements
+        grep -q 'Name="element"' kept/x.vtp && grep -q 'Name="level"' kept/x.vtp || fail "$command --elements: no arrays"
+        void $command 'elements is for an --output as .vtp' "$raw ${base[$command]} -o kept/x.ply" --elements
+        void $command 'elements is for an --output as .vtp' "$raw ${base[$command]}" --elements
+        refused 2 'excludes' $command $raw ${base[$command]} --error 30 --collapse --elements -o x.vtp
+    fi
     for option in '--threshold 1' '--max-triangles 900' '--indicator visual'; do
         refused 2 'error excludes|excludes --error' $command $raw ${base[$command]} --error 30 $option
     done
@@ -291,6 +298,7 @@ for command in height surface; do
     effect $command "hills.pgm $options" -o kept/x.vtp
     effect $command "hills.pgm $options" --output kept/x.vtp
     effect $command "hills.pgm $options $keep" --outlines
+    effect $command "hills.pgm $options $keep" --elements
     void $command 'is about what is kept' "hills.pgm $options" --outlines
     effect $command "hills.pgm $options $keep --threshold 0.3" --indicator visual
     effect $command "hills.pgm $options $keep --threshold 3" --blend 2

@@ -185,6 +185,7 @@ Command add_isosurface(CLI::App& program) {
         ->type_name("NUMBER")
         ->required();
     add_surface_options(*isosurface, o->surface, true);
+    add_elements_option(*isosurface, o->surface);
     isosurface
         ->add_option_function<std::vector<std::string>>(
             "--distance",
@@ -227,7 +228,8 @@ Command add_isosurface(CLI::App& program) {
         ->check(CLI::IsMember({"linear", "finest"}))
         ->group("Surface")
         ->excludes("--at-nodes");
-    for (const char* const other : {"--cap", "--at-nodes", "--threshold", "--indicator"}) {
+    for (const char* const other :
+         {"--cap", "--at-nodes", "--threshold", "--indicator", "--elements"}) {
         isosurface->get_option("--collapse")->excludes(other);
     }
     isosurface

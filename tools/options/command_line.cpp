@@ -255,6 +255,13 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_iso
     add_picture_options(command, options.picture);
 }
 
+void add_elements_option(CLI::App& command, SurfaceOptions& options) {
+    command
+        .add_flag("--elements", options.elements,
+                  "write the number and the level of the element that each triangle comes from")
+        ->group("Further");
+}
+
 std::string SurfaceOptions::output_ending() const {
     if (!is_standard_stream(output)) return ending_of(output);
     if (output_format.empty()) return ".ply";
@@ -311,6 +318,10 @@ void check(const SurfaceOptions& options) {
     }
     parse(options.picture);
     if (options.command == nullptr) return;
+    const Format* const format = format_of("x" + options.output_ending());
+    if (options.output.empty() || format == nullptr || !format->keeps_elements) {
+        refuse_options(*options.command, {"--elements"}, "is for an --output as .vtp");
+    }
     if (options.output.empty() && options.picture.image.empty()) {
         refuse_options(*options.command, {"--outlines"},
                        "is about what is kept: give an --output or an --image");

@@ -65,6 +65,7 @@ struct SurfaceOptions {
     int threads = 0;
     std::filesystem::path output;
     std::string output_format{};  ///< of standard output: an ending
+    bool elements = false;        ///< files tell the element of each triangle
     PictureOptions picture;
     const CLI::App* command = nullptr;  ///< that they are options of
 
@@ -73,6 +74,7 @@ struct SurfaceOptions {
 };
 /// \param of_isosurface whether indicators of one isosurface can be chosen, too
 void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_isosurface = false);
+void add_elements_option(CLI::App& command, SurfaceOptions& options);
 /// \throw nestgrid::InvalidInput for a number that is out of range, and for options that exclude
 ///        each other
 /// \throw nestgrid::IoError where a file cannot be written
