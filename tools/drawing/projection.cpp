@@ -7,7 +7,6 @@
 #include <limits>
 
 #include <nestgrid/algorithms/cut_indicator.hpp>
-#include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
@@ -31,13 +30,6 @@ std::optional<nestgrid::SweptIndicator> swept_indicator(const nestgrid::Hierarch
     }
     if (choice.indicator == "numerical") return numerical_indicator(hierarchy, {.spread = spread});
     if (choice.indicator == "wavelet") return wavelet_indicator(hierarchy, {.spread = spread});
-    if (choice.indicator == "geometry") {
-        if (!hierarchy.offers(nestgrid::Feature::new_positions)) {
-            throw InvalidInput(
-                "--indicator geometry is for curved grids: on this one it is 0 everywhere");
-        }
-        return geometry_indicator(hierarchy, {.spread = spread});
-    }
     return std::nullopt;
 }
 
@@ -88,15 +80,13 @@ void set_default_threshold(std::vector<ThresholdText>& thresholds, bool with_len
 }
 
 void add_projection_options(CLI::App& command, ProjectionChoice& choice, bool of_isosurface) {
-    std::vector<std::string> names{"offset",    "deviation", "visual",
-                                   "numerical", "wavelet",   "geometry"};
+    std::vector<std::string> names{"offset", "deviation", "visual", "numerical", "wavelet"};
     if (of_isosurface) names.insert(names.end(), {"cut", "slope"});
     command
         .add_option("--indicator", choice.indicator,
                     "what --threshold limits: offset, |data - mean|; deviation, |data - what is "
                     "drawn|; visual, folds from 0 to 2; "
-                    "numerical, jumps of the gradient; wavelet, coefficients; geometry, |position "
-                    "- mean| of curved grids" +
+                    "numerical, jumps of the gradient; wavelet, coefficients" +
                         std::string(of_isosurface ? "; cut, the --error of this surface; slope, "
                                                     "the --distance: the nearest within "
                                                     "--max-triangles where data are noisy"
@@ -214,9 +204,10 @@ double ChosenIndicator::threshold(const ThresholdText& text) const {
     if (text.percent && indicator == "slope") {
         throw InvalidInput("a distance is a length, not a percentage");
     }
-    if (text.percent && (indicator == "visual" || indicator == "geometry")) {
-        throw InvalidInput("thresholds of the " + indicator +
-                           " indicator are no percentages: they have no units of the data");
+    if (text.percent && indicator == "visual") {
+        throw InvalidInput(
+            "thresholds of the visual indicator are no percentages: they have no units of the "
+            "data");
     }
     return text.in_units(greatest() - least());
 }
