@@ -8,6 +8,7 @@ Samples are those of a ball, 100 - |p - CENTRE|, at the places that the headers 
 Argument: the program.
 """
 
+import base64
 import json
 import os
 import shutil
@@ -491,13 +492,33 @@ def volume_of(points, triangles):
     return abs(np.einsum("ij,ij->i", a - points.mean(axis=0), np.cross(b - a, c - a)).sum()) / 6
 
 
+def gltf_of(path):
+    """Points, triangles, what is told of them, and whether there are normals, by the definition of glTF."""
+    document = json.load(open(path))
+
+    def array(number):
+        accessor = document["accessors"][number]
+        view = document["bufferViews"][accessor["bufferView"]]
+        content = base64.b64decode(document["buffers"][view["buffer"]]["uri"].split(",", 1)[1])
+        size = {"SCALAR": 1, "VEC3": 3}[accessor["type"]]
+        kind = {5126: "<f4", 5125: "<u4"}[accessor["componentType"]]
+        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        return np.frombuffer(content, kind, accessor["count"] * size, start).reshape(-1, size)
+
+    root = document["nodes"][document["scenes"][document["scene"]]["nodes"][0]]
+    part = document["meshes"][0]["primitives"][0]
+    points = array(part["attributes"]["POSITION"]).astype(float) + root.get("translation", [0, 0, 0])
+    return points, array(part["indices"]).reshape(-1, 3), root.get("extras", {}), "NORMAL" in part["attributes"]
+
+
 def test_written():
     """Far from the origin, files keep the surface that is told, or say what they do to it."""
     global cases
     steps, origin = np.eye(3) * 0.01, np.array([500000.0, -300000.0, 12.0])
     centre = origin + steps @ [11.3, 10.2, 9.6]
     samples = 100 - 100 * (100 - ball(steps, origin, centre))
-    header = "NRRD0004\ntype: double\ndimension: 3\nsizes: %d %d %d\nspace dimension: 3\n" % SHAPE
+    header = "NRRD0004\ntype: double\ndimension: 3\nsizes: %d %d %d\nspace: RAS\n" % SHAPE
+    header += 'space units: "mm" "mm" "mm"\n'
     header += "space directions: (0.01,0,0) (0,0.01,0) (0,0,0.01)\nspace origin: (500000,-300000,12)\n"
     with open("far.nrrd", "wb") as file:
         file.write((header + "endian: little\nencoding: raw\n\n").encode() + samples.astype("<f8").tobytes("F"))
@@ -509,10 +530,14 @@ def test_written():
             continue
         told = json.loads(done.stdout)
         moved = "they move by up to" in " ".join(told["notes"])
-        if moved != (ending in (".stl", ".gltf")):
+        if moved != (ending == ".stl"):
             fail(f"far{ending}: {told['notes']}")
-        if ending in (".ply", ".obj", ".vtp"):
-            if ending == ".vtp":
+        if ending != ".stl":
+            if ending == ".gltf":
+                points, triangles, known, has_normals = gltf_of("far.gltf")
+                if known != {"space": "RAS", "length_unit": "mm", "value": 93} or not has_normals:
+                    fail(f"far.gltf: tells {known}, normals {has_normals}")
+            elif ending == ".vtp":
                 reader = vtkXMLPolyDataReader()
                 reader.SetFileName("far.vtp")
                 reader.Update()
@@ -522,6 +547,8 @@ def test_written():
             else:
                 mesh = meshio.read("far" + ending)
                 points, triangles = mesh.points, mesh.cells_dict["triangle"]
+                if ending == ".ply" and b"comment space RAS" not in open("far.ply", "rb").read(400):
+                    fail("far.ply: does not tell its space")
                 if ending == ".ply" and not {"nx", "ny", "nz"} <= set(mesh.point_data):
                     fail(f"far.ply: has {list(mesh.point_data)}, no normals")
             volume = told["surfaces"][0]["volume"]
