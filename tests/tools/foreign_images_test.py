@@ -238,6 +238,21 @@ def test_spaces():
 # Planes
 
 
+def write_plane_by_hand(name, plane, origin):
+    """NRRD and MetaImage, as their definitions say."""
+    numbers = lambda row: ",".join(f"{x:.17g}" for x in row)
+    header = "NRRD0004\ntype: float\ndimension: 3\nsizes: %d %d %d\nspace dimension: 3\n" % plane.shape
+    header += "space directions: " + " ".join(f"({numbers(step)})" for step in STEPS.T) + "\n"
+    header += f"space origin: ({numbers(origin)})\nendian: little\nencoding: raw\n\n"
+    with open(name + ".nrrd", "wb") as file:
+        file.write(header.encode() + plane.astype("<f4").tobytes("F"))
+    words = lambda row: " ".join(f"{x:.17g}" for x in row)
+    header = "NDims = 3\nDimSize = %d %d %d\n" % plane.shape
+    header += f"ElementSpacing = {words(SPACING)}\nOffset = {words(origin)}\nTransformMatrix = {words(AXES.T.ravel())}\n"
+    with open(name + ".mha", "wb") as file:
+        file.write((header + "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n").encode() + plane.astype("<f4").tobytes("F"))
+
+
 def test_planes():
     samples = ball().astype(np.float32)
     for axis in range(3):
@@ -259,9 +274,10 @@ def test_planes():
         writer.SetInputData(image)
         writer.SetFileName(f"plane{axis}.vti")
         writer.Write()
+        write_plane_by_hand(f"plane{axis}", plane, origin)
         normal = np.cross(STEPS[:, (axis + 1) % 3], STEPS[:, (axis + 2) % 3])
         normal /= np.linalg.norm(normal)
-        for name in f"plane{axis}.nii", f"plane{axis}.vti":
+        for name in (f"plane{axis}.{ending}" for ending in ("nii", "vti", "nrrd", "mha")):
             global cases
             cases += 1
             points = points_of("isolines", name, "--values", "90")
@@ -455,6 +471,7 @@ def test_analyze():
     samples = np.rint(100 * ball(np.eye(3) * 2, np.zeros(3), np.array([22.0, 20.0, 19.0]))).astype(np.int16)
     for kind, name in (
         (nibabel.Nifti1Pair, "pair.img"),
+        (nibabel.Nifti1Pair, "packed.img.gz"),
         (nibabel.AnalyzeImage, "analyze.img"),
         (nibabel.Spm99AnalyzeImage, "spm.img"),
     ):
@@ -473,6 +490,12 @@ def test_analyze():
     refused("pair.hdr", "truncated")
     os.remove("pair.img")
     refused("pair.hdr", "does not exist")
+    content = open("packed.img.gz", "rb").read()
+    with open("packed.img.gz", "wb") as file:
+        file.write(content[:-1000])
+    refused("packed.hdr.gz", "cannot be unpacked to its end")
+    os.remove("packed.img.gz")
+    refused("packed.hdr.gz", "does not exist")
     plain = nibabel.Nifti1Image(samples, np.eye(4))
     nibabel.save(plain, "plain.nii")
     content = bytearray(open("plain.nii", "rb").read())
