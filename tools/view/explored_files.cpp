@@ -31,7 +31,7 @@ void describe_volumes(ExploredField& field, const std::vector<Volume>& volumes) 
 
 ExploredField read_explored(Input& input, const Paths& more, const std::vector<double>& times) {
     const std::filesystem::path path = input.path;
-    InputField read = read_field(input, more, times, Frames::all);
+    InputField read = read_field(input, more, times, Frames::all, Planes::thick);
     return std::visit(
         [&](const auto& first) {
             if (first->facts().dimension != 3) {
