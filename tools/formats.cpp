@@ -22,9 +22,12 @@ void add(const Format& more, Format& format) {
     }
     if (format.holds.empty()) format.holds = more.holds;
     format.options.insert(format.options.end(), more.options.begin(), more.options.end());
+    format.detached.insert(format.detached.end(), more.detached.begin(), more.detached.end());
     format.single_precision = format.single_precision || more.single_precision;
+    format.keeps_elements = format.keeps_elements || more.keeps_elements;
     format.reads_beside = format.reads_beside || more.reads_beside;
     format.fills_complexes = format.fills_complexes || more.fills_complexes;
+    format.keeps_hierarchies = format.keeps_hierarchies || more.keeps_hierarchies;
     if (more.recognises != nullptr) format.recognises = more.recognises;
     if (more.read_samples != nullptr) format.read_samples = more.read_samples;
     if (more.read_mesh != nullptr) format.read_mesh = more.read_mesh;
@@ -44,6 +47,15 @@ RegisteredFormat::RegisteredFormat(Format format) {
 }
 
 const std::vector<Format>& formats() { return all_formats(); }
+
+std::vector<std::string> endings_of_fields() {
+    std::vector<std::string> endings;
+    for (const Format& format : formats()) {
+        if (!format.has_fields()) continue;
+        endings.insert(endings.end(), format.endings.begin(), format.endings.end());
+    }
+    return endings;
+}
 
 const Format* format_of(const std::filesystem::path& path) {
     const std::string name = lower(path.filename().string());

@@ -21,14 +21,19 @@ struct CoarseGrid;
 struct Format {
     using Path = std::filesystem::path;
 
-    std::string name;                    ///< like NIfTI
-    std::vector<std::string> endings;    ///< in lower case, with their dot; the usual one first
-    std::string holds{};                 ///< what a file has in it, in a few words
-    std::vector<std::string> options{};  ///< of those that say how it is read, which apply to it
+    std::string name;                     ///< like NIfTI
+    std::vector<std::string> endings;     ///< in lower case, with their dot; the usual one first
+    std::string holds{};                  ///< what a file has in it, in a few words
+    std::vector<std::string> detached{};  ///< endings of files that come with others
+    std::vector<std::string> options{};   ///< of those that say how it is read, which apply to it
 
     bool single_precision = false;  ///< of points in files that are written
+    bool keeps_elements = false;    ///< in files that are written: values of triangles
     bool reads_beside = false;      ///< other files of the folder, too
     bool fills_complexes = false;   ///< which takes longer than reading
+    /// Whether files keep hierarchies with their fields, which are read and written as such
+    /// (input/hierarchy.hpp).
+    bool keeps_hierarchies = false;
 
     /// Whether a file of another ending, or a folder, is of this format; null where the ending
     /// tells.
@@ -40,6 +45,9 @@ struct Format {
     nestgrid::CoarseGrid (*read_mesh)(const Path& path, const WantedMesh& wanted) = nullptr;
     /// \return why it could not be written, or nothing
     std::string (*write_surface)(vtkPolyData* surface, const Path& path) = nullptr;
+
+    /// Whether a field is read from files.
+    bool has_fields() const { return read_samples != nullptr || keeps_hierarchies; }
 };
 
 /// Makes a format known. For objects of static lifetime. What is read by one source and written by
@@ -55,6 +63,9 @@ const std::vector<Format>& formats();
 /// The format of a file by the ending of its name, in capital letters or not, or by what is in it;
 /// null for none.
 const Format* format_of(const std::filesystem::path& path);
+
+/// The endings of all formats that fields are read from.
+std::vector<std::string> endings_of_fields();
 
 /// The endings of all formats that are used for this.
 template <class Use>

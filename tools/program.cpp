@@ -10,6 +10,7 @@
 
 #include "commands/command.hpp"
 #include "help.hpp"
+#include "input/standard_input.hpp"
 #include "output/report.hpp"
 #include "usage_error.hpp"
 #include "version.hpp"
@@ -53,7 +54,7 @@ int refuse(const CLI::ParseError& error, const CLI::App& program,
             if (is_missing && *command.options && command.advice) text += command.advice();
         }
     } catch (const std::exception& unreadable) {
-        std::fprintf(stderr, "nestgrid: %s\n", unreadable.what());
+        std::fprintf(stderr, "nestgrid: %s\n", without_folder_of_input(unreadable.what()).c_str());
         return 1;
     }
     std::fprintf(stderr, "nestgrid: %s (see nestgrid --help)\n", text.c_str());
@@ -99,7 +100,7 @@ int run_program(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "nestgrid: not enough memory\n");
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "nestgrid: %s\n", error.what());
+        std::fprintf(stderr, "nestgrid: %s\n", without_folder_of_input(error.what()).c_str());
     }
     return 1;
 }

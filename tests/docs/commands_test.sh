@@ -16,6 +16,7 @@
 #   doxygen docs/reference/Doxyfile     is run by the test "reference"
 #   nestgrid view ...                   is started, and interrupted when it has printed its address
 #   bash SCRIPT PICTURE ...             name a script, and pictures that the same page shows
+# A file behind < is standard input; what follows > is left out.
 # Any other command fails the test, and so does a figure that no command makes.
 # Arguments: the source folder, the build folder, the program, the maker of volumes, Python if it has
 # the package.
@@ -177,8 +178,12 @@ check() {
 : >known
 for page in "$source"/README.md "$source"/docs/*.md "$source"/docs/tutorial/*.md; do
     while IFS= read -r line; do
+        # Standard output is looked at by other tests.
+        line=${line%% > *}
+        from=/dev/null
+        [[ "$line" = *" < "* ]] && from=${line##* < } && line=${line%% < *}
         eval "words=($line)"
-        check "${words[@]}"
+        check "${words[@]}" <"$from"
     done < <(commands "$page")
 done
 for file in "$source"/docs/figures/*.png; do

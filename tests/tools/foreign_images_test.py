@@ -8,6 +8,7 @@ Samples are those of a ball, 100 - |p - CENTRE|, at the places that the headers 
 Argument: the program.
 """
 
+import base64
 import json
 import os
 import shutil
@@ -237,6 +238,21 @@ def test_spaces():
 # Planes
 
 
+def write_plane_by_hand(name, plane, origin):
+    """NRRD and MetaImage, as their definitions say."""
+    numbers = lambda row: ",".join(f"{x:.17g}" for x in row)
+    header = "NRRD0004\ntype: float\ndimension: 3\nsizes: %d %d %d\nspace dimension: 3\n" % plane.shape
+    header += "space directions: " + " ".join(f"({numbers(step)})" for step in STEPS.T) + "\n"
+    header += f"space origin: ({numbers(origin)})\nendian: little\nencoding: raw\n\n"
+    with open(name + ".nrrd", "wb") as file:
+        file.write(header.encode() + plane.astype("<f4").tobytes("F"))
+    words = lambda row: " ".join(f"{x:.17g}" for x in row)
+    header = "NDims = 3\nDimSize = %d %d %d\n" % plane.shape
+    header += f"ElementSpacing = {words(SPACING)}\nOffset = {words(origin)}\nTransformMatrix = {words(AXES.T.ravel())}\n"
+    with open(name + ".mha", "wb") as file:
+        file.write((header + "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n").encode() + plane.astype("<f4").tobytes("F"))
+
+
 def test_planes():
     samples = ball().astype(np.float32)
     for axis in range(3):
@@ -258,9 +274,10 @@ def test_planes():
         writer.SetInputData(image)
         writer.SetFileName(f"plane{axis}.vti")
         writer.Write()
+        write_plane_by_hand(f"plane{axis}", plane, origin)
         normal = np.cross(STEPS[:, (axis + 1) % 3], STEPS[:, (axis + 2) % 3])
         normal /= np.linalg.norm(normal)
-        for name in f"plane{axis}.nii", f"plane{axis}.vti":
+        for name in (f"plane{axis}.{ending}" for ending in ("nii", "vti", "nrrd", "mha")):
             global cases
             cases += 1
             points = points_of("isolines", name, "--values", "90")
@@ -454,6 +471,7 @@ def test_analyze():
     samples = np.rint(100 * ball(np.eye(3) * 2, np.zeros(3), np.array([22.0, 20.0, 19.0]))).astype(np.int16)
     for kind, name in (
         (nibabel.Nifti1Pair, "pair.img"),
+        (nibabel.Nifti1Pair, "packed.img.gz"),
         (nibabel.AnalyzeImage, "analyze.img"),
         (nibabel.Spm99AnalyzeImage, "spm.img"),
     ):
@@ -472,6 +490,12 @@ def test_analyze():
     refused("pair.hdr", "truncated")
     os.remove("pair.img")
     refused("pair.hdr", "does not exist")
+    content = open("packed.img.gz", "rb").read()
+    with open("packed.img.gz", "wb") as file:
+        file.write(content[:-1000])
+    refused("packed.hdr.gz", "cannot be unpacked to its end")
+    os.remove("packed.img.gz")
+    refused("packed.hdr.gz", "does not exist")
     plain = nibabel.Nifti1Image(samples, np.eye(4))
     nibabel.save(plain, "plain.nii")
     content = bytearray(open("plain.nii", "rb").read())
@@ -491,13 +515,33 @@ def volume_of(points, triangles):
     return abs(np.einsum("ij,ij->i", a - points.mean(axis=0), np.cross(b - a, c - a)).sum()) / 6
 
 
+def gltf_of(path):
+    """Points, triangles, what is told of them, and whether there are normals, by the definition of glTF."""
+    document = json.load(open(path))
+
+    def array(number):
+        accessor = document["accessors"][number]
+        view = document["bufferViews"][accessor["bufferView"]]
+        content = base64.b64decode(document["buffers"][view["buffer"]]["uri"].split(",", 1)[1])
+        size = {"SCALAR": 1, "VEC3": 3}[accessor["type"]]
+        kind = {5126: "<f4", 5125: "<u4"}[accessor["componentType"]]
+        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        return np.frombuffer(content, kind, accessor["count"] * size, start).reshape(-1, size)
+
+    root = document["nodes"][document["scenes"][document["scene"]]["nodes"][0]]
+    part = document["meshes"][0]["primitives"][0]
+    points = array(part["attributes"]["POSITION"]).astype(float) + root.get("translation", [0, 0, 0])
+    return points, array(part["indices"]).reshape(-1, 3), root.get("extras", {}), "NORMAL" in part["attributes"]
+
+
 def test_written():
     """Far from the origin, files keep the surface that is told, or say what they do to it."""
     global cases
     steps, origin = np.eye(3) * 0.01, np.array([500000.0, -300000.0, 12.0])
     centre = origin + steps @ [11.3, 10.2, 9.6]
     samples = 100 - 100 * (100 - ball(steps, origin, centre))
-    header = "NRRD0004\ntype: double\ndimension: 3\nsizes: %d %d %d\nspace dimension: 3\n" % SHAPE
+    header = "NRRD0004\ntype: double\ndimension: 3\nsizes: %d %d %d\nspace: RAS\n" % SHAPE
+    header += 'space units: "mm" "mm" "mm"\n'
     header += "space directions: (0.01,0,0) (0,0.01,0) (0,0,0.01)\nspace origin: (500000,-300000,12)\n"
     with open("far.nrrd", "wb") as file:
         file.write((header + "endian: little\nencoding: raw\n\n").encode() + samples.astype("<f8").tobytes("F"))
@@ -509,10 +553,14 @@ def test_written():
             continue
         told = json.loads(done.stdout)
         moved = "they move by up to" in " ".join(told["notes"])
-        if moved != (ending in (".stl", ".gltf")):
+        if moved != (ending == ".stl"):
             fail(f"far{ending}: {told['notes']}")
-        if ending in (".ply", ".obj", ".vtp"):
-            if ending == ".vtp":
+        if ending != ".stl":
+            if ending == ".gltf":
+                points, triangles, known, has_normals = gltf_of("far.gltf")
+                if known != {"space": "RAS", "length_unit": "mm", "value": 93} or not has_normals:
+                    fail(f"far.gltf: tells {known}, normals {has_normals}")
+            elif ending == ".vtp":
                 reader = vtkXMLPolyDataReader()
                 reader.SetFileName("far.vtp")
                 reader.Update()
@@ -522,6 +570,8 @@ def test_written():
             else:
                 mesh = meshio.read("far" + ending)
                 points, triangles = mesh.points, mesh.cells_dict["triangle"]
+                if ending == ".ply" and b"comment space RAS" not in open("far.ply", "rb").read(400):
+                    fail("far.ply: does not tell its space")
                 if ending == ".ply" and not {"nx", "ny", "nz"} <= set(mesh.point_data):
                     fail(f"far.ply: has {list(mesh.point_data)}, no normals")
             volume = told["surfaces"][0]["volume"]

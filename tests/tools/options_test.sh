@@ -116,6 +116,9 @@ for command in isosurface slice isolines boundary probe info; do
     differ $command --label "v.mha $half $keep --label 130" "v.mha $half $keep"
     effect $command "v.mha $options $keep" --mask half.mhd
     differ $command --missing "half.mhd $half $keep --missing 0" "half.mhd $half $keep"
+    # Streams have a test of their own.
+    void $command 'is for standard input' "v.mha $options" --input-format mha
+    echo "$command --input-format" >>covered
     refused 1 'exclude each other' $command vectors.mha $options --component 0 --magnitude
     void $command "not for 'two.nestgrid'" "$([ $command = info ] && echo two.nestgrid || echo "two.nestgrid --array x $options" | sed 's/130/0.5/; s/at 9/at 0.5/; s/9,17,11/1,1,1/')" --read-limit 5
     refused 1 'give --dims' $command v.raw $options && echo "$command --dims" >>covered
@@ -163,8 +166,17 @@ refused 1 'no point data array' info v.vti --array none && echo "info --array" >
 # What is drawn.
 for command in isosurface slice isolines boundary; do
     effect $command "$raw ${base[$command]}" --max-triangles 3000
+    void $command 'is for standard output' "$raw ${base[$command]}" --output-format ply
+    echo "$command --output-format" >>covered
     effect $command "$raw ${base[$command]}" --error 30
     case $command in slice | boundary) effect $command "$raw ${base[$command]} --error 30" --collapse ;; esac
+    if [ $command != isolines ]; then
+        effect $command "$raw ${base[$command]} -o kept/x.vtp" --elements
+        grep -q 'Name="element"' kept/x.vtp && grep -q 'Name="level"' kept/x.vtp || fail "$command --elements: no arrays"
+        void $command 'elements is for an --output as .vtp' "$raw ${base[$command]} -o kept/x.ply" --elements
+        void $command 'elements is for an --output as .vtp' "$raw ${base[$command]}" --elements
+        refused 2 'excludes' $command $raw ${base[$command]} --error 30 --collapse --elements -o x.vtp
+    fi
     for option in '--threshold 1' '--max-triangles 900' '--indicator visual'; do
         refused 2 'error excludes|excludes --error' $command $raw ${base[$command]} --error 30 $option
     done
@@ -262,6 +274,9 @@ for command in height surface; do
     keep='-o kept/x.vtp'
     differ $command --array "plane.nestgrid $options --array x" "plane.nestgrid $options --array x*y"
     void $command 'is for .dcm, .vti and .nestgrid' "hills.pgm $options" --array value
+    void $command 'is for standard input' "hills.pgm $options" --input-format pgm
+    void $command 'is for standard output' "hills.pgm $options" --output-format ply
+    for name in input output; do echo "$command --$name-format" >>covered; done
     refused 1 'within 1e-06 seconds' $command hills.pgm $options --read-limit 1e-6 && echo "$command --read-limit" >>covered
     void $command 'does not say where its axes point' "hills.pgm $options" --space ras
     differ $command --space "body.mha $options $keep --space ras" "body.mha $options $keep --space lps"
@@ -283,6 +298,7 @@ for command in height surface; do
     effect $command "hills.pgm $options" -o kept/x.vtp
     effect $command "hills.pgm $options" --output kept/x.vtp
     effect $command "hills.pgm $options $keep" --outlines
+    effect $command "hills.pgm $options $keep" --elements
     void $command 'is about what is kept' "hills.pgm $options" --outlines
     effect $command "hills.pgm $options $keep --threshold 0.3" --indicator visual
     effect $command "hills.pgm $options $keep --threshold 3" --blend 2

@@ -119,7 +119,8 @@ refused 1 'blend is not a finite number' isosurface v.vti --value 130 --threshol
 refused 1 'blend is not a finite number' isosurface v.vti --value 130 --threshold 1 --blend inf
 refused 1 'leave out --blend' isosurface v.vti --value 130 --threshold 1 --blend 2 --box 0,1,0,1,0,1
 refused 1 'no percentages' isosurface v.vti --value 130 --threshold 2% --indicator visual
-refused 1 'curved grids' isosurface v.vti --value 130 --threshold 2 --indicator geometry
+refused 2 "'geometry' is none of 'offset'" isosurface v.vti --value 130 --threshold 2 --indicator geometry
+"$program" isosurface --help-all | grep -q geometry && fail "the help offers an indicator of curved grids, which no file has"
 refused 2 'indicator: ' isosurface v.vti --value 130 --threshold 2 --indicator colour
 refused 1 'even the coarsest surface has more than 1' isosurface v.vti --value 130 --max-triangles 1
 refused 1 'max-triangles is not positive' isosurface v.vti --value 130 --max-triangles 0

@@ -27,6 +27,7 @@ Command add_boundary(CLI::App& program) {
     add_input(*boundary, o->input);
     add_surface_options(*boundary, o->surface);
     add_colour_options(*boundary, *o);
+    add_elements_option(*boundary, o->surface);
     add_time_options(*boundary, o->time);
     add_lens_options(*boundary, o->lens);
     add_collapse_option(*boundary, *o);

@@ -12,10 +12,9 @@ std::string uses_of(const Format& format) {
     const auto add = [&](bool used, const char* as) {
         if (used) uses += (uses.empty() ? "" : ", ") + std::string(as);
     };
-    const bool is_hierarchy = format.endings.front() == ".nestgrid";
-    add(format.read_samples != nullptr || is_hierarchy, "read");
+    add(format.has_fields(), "read");
     add(format.read_mesh != nullptr, "mesh");
-    add(format.write_surface != nullptr || is_hierarchy, "written");
+    add(format.write_surface != nullptr || format.keeps_hierarchies, "written");
     return uses;
 }
 

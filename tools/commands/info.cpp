@@ -7,7 +7,7 @@
 namespace {
 
 void run_info(Input& input, Report& report) {
-    check(input);
+    open(input);
     if (is_hierarchy(input.path)) {
         refuse_options(*input.command, {"--array"}, "chooses nothing: all fields are described");
         report_info(hierarchy_info(input.path), report);

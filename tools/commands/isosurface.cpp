@@ -9,7 +9,6 @@
 #include "drawing/draw.hpp"
 #include "drawing/first_isovalue.hpp"
 #include "drawing/vtk_contour.hpp"
-#include "input/input_file.hpp"
 
 namespace {
 
@@ -93,7 +92,7 @@ void check_for(const IsosurfaceArguments& o, const InputField& field) {
                        {"--cap", "--no-normals", "--collapse", "--distance-field", "--measure"},
                        "is for surfaces, not for isolines");
     }
-    const std::string format = ending_of(o.surface.output);
+    const std::string format = o.surface.output_ending();
     if (o.surface.picture.image.empty() && format == ".stl") {
         refuse_options(command, {"--no-normals"}, "changes no " + format + " file");
     }
@@ -180,6 +179,7 @@ Command add_isosurface(CLI::App& program) {
         ->type_name("NUMBER")
         ->required();
     add_surface_options(*isosurface, o->surface, true);
+    add_elements_option(*isosurface, o->surface);
     isosurface
         ->add_option_function<std::vector<std::string>>(
             "--distance",
@@ -222,7 +222,8 @@ Command add_isosurface(CLI::App& program) {
         ->check(CLI::IsMember({"linear", "finest"}))
         ->group("Surface")
         ->excludes("--at-nodes");
-    for (const char* const other : {"--cap", "--at-nodes", "--threshold", "--indicator"}) {
+    for (const char* const other :
+         {"--cap", "--at-nodes", "--threshold", "--indicator", "--elements"}) {
         isosurface->get_option("--collapse")->excludes(other);
     }
     isosurface

@@ -42,6 +42,7 @@ Command add(CLI::App& program, const char* name, const char* what, const char* e
     }
     add_surface_options(*command, o->surface);
     add_colour_options(*command, *o, "Options", !lifted);
+    add_elements_option(*command, o->surface);
     add_time_options(*command, o->time);
     add_lens_options(*command, o->lens);
     add_collapse_option(*command, *o);

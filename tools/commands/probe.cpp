@@ -10,6 +10,7 @@
 
 #include "drawing/moments.hpp"
 #include "input/input_file.hpp"
+#include "input/standard_input.hpp"
 #include "output/print.hpp"
 #include "output/surface_file.hpp"
 #include "output/text_file.hpp"
@@ -154,7 +155,7 @@ void check(const ProbeArguments& o) {
     }
     if (o.line.empty()) refuse_options(*o.input.command, {"--count"}, "is for --line");
     if (o.count < 2) throw InvalidInput("--count is below 2");
-    if (!o.output.empty()) check_writable(o.output);
+    if (!o.output.empty() && !is_standard_stream(o.output)) check_writable(o.output);
     for (const std::string& text : o.threshold) parse_threshold(text);
     if (o.threshold.empty()) require_threshold(*o.input.command);
     ::check(o.projection);
@@ -163,6 +164,7 @@ void check(const ProbeArguments& o) {
 
 void run_probe(ProbeArguments& o, Report& report) {
     check(o);
+    if (is_standard_stream(o.output)) o.output.clear();
     std::vector<Point> points;
     if (o.line.empty()) {
         points = read_points(o.points);

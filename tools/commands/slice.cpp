@@ -58,6 +58,7 @@ Command add_slice(CLI::App& program) {
         ->group("Slice")
         ->excludes(with_isosurface);
     add_colour_options(*slice, *o, "Slice");
+    add_elements_option(*slice, o->surface);
     add_time_options(*slice, o->time);
     add_lens_options(*slice, o->lens);
     add_collapse_option(*slice, *o);

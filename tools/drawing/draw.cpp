@@ -13,6 +13,7 @@
 #include "drawing/panel.hpp"
 #include "drawing/table.hpp"
 #include "expression/expression.hpp"
+#include "input/standard_input.hpp"
 #include "output/collection.hpp"
 #include "output/film.hpp"
 
@@ -163,7 +164,7 @@ private:
         if (field_.surfaces.empty() && !may_vanish) require_triangles(d);
         if (film_) {
             draw_isolines(d, field_.values);
-            film_->add(data_of(make_panel(d, field_, request_), d, field_, request_), *d.time);
+            film_->add(data_of(panel_of(d), d, field_, request_), *d.time);
         }
         const bool is_kept = !options_.surface.output.empty() ||
                              !options_.surface.picture.image.empty() || request_.value_count > 0;
@@ -196,9 +197,12 @@ private:
         const SurfaceOptions& s = options_.surface;
         if (s.output.empty() && s.picture.image.empty()) return;
         std::vector<Panel> panels;
-        for (const Drawn& d : field_.surfaces) panels.push_back(make_panel(d, field_, request_));
+        for (Drawn& d : field_.surfaces) panels.push_back(panel_of(d));
         if (!s.output.empty()) write(panels, report);
         if (!s.picture.image.empty()) paint(panels, report);
+    }
+    Panel panel_of(Drawn& d) const {
+        return make_panel(d, field_, request_, options_.surface.elements);
     }
     void write(const std::vector<Panel>& panels, Report& report) {
         progress_.show("writing");
@@ -207,7 +211,7 @@ private:
         for (std::size_t i = 0; i < panels.size(); ++i) {
             data.push_back(data_of(panels[i], field_.surfaces[i], field_, request_));
         }
-        write_surfaces(data, options_.surface.output, report);
+        write_surfaces(data, options_.surface.output, options_.surface.output_ending(), report);
         field_.write_seconds = meter.seconds();
     }
     void paint(std::vector<Panel>& panels, Report& report) {
@@ -259,7 +263,7 @@ void add_collapse_option(CLI::App& command, DrawingOptions& options) {
                          "take edges away while the --error is kept, in place: some times fewer "
                          "triangles, some times the time");
     for (const char* const other : {"--threshold", "--max-triangles", "--outlines", "--lens",
-                                    "--colour-tolerance", "--with-isosurface"}) {
+                                    "--colour-tolerance", "--with-isosurface", "--elements"}) {
         if (CLI::Option* const option = command.get_option_no_throw(other)) {
             collapse->excludes(option);
         }
@@ -272,6 +276,9 @@ void draw(DrawingOptions& options, const DrawingRequest& request, Report& report
     check_film(options.time, options.surface);
     if (request.collapses && !request.isovalue && options.surface.command->count("--error") == 0) {
         throw InvalidInput("--collapse needs an --error to keep");
+    }
+    if (is_standard_stream(options.surface.output) && options.input.labels.size() > 1) {
+        throw InvalidInput("standard output takes one surface: give -o a name for several");
     }
     for (const std::string& text : options.surface.thresholds) parse_threshold(text);
     Surfaces(options, request).run(report);

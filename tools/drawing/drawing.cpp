@@ -112,6 +112,11 @@ private:
         return [this](double threshold) { return criterion_at(threshold); };
     }
 
+    /// Whether triangles are to tell their elements: to files, or to what changes them.
+    bool keeps_elements() const {
+        return options_.elements || request_.outlines || request_.collapses ||
+               request_.keeps_distances || request_.measures || request_.colour_tolerance > 0;
+    }
     /// \param counting whether elements are told, where no share of the work is known
     IsosurfaceOptions isosurface_options(bool counting) const {
         const std::string& indicator = options_.projection.indicator;
@@ -122,6 +127,7 @@ private:
                                                                         : nestgrid::Cuts::linear),
                                   .normals = request_.normals,
                                   .cap = request_.cap,
+                                  .elements = keeps_elements(),
                                   .at_nodes = request_.at_nodes};
         if (counting) {
             options.progress = [&](const nestgrid::TraversalCounts& counts) {
@@ -229,7 +235,8 @@ private:
     void draw_exactly(Drawn& d) const {
         d.result = request_.function == nullptr
                        ? triangles(0)
-                       : slice(hierarchy_, *request_.function, {.cap = request_.cap}, executor_);
+                       : slice(hierarchy_, *request_.function,
+                               {.cap = request_.cap, .elements = keeps_elements()}, executor_);
         refine(d.result.surface, request_.colour_tolerance);
     }
     void draw_with(const AnyCriterion& criterion, double threshold,
@@ -237,7 +244,7 @@ private:
         if (request_.function == nullptr && request_.isovalue) {
             return draw_isosurface(criterion, threshold, whole, d);
         }
-        const IsosurfaceOptions options{.cap = request_.cap};
+        const IsosurfaceOptions options{.cap = request_.cap, .elements = keeps_elements()};
         if (request_.isovalue) {
             auto both = slices(hierarchy_, {{request_.function}, {*request_.isovalue}}, criterion,
                                bounds(), options, executor_);
@@ -282,6 +289,7 @@ private:
     template <class... With>
     Isosurface<3> triangles(double threshold, const With&... with) const {
         nestgrid::ShadingOptions options;
+        options.elements = keeps_elements();
         if (request_.collapses) options.flatness = threshold;
         nestgrid::Shading s = request_.scale == 0 ? shading(hierarchy_, with..., options, executor_)
                                                   : height_field(hierarchy_, request_.scale,

@@ -60,6 +60,40 @@ vtkSmartPointer<vtkPolyData> shaded(vtkPolyData* surface) {
     return normals->GetOutput();
 }
 
+/// The number and the level of the element of each triangle, as cell data.
+template <int dimension>
+void add_elements(const nestgrid::Surface<dimension>& surface, vtkPolyData* data) {
+    const vtkNew<vtkIntArray> element;
+    const vtkNew<vtkIntArray> level;
+    element->SetName("element");
+    level->SetName("level");
+    for (const std::uint32_t e : surface.element_of) {
+        element->InsertNextValue(static_cast<int>(e));
+        level->InsertNextValue(surface.level_of[e]);
+    }
+    data->GetCellData()->AddArray(element);
+    data->GetCellData()->AddArray(level);
+}
+
+/// A surface on its own arrays, but for normals, which are of single precision.
+/// \param colours the name of its attribute
+template <int dimension>
+vtkSmartPointer<vtkPolyData> borrowed(nestgrid::Surface<dimension>& surface,
+                                      const std::string& colours, bool elements) {
+    const vtkSmartPointer<vtkPolyData> data = nestgrid::share_poly_data(surface);
+    vtkPointData* const points = data->GetPointData();
+    if (vtkDataArray* const attribute = points->GetArray("attributes")) {
+        attribute->SetName(colours.c_str());
+    }
+    if (vtkDataArray* const normals = points->GetNormals()) {
+        const vtkNew<vtkFloatArray> single;
+        single->DeepCopy(normals);
+        points->SetNormals(single);
+    }
+    if (elements) add_elements(surface, data);
+    return data;
+}
+
 /// Words with a number behind them.
 std::string with_number(const std::string& words, const char* format, double number) {
     std::array<char, 40> text{};
@@ -95,10 +129,8 @@ std::string caption(const Drawn& d, const DrawnField& field, const DrawingReques
 
 }  // namespace
 
-Panel make_panel(const Drawn& d, const DrawnField& field, const DrawingRequest& request) {
-    const auto data = [&](const auto& surface) {
-        return nestgrid::make_poly_data(surface, {field.name});
-    };
+Panel make_panel(Drawn& d, const DrawnField& field, const DrawingRequest& request, bool elements) {
+    const auto data = [&](auto& surface) { return borrowed(surface, field.name, elements); };
     Panel panel{.surface = data(d.result.surface), .caption = caption(d, field, request)};
     if (request.in_one_colour()) {
         if (field.dimension == 3) return panel;
@@ -109,10 +141,12 @@ Panel make_panel(const Drawn& d, const DrawnField& field, const DrawingRequest& 
     if (!d.isosurface.simplices.empty()) panel.veil = data(d.isosurface);
     panel.colour = {field.name, {field.least, field.greatest}, field.values};
     if (!field.values.empty()) {
-        panel.lines = data(d.isolines);
+        panel.lines = nestgrid::make_poly_data(d.isolines, {field.name});
         panel.kind = Lines::isolines;
     }
-    if (request.outlines) panel.lines = data(nestgrid::outlines(d.result.surface));
+    if (request.outlines) {
+        panel.lines = nestgrid::make_poly_data(nestgrid::outlines(d.result.surface), {field.name});
+    }
     set_view(panel, request, d.result.surface);
     return panel;
 }

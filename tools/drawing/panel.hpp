@@ -7,8 +7,9 @@
 #include "drawing/request.hpp"
 #include "picture/picture.hpp"
 
-/// The surface with what lies on it and beside it, not yet shaded.
-Panel make_panel(const Drawn& d, const DrawnField& field, const DrawingRequest& request);
+/// The surface with what lies on it and beside it, not yet shaded. The panel borrows its arrays.
+/// \param elements whether triangles tell their elements, as cell data
+Panel make_panel(Drawn& d, const DrawnField& field, const DrawingRequest& request, bool elements);
 
 /// Adds the normals that shades need, which no file has.
 void shade(Panel& panel);

@@ -22,6 +22,10 @@ using nestgrid::IoError;
 std::uintmax_t unpacked_size(const fs::path& path) {
     gzFile file = gzopen(path.c_str(), "rb");
     if (file == nullptr) throw IoError(path.string() + " cannot be opened");
+    if (gzdirect(file) == 1) {
+        gzclose(file);
+        return fs::file_size(path);
+    }
     std::vector<char> buffer(1U << 20U);
     std::uintmax_t total = 0;
     int count = 0;
@@ -34,14 +38,6 @@ std::uintmax_t unpacked_size(const fs::path& path) {
     }
     return total;
 }
-
-/// What VTK believes of a NIfTI file without a look at it.
-struct NiftiStart {
-    int type = 0;        ///< of the samples, as datatype codes it
-    double offset = 0;   ///< where they start
-    double header = 0;   ///< bytes of the header, with its extension flag
-    bool single = true;  ///< whether header and samples are in one file
-};
 
 NiftiStart nifti_start(const fs::path& path) {
     std::array<char, 352> header{};
@@ -79,7 +75,7 @@ void check_xml_end(const fs::path& path) {
     }
 }
 
-void check_nifti_header(const fs::path& path) {
+NiftiStart checked_nifti_start(const fs::path& path) {
     const NiftiStart start = nifti_start(path);
     // Those of the standard but for bits and for numbers of 128 bits.
     constexpr std::array known{2, 4, 8, 16, 32, 64, 128, 256, 512, 768, 1024, 1280, 1792, 2304};
@@ -90,16 +86,16 @@ void check_nifti_header(const fs::path& path) {
     if (start.single && !(start.offset >= start.header && start.offset < 1e12)) {
         throw IoError(path.string() + " places its samples inside its header");
     }
+    return start;
 }
 
-void check_nifti_size(const fs::path& path, std::uintmax_t samples) {
-    const NiftiStart start = nifti_start(path);
-    const bool in_header = start.single || start.offset > 0;
+void check_nifti_size(const fs::path& samples, const NiftiStart& start, std::uintmax_t bytes) {
+    // Analyze headers, and others of samples in a file of their own, may say 0.
     const std::uintmax_t expected =
-        samples + (in_header ? static_cast<std::uintmax_t>(start.offset) : 348);
-    const std::uintmax_t found = unpacked_size(path);
+        bytes + static_cast<std::uintmax_t>(std::max(0.0, start.offset));
+    const std::uintmax_t found = unpacked_size(samples);
     if (found < expected) {
-        throw IoError(path.string() + " is truncated: " + std::to_string(found) +
+        throw IoError(samples.string() + " is truncated: " + std::to_string(found) +
                       " bytes, but its header asks for " + std::to_string(expected));
     }
 }

@@ -14,7 +14,8 @@ namespace {
 const RegisteredFormat nestgrid_format({.name = "nestgrid",
                                         .endings = {".nestgrid"},
                                         .holds = "a hierarchy with fields, several frames",
-                                        .options = {"--array"}});
+                                        .options = {"--array"},
+                                        .keeps_hierarchies = true});
 
 }  // namespace
 
@@ -38,7 +39,10 @@ const nestgrid::NamedField& field_named(const std::vector<nestgrid::NamedField>&
                                  did_you_mean(name, known));
 }
 
-bool is_hierarchy(const std::filesystem::path& path) { return ending_of(path) == ".nestgrid"; }
+bool is_hierarchy(const std::filesystem::path& path) {
+    const Format* const format = format_of(path);
+    return format != nullptr && format->keeps_hierarchies;
+}
 
 void require_hierarchy_name(const std::filesystem::path& path) {
     if (is_hierarchy(path)) return;

@@ -32,14 +32,15 @@ void set_samples(InputField& field, const nestgrid::LatticeGeometry<dimension>& 
 
 /// \param given the times of the option --times
 InputField volume_field(Input& input, const Paths& paths, const std::vector<double>& given,
-                        WantedFrames frames) {
+                        WantedFrames frames, Planes planes) {
     InputField field;
     const auto volumes = std::make_shared<std::vector<Volume>>();
     const bool one = paths.size() == 1;
     for (const auto& path : paths) {
         input.path = path;
         for (Volume& volume : read_volumes(input, one && frames == WantedFrames::all)) {
-            volumes->push_back(std::move(volume));
+            const bool thickens = planes == Planes::thick && volume.is_plane();
+            volumes->push_back(thickens ? thickened(volume) : std::move(volume));
         }
     }
     std::vector<double> times = times_of_files(paths.size());
@@ -89,10 +90,10 @@ InputField volume_field(Input& input, const Paths& paths, const std::vector<doub
 }  // namespace
 
 InputField read_field(Input& input, const Paths& more, const std::vector<double>& times,
-                      WantedFrames frames) {
-    check(input);
+                      WantedFrames frames, Planes planes) {
+    open(input);
     Paths paths{input.path};
     paths.insert(paths.end(), more.begin(), more.end());
     if (is_hierarchy(input.path)) return read_hierarchies(input, paths, times);
-    return volume_field(input, paths, times, frames);
+    return volume_field(input, paths, times, frames, planes);
 }

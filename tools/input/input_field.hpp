@@ -34,6 +34,9 @@ struct InputField : FrameField {
 /// Which frames of a file that has several.
 enum class WantedFrames { one, all };
 
+/// What becomes of volumes that are planes: fields in the plane, or slabs (thickened()).
+enum class Planes { flat, thick };
+
 /// Reads one or more files of one layout, whose frames must be as many as there are times. The
 /// samples of a volume or a picture are the corners of bisected boxes. To be called before there
 /// are threads.
@@ -43,7 +46,7 @@ enum class WantedFrames { one, all };
 /// \throw nestgrid::IoError, nestgrid::InvalidInput as read_volume(), with_hierarchy(),
 /// field_named(), append_frames() and times_of_frames()
 InputField read_field(Input& input, const Paths& more, const std::vector<double>& times,
-                      WantedFrames frames);
+                      WantedFrames frames, Planes planes = Planes::flat);
 
 /// The same for hierarchies.
 InputField read_hierarchies(const Input& input, const Paths& paths,

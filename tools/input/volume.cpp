@@ -37,6 +37,20 @@ constexpr std::array<NamedType, 10> types{{{"uint8", VTK_UNSIGNED_CHAR},
                                            {"float32", VTK_FLOAT},
                                            {"float64", VTK_DOUBLE}}};
 
+/// Lets an image of VTK borrow the samples of a volume.
+void set_image(Volume& volume, const std::byte* samples) {
+    const auto type = std::ranges::find(types, volume.type, &NamedType::name);
+    const auto array =
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type->vtk));
+    // VTK takes no const pointer, and does not write to what it borrows.
+    array->SetVoidArray(const_cast<std::byte*>(samples),
+                        static_cast<vtkIdType>(volume.sample_count()), 1);
+    volume.image = vtkSmartPointer<vtkImageData>::New();
+    volume.image->SetDimensions(volume.geometry.samples.data());
+    volume.image->SetSpacing(volume.geometry.spacing.data());
+    volume.image->GetPointData()->SetScalars(array);
+}
+
 /// The volume in a parcel, whose samples stay there.
 /// \param frame of those that were chosen
 Volume open_volume(const std::shared_ptr<const Parcel>& parcel, std::size_t frame) {
@@ -53,17 +67,7 @@ Volume open_volume(const std::shared_ptr<const Parcel>& parcel, std::size_t fram
     volume.missing = description.missing;
     volume.geometry = description.geometry;
     volume.time = description.first_time + static_cast<double>(frame) * description.time_step;
-    const auto type = std::find_if(types.begin(), types.end(),
-                                   [&](const NamedType& t) { return volume.type == t.name; });
-    const auto array =
-        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type->vtk));
-    // VTK takes no const pointer, and does not write to what it borrows.
-    array->SetVoidArray(const_cast<std::byte*>(samples.data()),
-                        static_cast<vtkIdType>(description.sample_count()), 1);
-    volume.image = vtkSmartPointer<vtkImageData>::New();
-    volume.image->SetDimensions(volume.geometry.samples.data());
-    volume.image->SetSpacing(volume.geometry.spacing.data());
-    volume.image->GetPointData()->SetScalars(array);
+    set_image(volume, samples.data());
     volume.memory = parcel;
     return volume;
 }
@@ -93,8 +97,7 @@ std::string unknown_format(const fs::path& path) {
     if (format != nullptr && format->read_mesh != nullptr) {
         return " is a mesh without data: 'nestgrid mesh' makes a hierarchy of it";
     }
-    std::vector<std::string> known = endings_for(&Format::read_samples);
-    known.emplace_back(".nestgrid");
+    const std::vector<std::string> known = endings_of_fields();
     return " is of no known format (" + listed(known) + ")" + did_you_mean(ending_of(path), known);
 }
 
@@ -110,6 +113,23 @@ const Format& format_of_samples(const fs::path& path) {
 }
 
 }  // namespace
+
+Volume thickened(const Volume& plane) {
+    const auto* const samples = static_cast<const std::byte*>(plane.image->GetScalarPointer());
+    const std::size_t bytes = plane.sample_count() * bytes_of(plane.type);
+    const auto layers = std::make_shared<std::vector<std::byte>>(samples, samples + bytes);
+    layers->insert(layers->end(), samples, samples + bytes);
+    Volume slab = plane;
+    slab.geometry.samples[2] = 2;
+    slab.geometry.spacing[2] = std::max(plane.geometry.samples[0] * plane.geometry.spacing[0],
+                                        plane.geometry.samples[1] * plane.geometry.spacing[1]) /
+                               50;
+    slab.missing *= 2;
+    if (slab.note.empty()) slab.note = "the plane is shown as a slab of two equal layers";
+    set_image(slab, layers->data());
+    slab.memory = layers;
+    return slab;
+}
 
 std::size_t leaf_count(const nestgrid::LatticeGeometry<3>& geometry) {
     const bool plane = geometry.samples[2] == 1;

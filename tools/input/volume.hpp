@@ -44,6 +44,10 @@ struct Volume {
 std::vector<Volume> read_volumes(const std::filesystem::path& path, const VolumeChoice& choice,
                                  const RawFormat& raw, double seconds);
 
+/// A plane as a slab: two layers of its samples, one in the plane and one a fiftieth of its longer
+/// side above.
+Volume thickened(const Volume& plane);
+
 /// Tetrahedra, or triangles in a plane, of the finest grid inside the domain.
 std::size_t leaf_count(const nestgrid::LatticeGeometry<3>& geometry);
 

@@ -14,6 +14,8 @@
 
 #include "formats.hpp"
 #include "input/input_file.hpp"
+#include "input/standard_input.hpp"
+#include "joined.hpp"
 #include "output/surface_file.hpp"
 #include "suggestion.hpp"
 #include "text_header.hpp"
@@ -56,11 +58,14 @@ void add_input(CLI::App& command, Input& input) {
     command
         .add_option("INPUT", input.path,
                     "a volume, a picture or a hierarchy: .nii.gz, .nrrd, .mha, .vti, .raw, .tif, "
-                    ".nestgrid and others ('nestgrid formats' lists them)")
+                    ".nestgrid and others ('nestgrid formats' lists them); - is standard input")
         ->required();
 }
 
 void add_read_options(CLI::App& command, Input& input) {
+    command.add_option("--input-format", input.format, "what standard input is, like nii.gz")
+        ->type_name("ENDING")
+        ->group("Input");
     command.add_option("--array", input.array, "the array of a .vti, the field of a .nestgrid")
         ->type_name("NAME")
         ->group("Input");
@@ -161,23 +166,27 @@ std::string formats_with(const std::string& option) {
     for (const Format& format : formats()) {
         if (applies(option, format)) endings.push_back(format.endings.front());
     }
-    std::string text;
-    for (std::size_t i = 0; i < endings.size(); ++i) {
-        const bool last = i + 1 == endings.size();
-        text += (i == 0 ? "" : last ? " and " : ", ") + endings[i];
-    }
-    return text;
+    return joined(endings, "and");
 }
 
 }  // namespace
 
-void check(const Input& input) {
-    if (input.command == nullptr) return;
+void open(Input& input) {
+    if (is_standard_stream(input.path)) {
+        input.path = keep_standard_input(input.format);
+    } else if (!input.format.empty()) {
+        throw nestgrid::InvalidInput("--input-format is for standard input, -: the name of '" +
+                                     input.path.string() + "' tells its format");
+    }
+    if (is_standard_stream(input.choice.mask)) {
+        throw nestgrid::InvalidInput("a mask has a name: only the INPUT can be standard input");
+    }
+    input.format.clear();
     const Format* const format = format_of(input.path);
-    if (format == nullptr) return;
+    if (input.command == nullptr || format == nullptr) return;
     for (const CLI::Option* option : input.command->get_options()) {
         if (option->count() == 0 || option->get_group() != "Input") continue;
-        if (!applies(option->get_name(), *format)) {
+        if (option->get_name() != "--input-format" && !applies(option->get_name(), *format)) {
             throw nestgrid::InvalidInput(option->get_name() + " is for " +
                                          formats_with(option->get_name()) + " files, not for '" +
                                          input.path.string() + "'");
@@ -226,8 +235,16 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_iso
         ->take_all()
         ->excludes("--threshold")
         ->excludes("--max-triangles");
-    command.add_option("-o,--output", options.output, "write .vtp, .ply, .stl, .obj or .gltf")
+    command
+        .add_option(
+            "-o,--output", options.output,
+            "write " + joined(endings_for(&Format::write_surface), "or") + "; - is standard output")
         ->type_name("FILE");
+    command
+        .add_option("--output-format", options.output_format,
+                    "what standard output is, while the table goes to standard error [ply]")
+        ->type_name("ENDING")
+        ->group("Further");
     add_projection_options(command, options.projection, of_isosurface);
     command.get_option("--error")->excludes("--indicator");
     command
@@ -237,6 +254,40 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_iso
         ->group("Further");
     add_picture_options(command, options.picture);
 }
+
+void add_elements_option(CLI::App& command, SurfaceOptions& options) {
+    command
+        .add_flag("--elements", options.elements,
+                  "write the number and the level of the element that each triangle comes from")
+        ->group("Further");
+}
+
+std::string SurfaceOptions::output_ending() const {
+    if (!is_standard_stream(output)) return ending_of(output);
+    if (output_format.empty()) return ".ply";
+    return lower(output_format.front() == '.' ? output_format : "." + output_format);
+}
+
+namespace {
+
+/// \throw nestgrid::InvalidInput, nestgrid::IoError where standard output takes no surface
+void check_stream(const SurfaceOptions& options) {
+    const std::vector<std::string> known = endings_for(&Format::write_surface);
+    if (std::ranges::find(known, options.output_ending()) == known.end()) {
+        throw nestgrid::InvalidInput("the output format '" + options.output_format +
+                                     "' is none of " + listed(known) +
+                                     did_you_mean(options.output_ending(), known));
+    }
+    if (options.thresholds.size() + options.budgets.size() > 1) {
+        throw nestgrid::InvalidInput(
+            "standard output takes one surface: give -o a name for several");
+    }
+    if (isatty(STDOUT_FILENO) == 1) {
+        throw nestgrid::IoError("standard output is a terminal: send it to a file or a program");
+    }
+}
+
+}  // namespace
 
 void check(const SurfaceOptions& options) {
     for (const std::int64_t budget : options.budgets) {
@@ -257,9 +308,20 @@ void check(const SurfaceOptions& options) {
         }
     }
     if (options.threads < 0) throw nestgrid::InvalidInput("--threads is negative");
-    if (!options.output.empty()) check_output(options.output, endings_for(&Format::write_surface));
+    if (is_standard_stream(options.output)) {
+        check_stream(options);
+    } else if (!options.output_format.empty()) {
+        throw nestgrid::InvalidInput(
+            "--output-format is for standard output, -o -: names of files tell their formats");
+    } else if (!options.output.empty()) {
+        check_output(options.output, endings_for(&Format::write_surface));
+    }
     parse(options.picture);
     if (options.command == nullptr) return;
+    const Format* const format = format_of("x" + options.output_ending());
+    if (options.output.empty() || format == nullptr || !format->keeps_elements) {
+        refuse_options(*options.command, {"--elements"}, "is for an --output as .vtp");
+    }
     if (options.output.empty() && options.picture.image.empty()) {
         refuse_options(*options.command, {"--outlines"},
                        "is about what is kept: give an --output or an --image");

@@ -38,6 +38,7 @@ struct Input {
     std::string by{};       ///< where it names another field of a .nestgrid, that is component 1
     VolumeChoice choice{};  ///< its array and its label aside
     std::vector<double> labels{};  ///< of parts; at most one where a field is read
+    std::string format{};          ///< of standard input: an ending
     RawFormat raw;
     std::string endian = "little";
     double read_limit = 0;
@@ -48,8 +49,10 @@ void add_input(CLI::App& command, Input& input);
 /// Adds the options that say how it is read.
 void add_read_options(CLI::App& command, Input& input);
 void add_read_limit(CLI::App& command, double& seconds);
+/// Keeps standard input in a file where it is the input.
 /// \throw nestgrid::InvalidInput for an option that means nothing for a file of this format
-void check(const Input& input);
+/// \throw nestgrid::IoError, nestgrid::InvalidInput as keep_standard_input()
+void open(Input& input);
 /// \param all_frames whether all of them are read, unless one is chosen
 /// \throw nestgrid::InvalidInput for several labels
 std::vector<Volume> read_volumes(Input& input, bool all_frames);
@@ -61,11 +64,17 @@ struct SurfaceOptions {
     nestgrid::Projection projection;
     int threads = 0;
     std::filesystem::path output;
+    std::string output_format{};  ///< of standard output: an ending
+    bool elements = false;        ///< files tell the element of each triangle
     PictureOptions picture;
     const CLI::App* command = nullptr;  ///< that they are options of
+
+    /// The ending of the format of the output, with its dot.
+    std::string output_ending() const;
 };
 /// \param of_isosurface whether indicators of one isosurface can be chosen, too
 void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_isosurface = false);
+void add_elements_option(CLI::App& command, SurfaceOptions& options);
 /// \throw nestgrid::InvalidInput for a number that is out of range, and for options that exclude
 ///        each other
 /// \throw nestgrid::IoError where a file cannot be written

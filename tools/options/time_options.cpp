@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options/time_options.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <nestgrid/algorithms/frame_weights.hpp>
@@ -9,6 +10,7 @@
 
 #include "input/frame_files.hpp"
 #include "input/input_file.hpp"
+#include "input/standard_input.hpp"
 
 using nestgrid::InvalidInput;
 
@@ -85,6 +87,9 @@ void check(const TimeOptions& time) {
         return;
     }
     if (time.frames && *time.frames < 2) throw InvalidInput("--frames is below 2");
+    if (std::ranges::any_of(time.more, is_standard_stream)) {
+        throw InvalidInput("only the first input can be standard input");
+    }
     if (time.more.empty()) return;
     require_several_frames(time, time.more.size() + 1);
     check_times(time, times_of_frames(time.times, times_of_files(time.more.size() + 1)));

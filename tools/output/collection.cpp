@@ -3,13 +3,20 @@
 #include "output/collection.hpp"
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
 #include <string>
 
-#include "input/input_file.hpp"
+#include <nestgrid/error.hpp>
+
+#include "input/standard_input.hpp"
 #include "options/command_line.hpp"
 #include "output/surface_file.hpp"
 #include "output/text_file.hpp"
+#include "temporary_file.hpp"
 
 namespace {
 
@@ -42,6 +49,23 @@ std::string number(double x) {
     return text.data();
 }
 
+/// Writes a surface to standard output.
+void write_stream(vtkPolyData* surface, const std::string& ending, Report& report) {
+    const TemporaryFile file("standard output" + ending);
+    write_surface(surface, file.path());
+    report.leave_standard_output();
+    report.wrote(file.path().filename(), contents_of(surface), fs::file_size(file.path()));
+    const std::string moved = what_single_precision_moves(surface, file.path());
+    if (!moved.empty()) report.say(moved);
+    std::ifstream in(file.path(), std::ios::binary);
+    errno = 0;
+    std::cout << in.rdbuf() << std::flush;
+    if (!std::cout) {
+        throw nestgrid::IoError(std::string("standard output could not be written: ") +
+                                std::strerror(errno == 0 ? EIO : errno));
+    }
+}
+
 }  // namespace
 
 fs::path collection_path(const fs::path& surfaces) {
@@ -63,7 +87,8 @@ void write_collection(const fs::path& path, const std::vector<CollectionPart>& p
 }
 
 void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces, const fs::path& path,
-                    Report& report) {
+                    const std::string& ending, Report& report) {
+    if (is_standard_stream(path)) return write_stream(surfaces.front(), ending, report);
     std::vector<CollectionPart> parts;
     std::string moved;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -73,7 +98,7 @@ void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces, c
         if (moved.empty()) moved = what_single_precision_moves(surfaces[i], path);
     }
     if (!moved.empty()) report.say(moved);
-    if (parts.size() > 1 && ending_of(path) == ".vtp") {
+    if (parts.size() > 1 && ending == ".vtp") {
         write_collection(collection_path(path), parts);
         report.wrote(collection_path(path), {{"files", parts.size()}});
     }

@@ -24,7 +24,9 @@ std::filesystem::path collection_path(const std::filesystem::path& surfaces);
 void write_collection(const std::filesystem::path& path, const std::vector<CollectionPart>& parts);
 
 /// Writes one surface into a file; several into files with numbers (numbered()), and a list of them
-/// where they are .vtp. The report names all of them.
+/// where they are .vtp. The report names all of them. One may go to standard output, which the
+/// report then leaves alone.
+/// \param ending of the format, with its dot
 /// \throw nestgrid::IoError
 void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces,
-                    const std::filesystem::path& path, Report& report);
+                    const std::filesystem::path& path, const std::string& ending, Report& report);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <set>
 
 #include <json/value.h>
@@ -86,17 +85,17 @@ std::vector<std::string> column_of(const std::vector<Row>& rows, const std::stri
     return texts;
 }
 
-void print_columns(const std::vector<std::vector<std::string>>& columns) {
-    std::printf("\n");
+void print_columns(const std::vector<std::vector<std::string>>& columns, std::FILE* to) {
+    std::fprintf(to, "\n");
     for (std::size_t line = 0; line < columns.front().size(); ++line) {
         std::string text;
         for (const auto& column : columns) text += (text.empty() ? "" : "  ") + column[line];
         text.erase(text.find_last_not_of(' ') + 1);
-        std::printf("%s\n", text.c_str());
+        std::fprintf(to, "%s\n", text.c_str());
     }
 }
 
-void print_table(const std::vector<Row>& rows, std::size_t keys) {
+void print_table(const std::vector<Row>& rows, std::size_t keys, std::FILE* to) {
     std::vector<std::string> names;
     for (const Row& row : rows) {
         for (const auto& [name, cell] : row.cells()) {
@@ -108,7 +107,7 @@ void print_table(const std::vector<Row>& rows, std::size_t keys) {
     for (std::size_t i = 0; i < names.size(); ++i) {
         std::vector<std::string> column = column_of(rows, names[i]);
         if (i > keys && width + 2 + column.front().size() > most_columns) {
-            print_columns(block);
+            print_columns(block, to);
             block.resize(keys);
             width = 0;
             for (const auto& key : block) width += key.front().size() + 2;
@@ -116,7 +115,7 @@ void print_table(const std::vector<Row>& rows, std::size_t keys) {
         width += column.front().size() + (block.empty() ? 0 : 2);
         block.push_back(std::move(column));
     }
-    print_columns(block);
+    print_columns(block, to);
 }
 
 /// "3.1 MB"
@@ -160,21 +159,26 @@ void Report::wrote(const std::filesystem::path& path,
                    std::vector<std::pair<std::string, std::uint64_t>> what) {
     std::error_code none;
     const std::uintmax_t bytes = std::filesystem::file_size(path, none);
-    files_.push_back({path.string(), std::move(what), none ? 0 : bytes});
+    wrote(path, std::move(what), none ? 0 : bytes);
+}
+
+void Report::wrote(const std::filesystem::path& path,
+                   std::vector<std::pair<std::string, std::uint64_t>> what, std::uint64_t bytes) {
+    files_.push_back({path.string(), std::move(what), bytes});
 }
 
 void Report::print_text() const {
     for (const auto& [name, cell] : facts_.cells()) {
-        std::printf("%-22s %s\n", name.c_str(), text_of(cell).c_str());
+        std::fprintf(to_, "%-22s %s\n", name.c_str(), text_of(cell).c_str());
     }
-    for (const Table& table : tables_) print_table(table.rows, table.keys);
-    if (!tables_.empty() && !(notes_.empty() && files_.empty())) std::printf("\n");
-    for (const std::string& note : notes_) std::printf("%s\n", note.c_str());
+    for (const Table& table : tables_) print_table(table.rows, table.keys, to_);
+    if (!tables_.empty() && !(notes_.empty() && files_.empty())) std::fprintf(to_, "\n");
+    for (const std::string& note : notes_) std::fprintf(to_, "%s\n", note.c_str());
     for (const File& file : files_) {
         std::string what;
         for (const auto& [name, count] : file.what) what += grouped(count) + " " + name + ", ";
-        std::printf("wrote %s (%s%s)\n", file.path.c_str(), what.c_str(),
-                    size_text(file.bytes).c_str());
+        std::fprintf(to_, "wrote %s (%s%s)\n", file.path.c_str(), what.c_str(),
+                     size_text(file.bytes).c_str());
     }
 }
 
@@ -196,11 +200,11 @@ void Report::print_json() const {
     }
     Json::StreamWriterBuilder builder;
     builder["indentation"] = "  ";
-    std::cout << Json::writeString(builder, document) << std::endl;
+    std::fprintf(to_, "%s\n", Json::writeString(builder, document).c_str());
 }
 
 void Report::print() {
     if (!printed_) json_ ? print_json() : print_text();
-    std::fflush(stdout);
+    std::fflush(to_);
     printed_ = true;
 }

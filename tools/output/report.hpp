@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -60,6 +61,10 @@ public:
     /// \param what it holds: "triangles" and how many
     void wrote(const std::filesystem::path& path,
                std::vector<std::pair<std::string, std::uint64_t>> what);
+    void wrote(const std::filesystem::path& path,
+               std::vector<std::pair<std::string, std::uint64_t>> what, std::uint64_t bytes);
+    /// Has everything printed to standard error, because a file goes to standard output.
+    void leave_standard_output() { to_ = stderr; }
     /// Prints everything, once.
     void print();
 
@@ -79,6 +84,7 @@ private:
     void print_json() const;
 
     const bool& json_;
+    std::FILE* to_ = stdout;
     bool printed_ = false;
     Row facts_;
     std::vector<Table> tables_;

@@ -19,6 +19,7 @@
 
 #include "formats.hpp"
 #include "input/input_file.hpp"
+#include "joined.hpp"
 #include "output/precision.hpp"
 #include "suggestion.hpp"
 
@@ -58,12 +59,17 @@ std::string what_single_precision_moves(vtkPolyData* surface, const fs::path& pa
     if (format == nullptr || !format->single_precision) return "";
     const SinglePrecision single = single_precision(surface);
     if (single.keeps_shape()) return "";
+    std::vector<std::string> others;
+    for (const Format& other : formats()) {
+        const bool keeps = other.write_surface != nullptr && !other.single_precision;
+        if (keeps) others.push_back(other.endings.front());
+    }
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
                   "%s has points of seven digits: they move by up to %.3g, where the mean edge "
-                  "is %.3g long; .vtp, .ply and .obj keep them",
+                  "is %.3g long; ",
                   format->endings.front().c_str(), single.moved, single.mean_edge);
-    return text.data();
+    return text.data() + joined(others, "and") + " keep them";
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> contents_of(vtkPolyData* surface) {

@@ -31,7 +31,7 @@ void describe_volumes(ExploredField& field, const std::vector<Volume>& volumes) 
 
 ExploredField read_explored(Input& input, const Paths& more, const std::vector<double>& times) {
     const std::filesystem::path path = input.path;
-    InputField read = read_field(input, more, times, WantedFrames::all);
+    InputField read = read_field(input, more, times, WantedFrames::all, Planes::thick);
     if (read.dimension() != 3) {
         throw InvalidInput("'" + path.string() +
                            "' has 2 dimensions; only fields in space can be explored");

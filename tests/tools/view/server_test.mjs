@@ -3,16 +3,19 @@
 //
 // What the server of the page refuses, and that it lives on. Arguments: the program, a volume.
 import { spawn } from 'node:child_process';
+import fs from 'node:fs';
 import http from 'node:http';
 import net from 'node:net';
+import os from 'node:os';
+import path from 'node:path';
 
 import { check, finish } from './checks.mjs';
 
 const [program, volume] = process.argv.slice(2);
 
 /** Starts the program. \return the process and its lines of output */
-function start(...options) {
-  const child = spawn(program, ['view', volume, '--no-browser', ...options]);
+function startOn(file, ...options) {
+  const child = spawn(program, ['view', file, '--no-browser', ...options]);
   const output = { text: '', errors: '' };
   child.stdout.on('data', (data) => { output.text += data; });
   child.stderr.on('data', (data) => { output.errors += data; });
@@ -23,6 +26,8 @@ function start(...options) {
   });
   return { child, output, ended, line };
 }
+
+const start = (...options) => startOn(volume, ...options);
 
 /** Sends bytes and gives what is answered until the connection is closed. */
 function raw(port, text, more = null) {
@@ -170,5 +175,22 @@ check((await third.line).includes(`:${portText}/`) && (await third.line) !== add
   'the token is the same again');
 third.child.kill('SIGTERM');
 check((await third.ended) === 0, 'the end is not clean');
+
+// A plane is shown as a slab: walls stand on its isolines.
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'plane-'));
+const ramp = path.join(folder, 'ramp.pgm');
+const samples = Array.from({ length: 9 * 7 }, (_, i) => 10 * (i % 9));
+fs.writeFileSync(ramp, Buffer.concat([Buffer.from('P5\n9 7\n255\n'), Buffer.from(samples)]));
+const plane = startOn(ramp);
+const shown = new URL(await plane.line);
+const facts = JSON.parse((await get(shown.port, `${shown.pathname}info`)).body);
+check(JSON.stringify(facts.box[1].slice(0, 2)) === '[8,6]' && facts.box[1][2] > 0.1,
+  `the slab is ${JSON.stringify(facts.box)}`);
+const walls = await get(shown.port, `${shown.pathname}frame?isovalue=35&threshold=0`);
+check(walls.status === 200 && walls.body.length > 1000, `no walls: ${walls.body.toString().slice(0, 200)}`);
+plane.child.kill('SIGTERM');
+check((await plane.ended) === 0 && plane.output.errors.includes('slab of two equal layers'),
+  `the plane: '${plane.output.errors}'`);
+fs.rmSync(folder, { recursive: true });
 
 finish();

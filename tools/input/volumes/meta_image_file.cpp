@@ -17,6 +17,7 @@ FileSamples read_meta_image(const std::filesystem::path& path, const WantedSampl
 const RegisteredFormat meta_image({.name = "MetaImage",
                                    .endings = {".mha", ".mhd"},
                                    .holds = "samples in space, several frames",
+                                   .detached = {".mhd"},
                                    .reads_beside = true,
                                    .read_samples = read_meta_image});
 

@@ -41,9 +41,16 @@ struct Files {
 
 Files files_of(const fs::path& path) {
     Files files{path, path};
-    const std::string ending = ending_of(path);
-    if (ending == ".img") files.header.replace_extension(".hdr");
-    if (ending == ".hdr") files.samples.replace_extension(".img");
+    const bool packed = ending_of(path) == ".gz";
+    const fs::path unpacked = packed ? path.stem() : path.filename();
+    const auto with = [&](const char* ending) {
+        fs::path name = unpacked;
+        name.replace_extension(ending);
+        if (packed) name += path.extension();
+        return path.parent_path() / name;
+    };
+    if (ending_of(unpacked) == ".img") files.header = with(".hdr");
+    if (ending_of(unpacked) == ".hdr") files.samples = with(".img");
     require_file(files.header);
     require_file(files.samples);
     return files;
@@ -114,7 +121,7 @@ FileSamples read_nifti(const fs::path& path, const WantedSamples& wanted) {
     if (reader->CanReadFile(files.header.c_str()) == 0) {
         throw IoError(files.header.string() + " is no NIfTI file, or truncated in its header");
     }
-    check_nifti_header(files.header);
+    const NiftiStart start = checked_nifti_start(files.header);
     reader->SetFileName(files.header.c_str());
     const std::uintmax_t places = reading.read_header(reader);
     vtkNIFTIImageHeader* const header = reader->GetNIFTIHeader();
@@ -123,15 +130,8 @@ FileSamples read_nifti(const fs::path& path, const WantedSamples& wanted) {
         static_cast<double>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
     const double size = static_cast<double>(places) * bytes * static_cast<double>(frames) *
                         static_cast<double>(vectors);
-    const std::uintmax_t found = fs::file_size(files.samples);
-    check_plausible(files.samples, found, size);
-    if (files.header == files.samples) {
-        check_nifti_size(path, static_cast<std::uintmax_t>(size));
-    } else if (static_cast<double>(found) < size) {
-        throw IoError(files.samples.string() + " is truncated: " + std::to_string(found) +
-                      " bytes, but its header asks for " +
-                      std::to_string(static_cast<std::uintmax_t>(size)));
-    }
+    check_plausible(files.samples, fs::file_size(files.samples), size);
+    check_nifti_size(files.samples, start, static_cast<std::uintmax_t>(size));
     // All frames become components of the samples.
     if (frames > 1 && wanted.several_frames) reader->TimeAsVectorOn();
     const vtkSmartPointer<vtkImageData> image = reading.read_samples(reader);
@@ -154,8 +154,9 @@ FileSamples read_nifti(const fs::path& path, const WantedSamples& wanted) {
 }
 
 const RegisteredFormat nifti({.name = "NIfTI",
-                              .endings = {".nii.gz", ".nii", ".hdr", ".img"},
+                              .endings = {".nii.gz", ".nii", ".hdr", ".img", ".hdr.gz", ".img.gz"},
                               .holds = "samples in space, several frames",
+                              .detached = {".hdr", ".img", ".hdr.gz", ".img.gz"},
                               .read_samples = read_nifti});
 
 }  // namespace

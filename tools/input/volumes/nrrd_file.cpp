@@ -279,6 +279,7 @@ FileSamples read_nrrd(const fs::path& path, const WantedSamples& /*wanted*/) {
 const RegisteredFormat nrrd_format({.name = "NRRD",
                                     .endings = {".nrrd", ".nhdr"},
                                     .holds = "samples in space, several frames",
+                                    .detached = {".nhdr"},
                                     .reads_beside = true,
                                     .read_samples = read_nrrd});
 

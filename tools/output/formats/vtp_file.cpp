@@ -23,7 +23,8 @@ vtkSmartPointer<vtkPolyData> in_short(vtkPolyData* surface) {
         points->DeepCopy(surface->GetPoints());
         result->SetPoints(points);
     }
-    const auto shortened = [](vtkCellArray* cells) {
+    const auto shortened = [](vtkCellArray* cells) -> vtkSmartPointer<vtkCellArray> {
+        if (!cells->IsStorage64Bit()) return cells;
         const vtkNew<vtkCellArray> copy;
         copy->DeepCopy(cells);
         copy->ConvertTo32BitStorage();
@@ -47,6 +48,7 @@ std::string write_vtp(vtkPolyData* surface, const std::filesystem::path& path) {
 const RegisteredFormat vtp({.name = "VTK poly data",
                             .endings = {".vtp"},
                             .holds = "triangles, lines, normals and values",
+                            .keeps_elements = true,
                             .write_surface = write_vtp});
 
 }  // namespace
