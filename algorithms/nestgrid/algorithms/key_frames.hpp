@@ -51,7 +51,7 @@ public:
     double offset_bound(NodeKey node) const override;
 
     const HangingNodes* hanging() const override { return first().hanging(); }
-    std::uint64_t epoch() const override { return first().epoch(); }
+    bool made_for(std::uint64_t epoch) const override { return frames_.made_for(epoch); }
     bool stops_conform() const override { return first().stops_conform(); }
     int finest_level() const override { return first().finest_level(); }
     bool one_level_a_node() const override { return first().one_level_a_node(); }
