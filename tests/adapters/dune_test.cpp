@@ -8,6 +8,7 @@
 #include <dune/grid/common/mcmgmapper.hh>
 #include <dune/grid/yaspgrid.hh>
 
+#include "changed_laws.hpp"
 #include "dune_laws.hpp"
 #include "dune_ug_grids.hpp"
 
@@ -194,6 +195,23 @@ TEST(DuneGrid, NoticesThatItWasAdapted) {
     EXPECT_EQ(refusal<GridError>([&] { derive_hanging_nodes(grid); }),
               "the Dune grid was adapted; its adapter must be made anew");
     expect_laws(*solver);
+}
+
+TEST(DuneGrid, RefusesWhatWasMadeBeforeAChange) {
+    const auto solver = simplices<3>(2);
+    refine_at_sphere(*solver, 1, 0.1);
+    const DuneGrid grid(*solver);
+    using Grid = std::remove_const_t<decltype(grid)>;
+    const std::vector<double> values = at_vertices(*solver, ball);
+    const DuneVertexField field(grid, values);
+    using Field = std::remove_const_t<decltype(field)>;
+    MadeOnce<Grid, Field> before(grid, field);
+    refine_at_sphere(*solver, 2, 0.2);
+    const DuneGrid anew(*solver);
+    const std::vector<double> finer_values = at_vertices(*solver, ball);
+    const DuneVertexField finer(anew, finer_values);
+    expect_refused_after_change(before, anew, finer);
+    expect_usable(anew, finer);
 }
 
 }  // namespace
