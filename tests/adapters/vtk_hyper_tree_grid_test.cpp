@@ -17,7 +17,7 @@
 #include "changed_laws.hpp"
 #include "element_in.hpp"
 #include "hyper_trees.hpp"
-#include "refusal.hpp"
+#include "refusal_rows.hpp"
 #include "solver_laws.hpp"
 
 using namespace nestgrid_test;
@@ -352,6 +352,41 @@ TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
     thirds->SetDimensions(2, 2, 2);
     thirds->SetBranchFactor(3);
     expect_refused([&] { HyperTreeGrid<3> grid(*thirds); }, "branch factor 3");
+}
+
+TEST(Refusals, OfHyperTreeGrids) {
+    RefusalRows rows("VTK hyper tree grids");
+    const auto trees = random_trees({3, 3, 3}, 1, 1);
+    rows.add("another dimension", [&] { HyperTreeGrid<2>{*trees}; });
+    rows.add("another branch factor", [] {
+        vtkNew<vtkHyperTreeGrid> thirds;
+        thirds->SetDimensions(2, 2, 2);
+        thirds->SetBranchFactor(3);
+        HyperTreeGrid<3>{*thirds};
+    });
+    const vtkNew<vtkBitArray> mask;
+    mask->InsertNextValue(0);
+    trees->SetMask(mask);
+    rows.add("a mask that is too short", [&] { HyperTreeGrid<3>{*trees}; });
+    trees->SetMask(nullptr);
+    const vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->InsertNextValue(0);
+    trees->GetCellData()->AddArray(ghosts);
+    rows.add("a ghost array that is too short", [&] { HyperTreeGrid<3>{*trees}; });
+    trees->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+    const HyperTreeGrid<3> grid(*trees);
+    const CellAverages field(grid, [](const HyperTreeGrid<3>::Element&) { return 1.0; });
+    const HierarchicalIndicator indicator(grid, field);
+    trees->Modified();
+    const HyperTreeGrid<3> anew(*trees);
+    const CellAverages field_anew(anew, [](const HyperTreeGrid<3>::Element&) { return 1.0; });
+    rows.add<GridError>("an adapter from before a change",
+                        [&] { CellAverages(grid, [](const auto&) { return 1.0; }); });
+    rows.add<GridError>("means of cells from before a change",
+                        [&] { HierarchicalIndicator(grid, field); });
+    rows.add<GridError>("an indicator from before a change",
+                        [&] { isosurface(anew, field_anew, 0.5, indicator); });
 }
 
 }  // namespace
