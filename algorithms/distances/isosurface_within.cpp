@@ -98,7 +98,7 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
         points.finish();
         const SweptIndicator fine = points.size() > 0
                                         ? fine_indicator(hierarchy, points, options.progress)
-                                        : SweptIndicator(NodeTable<std::uint16_t>{}, {});
+                                        : SweptIndicator({}, {}, hierarchy.epoch());
         const auto draw = [&](const IsosurfaceOptions& how) {
             return isosurface<3>(hierarchy, isovalue, *criterion(fine), bounds, how, executor);
         };

@@ -21,8 +21,7 @@ void require_drawable(const Hierarchy<Real>& hierarchy, double scale, const Crit
     if (!std::isfinite(scale))
         throw InvalidInput("the scale of the heights is not a finite number");
     if (!(options.flatness >= 0)) throw InvalidInput("the flatness is negative or not a number");
-    require_same_epoch(hierarchy, bounds);
-    require_saturated(criterion, bounds, hierarchy.facts().decodes);
+    require_sound(hierarchy, criterion, bounds);
 }
 
 /// Calls draw(graph) with what a triangulation borrows.

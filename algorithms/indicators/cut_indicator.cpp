@@ -132,7 +132,7 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
         if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
     }
     const HierarchyFacts& facts = hierarchy.facts();
-    if (request.bounds->epoch() != hierarchy.epoch()) {
+    if (!request.bounds->made_for(hierarchy.epoch())) {
         throw GridError("the grid has changed since its bounds were computed");
     }
     // Distances keep no promise.
@@ -152,7 +152,7 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
         table = in_rows ? etas.etas().take() : etas.etas().saturate(spread);
     }
     if (in_rows) sweep_rows(hierarchy, spread, table.dense);
-    return {std::move(table), spread, promised};
+    return {std::move(table), spread, hierarchy.epoch(), promised};
 }
 
 }  // namespace

@@ -124,10 +124,10 @@ SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
         walk.run(visitor);
         source.finish(etas);
     });
-    if (!in_rows) return {etas.saturate(spread), spread};
+    if (!in_rows) return {etas.saturate(spread), spread, hierarchy.epoch()};
     auto table = etas.take();
     sweep_rows(hierarchy, spread, table.dense);
-    return {std::move(table), spread};
+    return {std::move(table), spread, hierarchy.epoch()};
 }
 
 template SweptIndicator sweep_source(const Hierarchy<float>&, EtaSource&, const Spread&);

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/key_frames.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -42,6 +44,37 @@ void require_one_hierarchy(const HierarchicalIndicator& first, const Hierarchica
             "its elements are split otherwise");
 }
 
+using Frames = std::vector<const HierarchicalIndicator*>;
+
+/// W = sum |mu_i| max |U_i|, which no value of U(t) exceeds.
+double sum_of_greatest(const Frames& frames, std::span<const float> weights) {
+    double sum = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        if (weights[i] == 0) continue;
+        const double greatest =
+            std::max(std::abs(frames[i]->least()), std::abs(frames[i]->greatest()));
+        sum += std::abs(static_cast<double>(weights[i])) * greatest;
+    }
+    return sum;
+}
+
+/// Whether U(t) is one of the frames, bit for bit.
+bool is_frame(std::span<const float> weights) {
+    const auto count_of = [&](float w) { return std::ranges::count(weights, w); };
+    return count_of(1.0F) == 1 && count_of(0.0F) + 1 == std::ssize(weights);
+}
+
+/// \throw InvalidInput where U(t) could leave the range of the type of its values
+void require_in_range(const Frames& frames, std::span<const float> weights) {
+    const double greatest = sum_of_greatest(frames, weights);
+    const double range = frames.front()->roundoff() < std::numeric_limits<float>::epsilon() / 4
+                             ? std::numeric_limits<double>::max()
+                             : static_cast<double>(std::numeric_limits<float>::max());
+    if (greatest <= range / 8 || is_frame(weights)) return;
+    throw InvalidInput("a value between frames may be no usable number, as great as " +
+                       std::to_string(greatest));
+}
+
 }  // namespace
 
 KeyFrames::KeyFrames(std::vector<const HierarchicalIndicator*> frames,
@@ -53,6 +86,8 @@ KeyFrames::KeyFrames(std::vector<const HierarchicalIndicator*> frames,
 }
 
 void KeyFrames::set_weights(std::span<const float> weights) {
+    detail::require_weights(frames_.frames().size(), weights);
+    require_in_range(frames_.frames(), weights);
     frames_.set_weights(weights);
     set_range(weights);
 }
@@ -66,7 +101,6 @@ void KeyFrames::set_weights(std::span<const float> weights) {
 /// an element leaves its bounds by that much at the node and at a corner, and by 9 u W for each
 /// generation between them.
 void KeyFrames::set_range(std::span<const float> weights) {
-    double sum_of_greatest = 0;
     double roundoff = 0;
     least_ = greatest_ = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -77,18 +111,15 @@ void KeyFrames::set_range(std::span<const float> weights) {
         const double at_greatest = weight * frame.greatest();
         least_ += std::min(at_least, at_greatest);
         greatest_ += std::max(at_least, at_greatest);
-        sum_of_greatest += std::max(std::abs(at_least), std::abs(at_greatest));
         roundoff = std::max(roundoff, frame.roundoff());
     }
     rounding_ = 0;
-    if (frames_.term_count() == 0) return;
-    const bool is_frame =
-        frames_.term_count() == 1 && std::count(weights.begin(), weights.end(), 1.0F) == 1;
-    if (is_frame) return;
+    if (frames_.term_count() == 0 || is_frame(weights)) return;
+    const double most = sum_of_greatest(frames_.frames(), weights);
     const auto count = static_cast<double>(frames_.term_count());
     const double of_value =
-        2 * count * (roundoff * sum_of_greatest + std::numeric_limits<float>::denorm_min());
-    rounding_ = 2 * of_value + 45 * first().generations() * roundoff * sum_of_greatest;
+        2 * count * (roundoff * most + std::numeric_limits<float>::denorm_min());
+    rounding_ = 2 * of_value + 45 * first().generations() * roundoff * most;
     least_ -= of_value;
     greatest_ += of_value;
 }

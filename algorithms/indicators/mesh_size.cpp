@@ -35,7 +35,7 @@ SweptIndicator sweep_diameters_of_rows(const Hierarchy<Real>& hierarchy, const S
         for (std::size_t i = 0; i < row.count; ++i) sizes[row.first + i * row.stride] = size;
     });
     engine::sweep_rows(hierarchy, spread, sizes);
-    return {{std::move(sizes), {}}, spread};
+    return {{std::move(sizes), {}}, spread, hierarchy.epoch()};
 }
 
 template <class Real>

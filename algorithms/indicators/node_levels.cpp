@@ -41,7 +41,7 @@ void add_element(const engine::Walk<float>& walk, const engine::ElementView<floa
 
 }  // namespace
 
-NodeLevels::NodeLevels(const Hierarchy<float>& hierarchy) {
+NodeLevels::NodeLevels(const Hierarchy<float>& hierarchy) : epoch_{hierarchy.epoch()} {
     HangingNodes hanging;  // S holds at no crossing node
     if (hierarchy.offers(Feature::hanging_parents)) {
         hanging = engine::derive_hanging_nodes(hierarchy);

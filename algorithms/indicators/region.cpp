@@ -35,7 +35,8 @@ void add_element(const engine::Walk<float>& walk, const engine::ElementView<floa
 
 }  // namespace
 
-Region::Region(const Hierarchy<float>& hierarchy, const Inside& inside) {
+Region::Region(const Hierarchy<float>& hierarchy, const Inside& inside)
+    : epoch_{hierarchy.epoch()} {
     if (hierarchy.facts().knows_star_positions) {
         sweep_stars(hierarchy, inside);
     } else {

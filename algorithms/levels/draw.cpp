@@ -41,13 +41,13 @@ void require_options(const IsosurfaceOptions& options) {
     }
 }
 
-template <class Real>
-void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds) {
-    if (bounds.epoch() != hierarchy.epoch()) {
-        throw GridError("the grid has changed since its indicator was computed");
-    }
+namespace {
+
+[[noreturn]] void refuse_changed() {
+    throw GridError("the grid has changed since its indicator was computed");
 }
 
+/// \throw InvalidInput as require_sound()
 void require_saturated(const Criterion& criterion, const Bounds& bounds, bool decodes) {
     if (criterion.insists() && decodes) {
         throw InvalidInput(
@@ -67,13 +67,28 @@ void require_saturated(const Criterion& criterion, const Bounds& bounds, bool de
     }
 }
 
+}  // namespace
+
+template <class Real>
+void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds) {
+    if (!bounds.made_for(hierarchy.epoch())) refuse_changed();
+}
+
+template <class Real>
+void require_sound(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
+                   const Bounds& bounds) {
+    require_same_epoch(hierarchy, bounds);
+    if (!criterion.made_for(hierarchy.epoch())) refuse_changed();
+    require_saturated(criterion, bounds, hierarchy.facts().decodes);
+}
+
 template <int dimension, class Real>
 std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const Criterion& criterion,
                                              const Bounds& bounds, std::uint64_t most,
                                              const IsosurfaceOptions& options,
                                              const Executor& executor) {
     using Drawing = LevelSet<dimension, Real>;
-    require_saturated(criterion, bounds, levels.hierarchy->facts().decodes);
+    require_sound(*levels.hierarchy, criterion, bounds);
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
@@ -155,8 +170,7 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
                                                const Executor& executor) {
     using Drawing = LevelSet<dimension, Real>;
     const std::size_t count = levels.levels.size();
-    require_same_epoch(*levels.hierarchy, bounds);
-    require_saturated(criterion, bounds, levels.hierarchy->facts().decodes);
+    require_sound(*levels.hierarchy, criterion, bounds);
     require_options<dimension>(options);
     require_targets(targets, count, options);
     std::vector<Surface<dimension>> chunks(count);
@@ -221,6 +235,8 @@ template void engine::require_options<2>(const IsosurfaceOptions&);
 template void engine::require_options<3>(const IsosurfaceOptions&);
 template void engine::require_same_epoch(const Hierarchy<float>&, const Bounds&);
 template void engine::require_same_epoch(const Hierarchy<double>&, const Bounds&);
+template void engine::require_sound(const Hierarchy<float>&, const Criterion&, const Bounds&);
+template void engine::require_sound(const Hierarchy<double>&, const Criterion&, const Bounds&);
 template void engine::set_isovalues(engine::Levels<float>&, std::span<const double>);
 template void engine::set_isovalues(engine::Levels<double>&, std::span<const double>);
 template engine::Levels<float> engine::isosurface_levels(const Hierarchy<float>&,

@@ -58,9 +58,15 @@ void require_options(const IsosurfaceOptions& options);
 template <class Real>
 void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds);
 
-/// \throw InvalidInput where a criterion is not saturated on the grid of the bounds, and does not
+/// What every drawing under a criterion requires of it and of the bounds.
+///
+/// \throw GridError where the grid has changed since the bounds, or what the criterion asks, were
+///        computed
+/// \throw InvalidInput where the criterion is not saturated on the grid of the bounds, and does not
 ///        insist, or insists on a field that is decoded on the way down
-void require_saturated(const Criterion& criterion, const Bounds& bounds, bool decodes);
+template <class Real>
+void require_sound(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
+                   const Bounds& bounds);
 
 /// The number of triangles (segments) of the first level under a criterion, or nothing where it
 /// exceeds `most`.

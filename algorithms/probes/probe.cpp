@@ -113,8 +113,7 @@ ProbeResult answer(const Question<Real>& question) {
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
                   const Criterion& criterion, const Bounds& bounds) {
-    engine::require_same_epoch(hierarchy, bounds);
-    engine::require_saturated(criterion, bounds, hierarchy.facts().decodes);
+    engine::require_sound(hierarchy, criterion, bounds);
     require_points(points);
     return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true, false});
 }

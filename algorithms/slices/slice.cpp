@@ -18,7 +18,7 @@ public:
     double offset_bound(NodeKey) const override { return 0; }
     double bound(const Rule&, std::span<const NodeKey>) const override { return 0; }
     const HangingNodes* hanging() const override { return hanging_.empty() ? nullptr : &hanging_; }
-    std::uint64_t epoch() const override { return epoch_; }
+    bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
 
 private:
     std::uint64_t epoch_;

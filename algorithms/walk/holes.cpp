@@ -116,7 +116,8 @@ void HiddenElements::find(const Hierarchy<Real>& hierarchy) {
 
 template <class Real>
 HiddenElements::HiddenElements(const Hierarchy<Real>& hierarchy,
-                               std::shared_ptr<const HiddenElements> already) {
+                               std::shared_ptr<const HiddenElements> already)
+    : made_for_{hierarchy} {
     const auto look = [&] {
         if (already) return find(Holes<Real>(hierarchy, already));
         find(hierarchy);
@@ -164,8 +165,8 @@ HierarchyFacts Holes<Real>::facts_with_hidden(const Hierarchy<Real>& inner) {
 template <class Real>
 Holes<Real>::Holes(const Hierarchy<Real>& inner, std::shared_ptr<const HiddenElements> hidden)
     : detail::ForwardingHierarchy<Real>(inner, facts_with_hidden(inner)),
-      hidden_{std::move(hidden)},
-      made_for_{inner} {
+      hidden_{std::move(hidden)} {
+    hidden_->require_same(inner);
     if (dynamic_cast<const Holes<Real>*>(&inner) != nullptr) {
         throw InvalidInput("a hierarchy with holes gets no others: hide all at once");
     }

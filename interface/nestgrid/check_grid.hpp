@@ -25,7 +25,8 @@ enum class Law : std::uint8_t {
     coarse_element,  ///< finite, not flat, oriented as said, distinct ids, right dimension
     coarse_node,     ///< one id, one place
     coarse_face,     ///< a face belongs to at most two coarse elements
-    coarse_contact,  ///< coarse elements that touch in a part of a face share its nodes
+    coarse_contact,  ///< coarse elements that touch share the nodes of the part in which they touch
+    coarse_overlap,  ///< coarse elements do not overlap
     key_place,       ///< one key, one place
     one_stencil,     ///< one node, one key, one set of parents and weights
     stable_key,      ///< own keys do not change from father to child
@@ -67,8 +68,8 @@ struct CheckOptions {
     /// Demand that coarse corners at one place have one id: for grids without slits. Ids that each
     /// element counts for itself look like slits everywhere.
     bool one_id_a_place = false;
-    /// Coarse elements may touch in parts of faces without sharing nodes, as bodies in contact do:
-    /// such places are noted. Surfaces are open there.
+    /// Coarse elements may touch without sharing nodes, as bodies in contact do, and overlap, as
+    /// overset grids do: such places are noted. Surfaces are open there.
     bool contacts = false;
     /// Where not null, check_grid appends sentences about what is legal and may yet not be meant:
     /// which optional operations it found, so that a misspelt name is seen to be missing, coarse

@@ -23,7 +23,7 @@
 //     bool conforming()
 //         promises that no node hangs, which spares the derivation
 //     bool masked(e)
-//         e lies outside the domain: skipped with everything below it
+//         e lies outside the domain: skipped with everything below it; its nodes have values yet
 //     Hidden hidden(e)
 //         whether e and what lies below it is shown. Nothing depends on values at nodes of hidden
 //         leaves alone: they are interpolated, on the coarse grid 0. No element that is hidden in

@@ -3,6 +3,7 @@
 //
 // Surfaces from files, which OpenMesh writes: nothing lost, nothing read in part, nothing printed.
 #include <cstring>
+#include <filesystem>
 
 #include <nestgrid/adapters/cgal_files.hpp>
 
@@ -10,6 +11,7 @@
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 
 #include "coarse_samples.hpp"
+#include "refusal_rows.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -195,6 +197,37 @@ TEST(SurfaceFileSentences, NameBadSurfaces) {
     CoarseGrid nan =
         read_surface(write_file("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1e99 0\nf 1 2 3\n"));
     EXPECT_EQ(nan.element_count(), 1U);
+}
+
+TEST(Refusals, OfSurfacesInFiles) {
+    RefusalRows rows("surfaces in files");
+    const auto before = std::filesystem::current_path();
+    std::filesystem::current_path(
+        testing::TempDir());  // sentences name the files as they are given
+    const auto read = [](const std::string& name, const std::string& content) {
+        return [name, content] {
+            write_file(name, content);
+            CoarseGrid grid = read_surface(name);
+            check_and_orient(grid);
+        };
+    };
+    rows.add<IoError>("no such file", [] { read_surface("missing.off"); });
+    rows.add<IoError>("a file of another format", read("mesh.vtk", "x"));
+    rows.add<IoError>("an empty file", read("empty.stl", " \n"));
+    rows.add<IoError>("a corner without a vertex",
+                      read("wild.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"));
+    rows.add("no faces", read("none.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"));
+    rows.add("a binary file that is not read", read("binary.off", "OFF BINARY\n"));
+    rows.add("a polygon of five corners",
+             read("five.off", "OFF\n5 1 0\n0 0 0\n1 0 0\n2 1 0\n1 2 0\n0 1 0\n5 0 1 2 3 4\n"));
+    rows.add("an edge of three triangles",
+             read("fins.off",
+                  "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n3 0 1 2\n3 1 0 "
+                  "3\n3 0 1 4\n"));
+    rows.add("two vertices at one place",
+             read("twice.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n1 0 0\n3 0 1 2\n"));
+    rows.add("a surface of one side", read("strip.off", off_file(moebius_strip(9))));
+    std::filesystem::current_path(before);
 }
 
 }  // namespace

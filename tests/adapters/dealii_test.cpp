@@ -27,6 +27,7 @@
 #include <nestgrid/adapters/dealii.hpp>
 #include <nestgrid/algorithms/isosurfaces.hpp>
 
+#include "changed_laws.hpp"
 #include "counting_allocator.hpp"
 #include "refusal.hpp"
 #include "solver_laws.hpp"
@@ -344,6 +345,29 @@ TEST(Dealii, FollowsTheTriangulation) {
     set();
     expect_sound_grid(grid, field);
     expect_closed_levels(grid, field, 0.5, 0.1);
+}
+
+/// Also where an adapter is made anew, which was told of no change.
+TEST(Dealii, RefusesWhatWasMadeBeforeAChange) {
+    Problem<3> p = std::move(problems<3>()[0]);
+    const auto set = [&] {
+        std::vector<double> values;
+        for (const Point& x : p.vertices()) values.push_back(norm(x) - 0.4);
+        p.set(values);
+    };
+    set();
+    const DealiiGrid<3> grid(*p.triangulation);
+    const DealiiField field(grid, *p.dofs, p.values);
+    MadeOnce<DealiiGrid<3>, std::remove_const_t<decltype(field)>> before(grid, field);
+    refine(*p.triangulation, 1, 9);
+    p.distribute(FE_Q<3>(1));
+    set();
+    const DealiiField finer(grid, *p.dofs, p.values);
+    expect_refused_after_change(before, grid, finer);
+    expect_usable(grid, finer);
+    const DealiiGrid<3> anew(*p.triangulation);
+    const DealiiField finer_anew(anew, *p.dofs, p.values);
+    expect_refused_after_change(before, anew, finer_anew);
 }
 
 /// One bit a vertex beside the triangulation; extraction into a stream takes a constant.

@@ -8,8 +8,10 @@
 #include <dune/grid/common/mcmgmapper.hh>
 #include <dune/grid/yaspgrid.hh>
 
+#include "changed_laws.hpp"
 #include "dune_laws.hpp"
 #include "dune_ug_grids.hpp"
+#include "refusal_rows.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -194,6 +196,53 @@ TEST(DuneGrid, NoticesThatItWasAdapted) {
     EXPECT_EQ(refusal<GridError>([&] { derive_hanging_nodes(grid); }),
               "the Dune grid was adapted; its adapter must be made anew");
     expect_laws(*solver);
+}
+
+TEST(DuneGrid, RefusesWhatWasMadeBeforeAChange) {
+    const auto solver = simplices<3>(2);
+    refine_at_sphere(*solver, 1, 0.1);
+    const DuneGrid grid(*solver);
+    using Grid = std::remove_const_t<decltype(grid)>;
+    const std::vector<double> values = at_vertices(*solver, ball);
+    const DuneVertexField field(grid, values);
+    using Field = std::remove_const_t<decltype(field)>;
+    MadeOnce<Grid, Field> before(grid, field);
+    refine_at_sphere(*solver, 2, 0.2);
+    const DuneGrid anew(*solver);
+    const std::vector<double> finer_values = at_vertices(*solver, ball);
+    const DuneVertexField finer(anew, finer_values);
+    expect_refused_after_change(before, anew, finer);
+    expect_usable(anew, finer);
+}
+
+TEST(Refusals, OfDune) {
+    RefusalRows rows("Dune");
+    rows.add("an element of an unknown shape",
+             [] { nestgrid::detail::dune_shape(Dune::GeometryTypes::none(3)); });
+    rows.add("a periodic grid", [] {
+        Yasp<2> periodic({1, 1}, {3, 4}, std::bitset<2>(1), 1);
+        DuneGrid{periodic};
+    });
+    rows.add("children that leave a gap", [] {
+        Yasp<2> solver({1, 1}, {3, 4});
+        solver.globalRefine(1);
+        DuneGrid<Yasp<2>, LosesAChild<Yasp<2>>>{solver};
+    });
+    const auto solver = simplices<3>(2);
+    const DuneGrid grid(*solver);
+    const std::vector<double> few(3);
+    rows.add("a vector of another size", [&] { DuneVertexField(grid, few); });
+    std::vector<double> values = noise(*solver);
+    const DuneVertexField field(grid, values);
+    const HierarchicalIndicator indicator(grid, field);
+    solver->globalRefine(1);
+    rows.add("values from before an adaptation",
+             [&] { HierarchicalIndicator(DuneGrid(*solver), field); });
+    values = noise(*solver);
+    rows.add<GridError>("an indicator from before an adaptation",
+                        [&] { isosurface(grid, field, 0, indicator); });
+    rows.add<GridError>("an adapter from before an adaptation",
+                        [&] { derive_hanging_nodes(grid); });
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
 #include "coarse_samples.hpp"
+#include "refusal_rows.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -101,6 +102,22 @@ TEST(OpenMesh, RefusesDeletedElementsAndPentagons) {
     pentagon.add_face(loop);
     expect_sentence<InvalidInput>([&] { coarse_from_openmesh(pentagon); }, {"face 0", "5 corners"});
     EXPECT_EQ(coarse_from_openmesh(PolyMesh()).element_count(), 0U);
+}
+
+TEST(Refusals, OfOpenMesh) {
+    RefusalRows rows("OpenMesh");
+    auto mesh = to_openmesh<PolyMesh>(torus(8, 6, true));
+    mesh.delete_face(OpenMesh::FaceHandle(5), true);
+    rows.add("deleted elements that are still there", [&] { coarse_from_openmesh(mesh); });
+    rows.add("a polygon of five corners", [] {
+        PolyMesh pentagon;
+        std::vector<OpenMesh::VertexHandle> loop;
+        for (int i = 0; i < 5; ++i) {
+            loop.push_back(pentagon.add_vertex({std::cos(1.2566 * i), std::sin(1.2566 * i), 0}));
+        }
+        pentagon.add_face(loop);
+        coarse_from_openmesh(pentagon);
+    });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 
+#include "changed_laws.hpp"
 #include "counting_allocator.hpp"
 #include "p4est_advection.hpp"
 #include "p4est_laws.hpp"
@@ -294,6 +295,26 @@ TEST(P4estFields, NoticeThatTheForestHasChanged) {
     EXPECT_THROW(isosurface(grid, cells, 0, indicator), GridError);
     EXPECT_THROW(isosurface(grid, cells, 0), GridError);
     EXPECT_THROW(isosurface(grid, nodal, 0), GridError);
+}
+
+TEST(P4estFields, RefuseWhatWasMadeBeforeAChange) {
+    Forest<3> forest = refined_at_sphere(3);
+    const P4estGrid<3> grid(forest.get());
+    const auto numbers = [](const auto& nodes) {
+        std::vector<double> values(static_cast<std::size_t>(nodes->num_local_nodes));
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(double(i));
+        return values;
+    };
+    const auto nodes = forest.nodes();
+    const std::vector<double> values = numbers(nodes);
+    const P4estNodalField field(grid, nodes.get(), std::span<const double>(values));
+    MadeOnce<P4estGrid<3>, std::remove_const_t<decltype(field)>> before(grid, field);
+    forest.refine([](const p8est_quadrant_t& q) { return q.level < 4; });
+    const auto finer_nodes = forest.nodes();
+    const std::vector<double> finer_values = numbers(finer_nodes);
+    const P4estNodalField finer(grid, finer_nodes.get(), std::span<const double>(finer_values));
+    expect_refused_after_change(before, grid, finer);
+    expect_usable(grid, finer);
 }
 
 TEST(P4estFields, RefuseWhatDoesNotFit) {

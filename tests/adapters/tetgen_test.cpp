@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Tetrahedra from TetGen: its arrays in place, its files, its mesher.
+#include <filesystem>
+
 #include <nestgrid/adapters/tetgen.hpp>
 
 #include "coarse_samples.hpp"
+#include "refusal_rows.hpp"
 
 using namespace nestgrid;
 using namespace nestgrid_test;
@@ -210,6 +213,44 @@ TEST(TetGenSentences, NameBadComplexes) {
     const std::string path = write_file("cavity.poly", cavity_poly);
     expect_sentence<InvalidInput>([&] { read_tetgen(path, {.switches = "r"}); },
                                   {"cavity.poly", "switches 'r'"});
+}
+
+TEST(Refusals, OfTetGen) {
+    RefusalRows rows("TetGen");
+    const auto before = std::filesystem::current_path();
+    std::filesystem::current_path(
+        testing::TempDir());  // sentences name the files as they are given
+    const auto read = [](const std::string& name, const std::string& content) {
+        return [name, content] {
+            write_file(name, content);
+            read_tetgen(name);
+        };
+    };
+    const std::string points = "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n";
+    rows.add<IoError>("no such file", [] { read_tetgen("missing.poly"); });
+    rows.add<IoError>("a file of another format", [] { read_tetgen("surface.stl"); });
+    rows.add<IoError>("an empty file", read("empty.node", ""));
+    rows.add<IoError>("a file that is cut", read("cut.poly", "9 3\n0 0 0 0\n"));
+    rows.add<IoError>("a coordinate that is no number",
+                      read("nan.poly", "4 3\n0 0 0 0\n1 nan 0 0\n"));
+    rows.add<IoError>("a facet of a point that is not there",
+                      read("wild.smesh", points + "1\n3 1 2 9\n0\n"));
+    write_file("none.ele", "0 4\n");
+    rows.add("no tetrahedra", read("none.node", two_nodes));
+    rows.add("a facet that is not plane", read("bent.smesh", points + "1\n4 0 1 2 3\n0\n"));
+    rows.add("a facet that has a point twice", read("again.smesh", points + "1\n3 0 1 1\n0\n"));
+    const std::string faces = box_faces(0, "");
+    const std::string box = "8 3\n" + box_points(0, 0, 1);
+    rows.add("facets that do not close",
+             read("open.smesh", box + "5 0\n" + faces.substr(0, faces.rfind("4 4")) + "0\n"));
+    rows.add("facets that intersect",
+             read("crossing.smesh", "16 3\n" + box_points(0, 0, 1) + box_points(8, 0.5, 1.5) +
+                                        "12 0\n" + faces + box_faces(8, "") + "0\n"));
+    rows.add("switches for something else", [&] {
+        write_file("box.smesh", box + "6 0\n" + faces + "0\n");
+        read_tetgen("box.smesh", {.switches = "r"});
+    });
+    std::filesystem::current_path(before);
 }
 
 }  // namespace

@@ -14,9 +14,10 @@
 #include <walk/for_each_element.hpp>
 #include <walk/project.hpp>
 
+#include "changed_laws.hpp"
 #include "element_in.hpp"
 #include "hyper_trees.hpp"
-#include "refusal.hpp"
+#include "refusal_rows.hpp"
 #include "solver_laws.hpp"
 
 using namespace nestgrid_test;
@@ -161,12 +162,12 @@ void expect_laws_beside_a_mask(vtkHyperTreeGrid& trees, unsigned seed) {
     const auto cells = static_cast<std::size_t>(trees.GetNumberOfVertices());
     const vtkNew<vtkBitArray> mask;
     for (std::size_t i = 0; i < cells; ++i) mask->InsertNextValue(random() % 9 == 0);
-    const HyperTreeGrid<dim> whole(trees);
+    const std::vector<double> values =
+        at_centres(HyperTreeGrid<dim>(trees), cells,
+                   [&](const Point& x) { return x[0] + x[1] * x[1] + x[2] - 1.03; });
     trees.SetMask(mask);
     const HyperTreeGrid<dim> grid(trees);
     using Element = typename HyperTreeGrid<dim>::Element;
-    const std::vector<double> values =
-        at_centres(whole, cells, [&](const Point& x) { return x[0] + x[1] * x[1] + x[2] - 1.03; });
     const CellAverages field(grid, [&](const Element& e) {
         EXPECT_EQ(grid.hidden(e), Hidden::not_at_all);
         return values[static_cast<std::size_t>(grid.index(e))];
@@ -283,6 +284,62 @@ TEST(HyperTreeGrid, MasksMayHideEverything) {
     EXPECT_EQ(isosurface(grid, field, 0.5).surface.simplices.size(), 0U);
 }
 
+/// The values of a function at the centres of cells, as a field on a hyper tree grid.
+struct Averages {
+    explicit Averages(vtkHyperTreeGrid& trees)
+        : grid{trees},
+          values{at_centres<3>(grid, static_cast<std::size_t>(trees.GetNumberOfVertices()),
+                               [](const Point& x) { return x[0] + x[1] * x[1] + x[2] - 1.03; })} {}
+    HyperTreeGrid<3> grid;
+    std::vector<double> values;
+
+    double operator()(const HyperTreeGrid<3>::Element& e) const {
+        return values[static_cast<std::size_t>(grid.index(e))];
+    }
+};
+
+/// Every change is noticed: of the trees, of the mask, of the coordinates.
+TEST(HyperTreeGrid, RefusesWhatWasMadeBeforeAChange) {
+    const vtkNew<vtkHyperTreeGrid> trees = random_trees({3, 4, 3}, 3, 1);
+    const vtkNew<vtkBitArray> mask;
+    for (vtkIdType i = 0; i < 100000; ++i) mask->InsertNextValue(0);
+    const std::vector<std::function<void()>> changes{
+        [&] {
+            const vtkNew<vtkHyperTreeGridNonOrientedCursor> cursor;
+            trees->InitializeNonOrientedCursor(cursor, 5);
+            while (!cursor->IsLeaf()) cursor->ToChild(0);
+            const vtkIdType next = trees->GetGlobalNodeIndexMax() + 1;
+            cursor->SubdivideLeaf();
+            for (unsigned char c = 0; c < 8; ++c) {
+                cursor->ToChild(c);
+                cursor->SetGlobalIndexFromLocal(next + c);
+                cursor->ToParent();
+            }
+        },
+        [&] { trees->SetMask(mask); },
+        [&] {
+            mask->SetValue(7, 1);
+            mask->Modified();
+        },
+        [&] {
+            trees->GetXCoordinates()->SetTuple1(0, -1);
+            trees->GetXCoordinates()->Modified();
+        },
+    };
+    for (const auto& change : changes) {
+        const Averages old_values(*trees);
+        const CellAverages old_field(old_values.grid, std::cref(old_values));
+        using Field = std::remove_const_t<decltype(old_field)>;
+        MadeOnce<HyperTreeGrid<3>, Field> before(old_values.grid, old_field);
+        change();
+        const Averages values(*trees);
+        const CellAverages field(values.grid, std::cref(values));
+        expect_refused_after_change(before, values.grid, field);
+        expect_changed("adapter", [&] { check_grid(old_values.grid, field); });
+        expect_usable(values.grid, field);
+    }
+}
+
 TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
     const vtkNew<vtkHyperTreeGrid> flat = random_trees({3, 3, 1}, 1, 1);
     expect_refused([&] { HyperTreeGrid<3> grid(*flat); }, "has dimension 2, not 3");
@@ -295,6 +352,41 @@ TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
     thirds->SetDimensions(2, 2, 2);
     thirds->SetBranchFactor(3);
     expect_refused([&] { HyperTreeGrid<3> grid(*thirds); }, "branch factor 3");
+}
+
+TEST(Refusals, OfHyperTreeGrids) {
+    RefusalRows rows("VTK hyper tree grids");
+    const auto trees = random_trees({3, 3, 3}, 1, 1);
+    rows.add("another dimension", [&] { HyperTreeGrid<2>{*trees}; });
+    rows.add("another branch factor", [] {
+        vtkNew<vtkHyperTreeGrid> thirds;
+        thirds->SetDimensions(2, 2, 2);
+        thirds->SetBranchFactor(3);
+        HyperTreeGrid<3>{*thirds};
+    });
+    const vtkNew<vtkBitArray> mask;
+    mask->InsertNextValue(0);
+    trees->SetMask(mask);
+    rows.add("a mask that is too short", [&] { HyperTreeGrid<3>{*trees}; });
+    trees->SetMask(nullptr);
+    const vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->InsertNextValue(0);
+    trees->GetCellData()->AddArray(ghosts);
+    rows.add("a ghost array that is too short", [&] { HyperTreeGrid<3>{*trees}; });
+    trees->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+    const HyperTreeGrid<3> grid(*trees);
+    const CellAverages field(grid, [](const HyperTreeGrid<3>::Element&) { return 1.0; });
+    const HierarchicalIndicator indicator(grid, field);
+    trees->Modified();
+    const HyperTreeGrid<3> anew(*trees);
+    const CellAverages field_anew(anew, [](const HyperTreeGrid<3>::Element&) { return 1.0; });
+    rows.add<GridError>("an adapter from before a change",
+                        [&] { CellAverages(grid, [](const auto&) { return 1.0; }); });
+    rows.add<GridError>("means of cells from before a change",
+                        [&] { HierarchicalIndicator(grid, field); });
+    rows.add<GridError>("an indicator from before a change",
+                        [&] { isosurface(anew, field_anew, 0.5, indicator); });
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <vtkCallbackCommand.h>
+#include <vtkCommand.h>
 #include <vtkFeatureEdges.h>
 #include <vtkSphere.h>
 
@@ -11,6 +13,7 @@
 #include <nestgrid/adapters/vtk_surface.hpp>
 
 #include "cut_cube.hpp"
+#include "refusal_rows.hpp"
 #include "sample_grids.hpp"
 #include "sphere_in_octree.hpp"
 
@@ -127,6 +130,41 @@ TEST(IsosurfaceSource, ReportsWhatGoesWrong) {
     source->Update();
     EXPECT_EQ(source->GetOutput()->GetNumberOfPolys(), 0);
     vtkObject::GlobalWarningDisplayOn();
+}
+
+/// Updates a source, and throws the sentence that it reports, without the name of the source.
+void update(vtkAlgorithm* source) {
+    std::string text;
+    const vtkNew<vtkCallbackCommand> observer;
+    observer->SetClientData(&text);
+    observer->SetCallback([](vtkObject*, unsigned long, void* client, void* said) {
+        *static_cast<std::string*>(client) += static_cast<const char*>(said);
+    });
+    const unsigned long tag = source->AddObserver(vtkCommand::ErrorEvent, observer);
+    source->Update();
+    source->RemoveObserver(tag);
+    const std::size_t begin = text.find("): ");
+    if (begin == std::string::npos) return;
+    throw InvalidInput(text.substr(begin + 3, text.find('\n', begin) - begin - 3));
+}
+
+TEST(Refusals, OfVtkSources) {
+    RefusalRows rows("VTK sources");
+    const vtkNew<IsosurfaceSource> source;
+    rows.add("no grid", [&] { update(source); });
+    OctreeGrid<3> grid(hexahedra(1));
+    std::vector<double> values(8, std::nan(""));
+    const NodeField field(grid, values);
+    source->SetGrid(grid, field);
+    rows.add("a value that is no number", [&] { update(source); });
+    values.assign(8, 1);
+    source->InvalidateField();
+    EXPECT_NO_THROW(update(source));
+    source->SetIsovalue(std::nan(""));
+    rows.add("an isovalue that is no number", [&] { update(source); });
+    source->SetIsovalue(0.5);
+    grid.refine_uniformly();
+    rows.add("a field from before a refinement", [&] { update(source); });
 }
 
 template <class Grid>

@@ -272,7 +272,7 @@ public:
         return std::numeric_limits<double>::infinity();
     }
     const HangingNodes* hanging() const override { return nullptr; }
-    std::uint64_t epoch() const override { return epoch_; }
+    bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
     bool stops_conform() const override { return true; }
 
 private:

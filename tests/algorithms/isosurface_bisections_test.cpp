@@ -318,7 +318,7 @@ public:
         return bound < least_ || hides ? 0 : bound;
     }
     const HangingNodes* hanging() const override { return of_->hanging(); }
-    std::uint64_t epoch() const override { return of_->epoch(); }
+    bool made_for(std::uint64_t epoch) const override { return of_->made_for(epoch); }
     bool stops_conform() const override { return true; }
 
 private:

@@ -89,7 +89,7 @@ public:
         return largest;
     }
     const HangingNodes* hanging() const override { return good_->hanging(); }
-    std::uint64_t epoch() const override { return good_->epoch(); }
+    bool made_for(std::uint64_t epoch) const override { return good_->made_for(epoch); }
 
 private:
     const HierarchicalIndicator* good_;
@@ -137,7 +137,7 @@ public:
         return good_->bound(rule, nodes);
     }
     const HangingNodes* hanging() const override { return nullptr; }
-    std::uint64_t epoch() const override { return 0; }
+    bool made_for(std::uint64_t epoch) const override { return good_->made_for(epoch); }
 
 private:
     const HierarchicalIndicator* good_;

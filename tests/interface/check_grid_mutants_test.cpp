@@ -75,6 +75,16 @@ bool put_half_beside(Forest<dim>& forest, std::mt19937& random) {
     return true;
 }
 
+/// A coarse element, smaller, somewhere else, with nodes of its own.
+template <int dim, class Coarse, class Place>
+void add_copy(Forest<dim>& forest, const Coarse& c, const Place& place) {
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t k = 0; k < topology(c.shape).corners; ++k) {
+        nodes.push_back(forest.add_node(place(c.corners[k])));
+    }
+    forest.add_coarse(c.shape, nodes, c.orientation, 0);
+}
+
 /// A refined element and one of its new nodes that another element makes, too.
 template <int dim>
 bool random_shared_node(const MutantGrid<dim>& grid, std::mt19937& random, std::uint32_t& element,
@@ -198,6 +208,20 @@ std::map<Law, Mutator<dim>> mutators() {
     };
     m[Law::coarse_contact] = [](Grid& g, Field&, Random& r) {
         return put_half_beside(g.forest, r);
+    };
+    m[Law::coarse_overlap] = [](Grid& g, Field&, Random& r) {
+        const auto c = g.forest.coarse(r() % g.coarse_count());
+        const std::size_t corners = topology(c.shape).corners;
+        Point middle{};
+        for (std::size_t k = 0; k < corners; ++k) {
+            middle = middle + (1.0 / double(corners)) * c.corners[k];
+        }
+        const Point towards = c.corners[r() % corners];
+        const double size = 0.3 + 0.1 * double(r() % 6);
+        add_copy(g.forest, c, [&](const Point& x) {
+            return middle + size * (x - middle) + 0.1 * (towards - middle);
+        });
+        return true;
     };
     m[Law::key_place] = [=](Grid& g, Field&, Random& r) {
         g.features = feature(Feature::own_keys);

@@ -5,6 +5,7 @@
 // in common, check_grid says so, and what is drawn there is open. The coarse grids are the leaves
 // of all families, which touch in parts of faces wherever a node hangs.
 #include <cmath>
+#include <initializer_list>
 #include <map>
 
 #include <nestgrid/algorithms/isosurface.hpp>
@@ -38,6 +39,14 @@ public:
             const std::size_t corners = topology(coarse.shape).corners;
             add(grid, context, coarse.element, coarse.shape, coarse.orientation,
                 {coarse.corners.begin(), coarse.corners.begin() + corners});
+        }
+    }
+
+    /// Some elements of another grid.
+    Leaves(const Leaves& from, std::initializer_list<std::size_t> which) {
+        for (const std::size_t i : which) {
+            leaves_.push_back(from.leaves_[i]);
+            leaves_.back().element = leaves_.size() - 1;
         }
     }
 
@@ -174,6 +183,182 @@ TYPED_TEST(Contacts, OfWholeFacesAreSlits) {
         EXPECT_EQ(noted, leaves.coarse_count() > 1);
         EXPECT_EQ(ends(isosurface(leaves, leaves, 0.55).surface).open, 0U);
     }
+}
+
+/// Whether a point lies in an element, or on its boundary, all faces being plane.
+template <class Coarse>
+bool lies_in(const Coarse& e, const Point& x, int dimension) {
+    const Topology& t = topology(e.shape);
+    const auto beyond = [&](const Point& from, const Point& normal) {
+        return dot(normal, x - from) > 1e-9 * norm(normal);
+    };
+    const auto& at = e.corners;
+    const Point upwards = cross(at[1] - at[0], at[2] - at[0]);
+    if (dimension == 2 && (beyond(at[0], upwards) || beyond(at[0], -1.0 * upwards))) return false;
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        const auto& corner = t.face[f].corner;
+        const Point along = at[corner[1]] - at[corner[0]];
+        const Point across =
+            dimension == 2 ? upwards : double(e.orientation) * (at[corner[2]] - at[corner[0]]);
+        if (beyond(at[corner[0]], cross(along, across))) return false;
+    }
+    return true;
+}
+
+/// Whether a node of one element lies on the other one, which does not have it.
+template <class Coarse>
+bool touches_loosely(const Coarse& one, const Coarse& other, int dimension) {
+    const auto corners_of = [](const Coarse& e) {
+        return std::span(e.ids).first(topology(e.shape).corners);
+    };
+    for (std::size_t k = 0; k < corners_of(one).size(); ++k) {
+        const bool shared =
+            std::ranges::find(corners_of(other), one.ids[k]) != corners_of(other).end();
+        if (!shared && lies_in(other, one.corners[k], dimension)) return true;
+    }
+    return false;
+}
+
+/// Two leaves share all nodes of the part in which they touch, be it a face, an edge or a point, or
+/// check_grid says that they do not.
+TYPED_TEST(Contacts, OfTwoElementsAreTold) {
+    using Grid = typename TypeParam::Grid;
+    constexpr int dimension = Grid::dimension;
+    std::mt19937 random(23);
+    for (Grid& grid : TypeParam::grids()) {
+        refine_at_sphere(grid, 2 * TypeParam::steps);
+        refine_at_random(grid, random, 2, 5 * TypeParam::steps, 3, 1000);
+        const Leaves<dimension> leaves(grid);
+        std::array<std::size_t, 2> seen{};
+        const std::size_t count = leaves.coarse_count();
+        for (std::size_t tried = 0; tried < 20000 && seen[0] + seen[1] < 400; ++tried) {
+            const std::size_t i = random() % count;
+            const std::size_t k = random() % count;
+            const auto one = leaves.coarse(i);
+            const auto other = leaves.coarse(k);
+            const bool apart = norm(one.corners[0] - other.corners[0]) > 0.5;
+            if (i == k || apart) continue;
+            const bool loose =
+                touches_loosely(one, other, dimension) || touches_loosely(other, one, dimension);
+            ++seen[loose ? 1 : 0];
+            const Leaves<dimension> two(leaves, {i, k});
+            const auto violation = check_grid(two, two);
+            ASSERT_EQ(violation.has_value(), loose)
+                << (violation ? violation->sentence : "nothing is said of two elements");
+            if (violation) {
+                EXPECT_EQ(violation->law, Law::coarse_contact) << violation->sentence;
+            }
+        }
+        EXPECT_GT(seen[0], 20U);
+    }
+}
+
+/// Elements at given places, one id a place.
+template <int dim>
+class Placed {
+public:
+    using Element = std::size_t;
+    static constexpr int dimension = dim;
+
+    void add(Shape shape, const std::vector<Point>& corners) {
+        CoarseElement<Element> e;
+        e.element = elements_.size();
+        e.shape = shape;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            e.corners[k] = corners[k];
+            e.ids[k] = ids_.try_emplace(corners[k], ids_.size()).first->second;
+        }
+        const double volume = measure(shape, std::span(e.corners).first(corners.size()));
+        if (dim == 3 && volume < 0) e.orientation = -1;
+        elements_.push_back(e);
+    }
+    void add_cube(const Point& from, double size) {
+        std::vector<Point> corners;
+        for (const Point& x : topology(Shape::hexahedron).reference) {
+            corners.push_back(from + size * x);
+        }
+        add(Shape::hexahedron, corners);
+    }
+    std::size_t coarse_count() const { return elements_.size(); }
+    CoarseElement<Element> coarse(std::size_t i) const { return elements_[i]; }
+    const Rule* split(Element) const { return nullptr; }
+    void children(Element, std::span<Element> out) const { std::ranges::fill(out, 0); }
+
+private:
+    std::vector<CoarseElement<Element>> elements_;
+    std::map<Point, std::uint64_t> ids_;
+};
+
+template <int dim>
+std::string sentence_of(const Placed<dim>& grid) {
+    const auto violation = check_grid(grid, ZeroField<Placed<dim>>{});
+    return violation ? violation->sentence : "";
+}
+
+TEST(ContactCases, InAnEdgeOrAPointAreTold) {
+    Placed<3> along_edge;
+    along_edge.add_cube({0, 0, 0}, 1);
+    along_edge.add_cube({1, 1, 0.5}, 1);
+    EXPECT_EQ(sentence_of(along_edge),
+              "node 7 of coarse element 0, at (1.000000, 1.000000, 1.000000), lies on face 0 of "
+              "coarse element 1, which does not have it: they touch and share no node there");
+    Placed<3> tip;
+    tip.add_cube({0, 0, 0}, 1);
+    tip.add(Shape::tetrahedron, {{0.5, 0.5, 1}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}});
+    EXPECT_EQ(sentence_of(tip),
+              "node 8 of coarse element 1, at (0.500000, 0.500000, 1.000000), lies on face 5 of "
+              "coarse element 0, which does not have it: they touch and share no node there");
+    Placed<3> crossed;
+    crossed.add(Shape::tetrahedron, {{0, 0, 0}, {2, 0, 0}, {1, 1, -1}, {1, -1, -1}});
+    crossed.add(Shape::tetrahedron, {{1, -1, 0}, {1, 1, 0}, {2, 0, 1}, {0, 0, 1}});
+    EXPECT_EQ(sentence_of(crossed),
+              "the edge 0-1 of coarse element 0 and the edge 4-5 of coarse element 1 cross at "
+              "(1.000000, 0.000000, 0.000000): they touch and share no node there");
+    Placed<2> flat;
+    flat.add(Shape::triangle, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    flat.add(Shape::triangle, {{0.5, 0.5, 0}, {1, 0.7, 0}, {0.7, 1, 0}});
+    EXPECT_EQ(sentence_of(flat),
+              "node 3 of coarse element 1, at (0.500000, 0.500000, 0.000000), lies on face 0 of "
+              "coarse element 0, which does not have it: they touch and share no node there");
+}
+
+TEST(ContactCases, InSharedEdgesAndPointsAreSound) {
+    Placed<3> grid;
+    grid.add_cube({0, 0, 0}, 1);
+    grid.add_cube({1, 1, 0}, 1);
+    grid.add_cube({-1, -1, -1}, 1);
+    EXPECT_EQ(sentence_of(grid), "");
+}
+
+/// A node on a bilinear face, and one beside it.
+TEST(ContactCases, WithCurvedFacesAreTold) {
+    const std::vector<Point> warped{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1.8}};
+    for (const bool touches : {true, false}) {
+        Placed<3> grid;
+        grid.add(Shape::hexahedron, warped);
+        const double z = 1 + 0.8 * 0.25 * 0.5 + (touches ? 0 : 0.01);
+        grid.add(Shape::tetrahedron, {{0.25, 0.5, z}, {0, 0, 3}, {1, 0, 3}, {0, 1, 3}});
+        EXPECT_EQ(!sentence_of(grid).empty(), touches) << sentence_of(grid);
+    }
+}
+
+TEST(ContactCases, OverlapsAreTold) {
+    Placed<3> grid;
+    grid.add_cube({0, 0, 0}, 1);
+    grid.add_cube({0.3, 0.4, 0.4}, 1);
+    EXPECT_EQ(
+        sentence_of(grid),
+        "the coarse elements 0 and 1 overlap: (0.500000, 0.500000, 0.500000) lies inside both");
+    std::vector<std::string> notes;
+    EXPECT_FALSE(check_grid(grid, ZeroField<Placed<3>>{}, {.contacts = true, .notes = &notes}));
+    EXPECT_EQ(std::ranges::count_if(
+                  notes, [](const std::string& note) { return note.find("overlap") != note.npos; }),
+              1);
+    Placed<2> folded;  // over their common edge
+    folded.add(Shape::triangle, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    folded.add(Shape::triangle, {{0, 0, 0}, {1, 0, 0}, {0.2, 0.9, 0}});
+    EXPECT_NE(sentence_of(folded).find("the coarse elements 0 and 1 overlap"), std::string::npos);
 }
 
 /// The first one is named, and all where they are allowed.

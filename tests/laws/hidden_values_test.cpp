@@ -194,9 +194,10 @@ void expect_nobody_looks_elsewhere(Forest<dim> forest, int steps) {
     const auto f = [](const Point& x) { return std::sin(3 * x[0]) + x[1] - x[2] * x[0] - 0.4; };
     const auto g = [](const Point& x) { return 0.5 - x[0] * x[1]; };
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     std::optional<std::array<Numbers, 3>> first;
     for (const std::optional<double> placeholder :
-         {std::optional{0.0}, {nan}, {0.3}, {-1e6}, std::optional<double>{}}) {
+         {std::optional{0.0}, {nan}, {0.3}, {-1e6}, {infinity}, {1e308}, std::optional<double>{}}) {
         SCOPED_TRACE(placeholder ? std::to_string(*placeholder) : "no value");
         using Field = PlaceholderField<dim>;
         const Field field(grid, f, unseen, placeholder);

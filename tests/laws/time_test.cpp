@@ -397,7 +397,7 @@ TEST(KeyFrames, RefuseWeightsThatDoNotFit) {
     expect_refused([] { KeyFrames({}, {}); }, "no frames");
 }
 
-TEST(Between, RefusesValuesThatAreNoNumbers) {
+TEST(KeyFrames, RefuseValuesBetweenFramesThatAreNoNumbers) {
     OctreeGrid<3> grid(hexahedra(1));
     grid.adapt([](const Leaf&) { return Mark::refine; });
     std::vector<NodalSamples> samples = TwoGrids::zeros(grid);
@@ -409,7 +409,7 @@ TEST(Between, RefusesValuesThatAreNoNumbers) {
         [&] {
             surface_at(frames, std::array{0.0F, 1e9F}, 0.0, 0.5);
         },
-        "not a usable number");
+        "may be no usable number, as great as 9999999");
 }
 
 // Volumes, which offer gradients and rows of values.

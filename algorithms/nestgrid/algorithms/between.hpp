@@ -8,8 +8,10 @@
 //     the frames; products with values of type float are exact in double, those with doubles are
 //     fused with the sum;
 //   - frames whose weight is 0 are not asked; where one weight is 1 and the others are 0, all
-//   values
-//     are those of the frame, bit for bit.
+//     values are those of the frame, bit for bit;
+//   - no value is judged here, for it may be that of a node that nobody looks at (holes.hpp). One
+//     that leaves the range of its type is infinite. KeyFrames refuse weights that could take a
+//     value of an element that is drawn out of the range.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +19,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include <nestgrid/algorithms/frame_weights.hpp>
@@ -52,16 +53,12 @@ public:
         }
     }
 
-    /// \throw InvalidInput where a value is not a number, infinite, or beyond an eighth of the
-    /// range
-    ///        of its type
     template <class Context>
     NodeMask coarse_values(std::size_t i, std::span<value_type> out, Context& context) const {
         return add_frames(~NodeMask{0}, out, [&](const Field& field, std::span<value_type> values) {
             return detail::call_coarse_values(field, context, i, values);
         });
     }
-    /// \throw InvalidInput likewise
     template <class Element, class Context>
     NodeMask new_values(const Element& e, NodeMask which, std::span<value_type> out,
                         Context& context) const {
@@ -92,7 +89,6 @@ public:
         return std::ranges::all_of(fields_,
                                    [](const Field* f) { return nestgrid::knows_stars(*f); });
     }
-    /// \throw InvalidInput as new_values()
     void row_values(NodeKey first, std::size_t stride,
                     std::span<value_type> out) const requires KnowsRows<Field> {
         for (std::size_t begin = 0; begin < out.size(); begin += room_) {
@@ -122,11 +118,10 @@ private:
     static double add_product(double weight, double value, double sum) {
         return std::fma(weight, value, sum);
     }
-    /// A value that is not a number may be one that is missing (holes.hpp).
-    static value_type usable(double value) {
-        if (std::abs(value) > static_cast<double>(std::numeric_limits<value_type>::max() / 8)) {
-            throw InvalidInput("a value between frames is not a usable number: " +
-                               std::to_string(value));
+    static value_type rounded(double value) {
+        using Limits = std::numeric_limits<value_type>;
+        if (std::abs(value) > static_cast<double>(Limits::max())) {
+            return value > 0 ? Limits::infinity() : -Limits::infinity();
         }
         return static_cast<value_type>(value);
     }
@@ -153,7 +148,7 @@ private:
             }
         }
         for (std::size_t i = 0; i < out.size(); ++i) {
-            if (((which & ~missing) >> i / stride_ & 1U) != 0) out[i] = usable(sum[i]);
+            if (((which & ~missing) >> i / stride_ & 1U) != 0) out[i] = rounded(sum[i]);
         }
         return missing;
     }

@@ -38,6 +38,7 @@ public:
     bool blends() const override { return factor_ > 1; }
     void weights(const NewNodes& nodes, std::span<float> s) const override;
     bool saturated() const override;
+    bool made_for(std::uint64_t epoch) const override { return indicator_->made_for(epoch); }
     double surface_error(std::span<const double> isovalues) const override {
         return indicator_->surface_error(isovalues, factor_ * epsilon_);
     }

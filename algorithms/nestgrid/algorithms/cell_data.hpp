@@ -36,7 +36,7 @@ public:
 
     /// Walks the whole hierarchy. The grid must outlive the field and stay as it is.
     /// \throw InvalidInput where the grid has no node keys of its own
-    CellAverages(const Grid& grid, LeafValue leaf_value);
+    CellAverages(const Grid& grid, LeafValue of_leaf);
 
     /// The value of the cell itself; only leaves have one.
     double leaf_value(const Element& leaf) const { return static_cast<double>(leaf_value_(leaf)); }
@@ -97,15 +97,15 @@ private:
 };
 
 template <class Grid, class LeafValue>
-CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue leaf_value)
-    : grid_{&grid}, leaf_value_{std::move(leaf_value)}, epoch_{epoch(grid)} {
+CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue of_leaf)
+    : grid_{&grid}, leaf_value_{std::move(of_leaf)}, epoch_{epoch(grid)} {
     if (!offers(grid, Feature::own_keys)) {
         throw InvalidInput("the means of cells need a grid with node keys of its own");
     }
     KeyTable<NodeKey, Running> running;
     detail::for_each_leaf(
         erase(grid, ZeroField<Grid>{}), [&](const Handle& leaf, std::span<const NodeKey> keys) {
-            const double value = this->leaf_value(detail::element_of<Element>(leaf));
+            const double value = leaf_value(detail::element_of<Element>(leaf));
             elsewhere_.add(value);
             for (const NodeKey key : keys) running.insert(key, {}).first->add(value);
         });

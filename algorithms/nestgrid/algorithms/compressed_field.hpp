@@ -15,6 +15,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include <nestgrid/detail/erase.hpp>
@@ -87,8 +88,15 @@ public:
     using value_type = Real;
     using Element = ElementOf<Grid>;
 
+    /// \throw InvalidInput where the values are of another number of nodes than the grid has
     CompressedField(const Grid& grid, const CompressedValues<Real>& values)
-        : grid_{&grid}, values_{&values}, made_for_{grid} {}
+        : grid_{&grid}, values_{&values}, made_for_{grid} {
+        const auto components = static_cast<std::size_t>(values.components());
+        if (values.size() == grid.node_count() * components) return;
+        throw InvalidInput("the compressed values are those of " +
+                           std::to_string(values.size() / components) +
+                           " nodes, but the grid has " + std::to_string(grid.node_count()));
+    }
 
     /// \throw GridError where the grid has changed since the field was made
     NodeMask coarse_values(std::size_t i, std::span<Real> out, Context<Grid>& context) const {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -55,6 +56,9 @@ public:
     /// Whether the criterion is to be used although it is not saturated. Then the surface may have
     /// open edges and lack parts, and no bound is given.
     virtual bool insists() const { return false; }
+    /// Whether this is of the grid in the state of this epoch: false where an indicator that the
+    /// criterion asks was computed in another one. Algorithms refuse such a criterion.
+    virtual bool made_for(std::uint64_t /*epoch*/) const { return true; }
     /// What Isosurface::surface_error is at most, for each of these isovalues, but for the flatness
     /// of triangles in leaves; infinity where the criterion promises nothing.
     virtual double surface_error(std::span<const double> /*isovalues*/) const {
@@ -93,6 +97,9 @@ public:
     virtual bool saturated() const { return true; }
     /// How eta spreads from the new nodes of a split element to its corners, where it is saturated.
     virtual Spread spread() const { return {}; }
+    /// Whether this is of the grid in the state of this epoch. One that keeps numbers of nodes says
+    /// whether they were computed then.
+    virtual bool made_for(std::uint64_t /*epoch*/) const { return true; }
     /// The new nodes of a split with eta <= epsilon, one bit each.
     virtual NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> keys,
                                    double epsilon) const {
@@ -138,6 +145,7 @@ public:
         return indicator_->stops_at_most(nodes.rule, nodes.keys, epsilon_) & ~nodes.outside;
     }
     bool saturated() const override { return indicator_->saturated(); }
+    bool made_for(std::uint64_t epoch) const override { return indicator_->made_for(epoch); }
     double surface_error(std::span<const double> isovalues) const override {
         return indicator_->surface_error(isovalues, epsilon_);
     }
@@ -213,6 +221,9 @@ public:
         return a_.needs_one_level_a_node() || b_.needs_one_level_a_node();
     }
     bool insists() const override { return a_.insists() || b_.insists(); }
+    bool made_for(std::uint64_t epoch) const override {
+        return a_.made_for(epoch) && b_.made_for(epoch);
+    }
 
 protected:
     TwoCriteria(A a, B b) : a_{std::move(a)}, b_{std::move(b)} {}
@@ -277,6 +288,7 @@ public:
     bool wants_positions() const override { return criterion_.wants_positions(); }
     bool saturated() const override { return false; }
     bool insists() const override { return true; }
+    bool made_for(std::uint64_t epoch) const override { return criterion_.made_for(epoch); }
 
 private:
     S criterion_;

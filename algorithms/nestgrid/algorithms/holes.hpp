@@ -58,6 +58,11 @@ public:
 
     /// Nodes of hidden leaves alone, or of no leaf.
     const NodeSet& unseen() const { return unseen_; }
+    /// \throw GridError where the grid has changed since its hidden elements were found
+    template <class Real>
+    void require_same(const Hierarchy<Real>& hierarchy) const {
+        made_for_.require_same(hierarchy, "the list of hidden elements");
+    }
     std::size_t hidden_leaves() const { return hidden_leaves_; }
     bool any() const { return hidden_leaves_ > 0; }
     std::size_t memory_bytes() const {
@@ -75,6 +80,7 @@ private:
     static constexpr Mark wholly_ = 1;
     static constexpr Mark partly_ = 2;
 
+    detail::MadeFor made_for_;
     std::vector<Mark> coarse_;
     std::vector<Mark> marks_;
     NodeSet unseen_;
@@ -101,12 +107,13 @@ public:
     /// \param hidden of this grid, and of all nodes at which the field has no value; for fields
     ///        that are drawn together, such as the frames of one
     /// \throw InvalidInput for a hierarchy with holes
+    /// \throw GridError where the grid has changed since its hidden elements were found
     Holes(const Hierarchy<Real>& inner, std::shared_ptr<const HiddenElements> hidden);
 
     const std::shared_ptr<const HiddenElements>& hidden() const { return hidden_; }
 
     std::unique_ptr<Task> open() const override {
-        made_for_.require_same(this->inner(), "the list of hidden elements");
+        hidden_->require_same(this->inner());
         return this->inner().open();
     }
     void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const override {
@@ -130,7 +137,6 @@ private:
     }
 
     std::shared_ptr<const HiddenElements> hidden_;
-    detail::MadeFor made_for_;
 };
 
 extern template class Holes<float>;

@@ -62,7 +62,8 @@ public:
     virtual bool corners_bound_elements() const { return false; }
     /// Nodes that hang, where the grid does not say so itself; or null.
     virtual const HangingNodes* hanging() const = 0;
-    virtual std::uint64_t epoch() const = 0;  ///< of the grid this was computed on
+    /// Whether this was computed on the grid in the state of this epoch.
+    virtual bool made_for(std::uint64_t epoch) const = 0;
     /// No value of component 0 is less; minus infinity where this is not known.
     virtual double least() const { return -std::numeric_limits<double>::infinity(); }
     /// No value of component 0 is greater; infinity where this is not known.
@@ -291,7 +292,8 @@ public:
     double least() const override { return facts_.least; }        ///< of the values at all nodes
     double greatest() const override { return facts_.greatest; }  ///< of the values at all nodes
     std::size_t node_count() const { return node_count_; }
-    std::uint64_t epoch() const override { return epoch_; }
+    std::uint64_t epoch() const { return epoch_; }  ///< of the grid this was computed on
+    bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
 
     /// Every node is made of nodes of the coarse grid by at most so many means, one of the other.
     int generations() const { return facts_.finest_level * facts_.longest_chain; }

@@ -33,11 +33,13 @@ public:
     /// \param frames of one hierarchy; borrowed
     /// \param weights one for each frame, finite; such as linear_weights()
     /// \throw GridError where the frames do not belong to one hierarchy in one state
-    /// \throw InvalidInput where there is no frame, or not one finite weight for each
+    /// \throw InvalidInput where there is no frame, and as set_weights()
     KeyFrames(std::vector<const HierarchicalIndicator*> frames, std::span<const float> weights);
 
     /// Goes to another time.
-    /// \throw InvalidInput where there is not one finite weight for each frame
+    /// \throw InvalidInput where there is not one finite weight for each frame, and where U(t)
+    /// could
+    ///        be beyond an eighth of the range of the type of its values
     void set_weights(std::span<const float> weights);
 
     double stop(NodeKey node) const override {
@@ -51,7 +53,7 @@ public:
     double offset_bound(NodeKey node) const override;
 
     const HangingNodes* hanging() const override { return first().hanging(); }
-    std::uint64_t epoch() const override { return first().epoch(); }
+    bool made_for(std::uint64_t epoch) const override { return frames_.made_for(epoch); }
     bool stops_conform() const override { return first().stops_conform(); }
     int finest_level() const override { return first().finest_level(); }
     bool one_level_a_node() const override { return first().one_level_a_node(); }

@@ -48,6 +48,7 @@ public:
     void weights(const NewNodes& nodes, std::span<float> s) const override;
     bool wants_positions() const override { return true; }
     bool saturated() const override;
+    bool made_for(std::uint64_t epoch) const override { return indicator_->made_for(epoch); }
 
     /// T at a point.
     double threshold(const Point& x) const;

@@ -33,10 +33,13 @@ public:
     /// 2^-level.
     double stop(NodeKey node) const override { return std::ldexp(1.0, -level(node)); }
 
+    bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
+
     /// S(x) = (level of x > deepest). The levels must outlive the criterion.
     Threshold deeper_than(int deepest) const { return {this, std::ldexp(1.0, -deepest - 1)}; }
 
 private:
+    std::uint64_t epoch_;                      // of the grid
     detail::NodeTable<std::int16_t> heights_;  // minus the level
 };
 

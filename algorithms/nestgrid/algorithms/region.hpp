@@ -16,6 +16,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <nestgrid/algorithms/criterion.hpp>
@@ -44,6 +45,8 @@ public:
 
     /// 1 in the region, 0 outside.
     double stop(NodeKey node) const override { return contains(node) ? 1 : 0; }
+    /// An empty region is one of every grid.
+    bool made_for(std::uint64_t epoch) const override { return !epoch_ || epoch == *epoch_; }
 
 private:
     struct Present {};
@@ -53,6 +56,7 @@ private:
     void sweep_levels(const Hierarchy<float>& hierarchy,
                       const std::function<bool(const Point&)>& inside);
 
+    std::optional<std::uint64_t> epoch_;  // of the grid, where there is one
     std::vector<std::uint8_t> dense_;
     KeyTable<NodeKey, Present> sparse_;
 };

@@ -50,17 +50,20 @@ using Measure = std::function<void(const MeasuredSplit& split, std::span<double>
 /// An indicator that keeps eta for every node. Movable; functions that measure return it.
 class SweptIndicator final : public Indicator {
 public:
+    /// \param epoch of the grid that the numbers were computed on
     /// \param isovalues of which the numbers promise a surface_error(); none by default
     SweptIndicator(detail::NodeTable<std::uint16_t> stops, const Spread& spread,
-                   std::span<const double> isovalues = {})
+                   std::uint64_t epoch, std::span<const double> isovalues = {})
         : stops_{std::move(stops)},
           spread_{spread},
+          epoch_{epoch},
           isovalues_(isovalues.begin(), isovalues.end()) {}
 
     double stop(NodeKey node) const override { return bfloat16_value(stops_.at(node)); }
     NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> nodes,
                            double epsilon) const override;
     Spread spread() const override { return spread_; }
+    bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
     /// The greatest number that is at most epsilon: all others are those of elements that are
     /// entered. Looks at all nodes.
     double surface_error(std::span<const double> isovalues, double epsilon) const override;
@@ -69,6 +72,7 @@ public:
 private:
     detail::NodeTable<std::uint16_t> stops_;  // bfloat16
     Spread spread_;
+    std::uint64_t epoch_;
     std::vector<double> isovalues_;
 };
 

@@ -47,6 +47,7 @@ public:
     }
     /// The least factor of the frames, and the sum of their slopes, weighted like `stop`.
     Spread spread() const override { return frames_.spread(); }
+    bool made_for(std::uint64_t epoch) const override { return frames_.made_for(epoch); }
 
 private:
     detail::WeightedFrames<SweptIndicator> frames_;

@@ -36,6 +36,22 @@ template <class Real>
 std::vector<FaceContact> face_contacts(const Hierarchy<Real>& hierarchy,
                                        std::span<const std::uint8_t> faces);
 
+/// Sentences about places where coarse elements touch in a point, and share no node there: a node
+/// of one lies on a face or an edge of the other, or two edges cross. Not told are elements of
+/// which faces are in contact, nodes that lie at one place, and what is hidden or masked. \param
+/// faces the result of single_faces() \param contacts the result of face_contacts()
+template <class Real>
+std::vector<std::string> point_contacts(const Hierarchy<Real>& hierarchy,
+                                        std::span<const std::uint8_t> faces,
+                                        std::span<const FaceContact> contacts);
+
+/// Sentences about pairs of coarse elements of which one contains the middle of the other, or a
+/// point half-way between that and a corner, so that they overlap. Elements that overlap in less
+/// may not be told, and those that are hidden, in part or wholly, or masked are not looked at.
+/// Nothing is said of surfaces in space, which may cross themselves.
+template <class Real>
+std::vector<std::string> coarse_overlaps(const Hierarchy<Real>& hierarchy);
+
 /// For each coarse element, one bit each, the faces on the boundary of the domain: single faces
 /// that touch no other one, or that are one side of a slit. Faces that touch others in a part are
 /// none: what is drawn on both sides does not fit together there, and its edges are open.

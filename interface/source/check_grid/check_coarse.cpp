@@ -110,14 +110,23 @@ void GridChecker::note_pieces() {
 }
 
 void GridChecker::check_contacts() {
-    for (const FaceContact& contact :
-         face_contacts<double>(*hierarchy_, single_faces<double>(*hierarchy_))) {
-        if (contact.is_slit) continue;  // its corners are noted
-        const std::string sentence =
-            contact.text() +
-            ", touch in a part whose corners they do not share: what is drawn there is open";
-        if (!options_->contacts) fail(Law::coarse_contact, sentence);
+    const auto tell = [&](Law law, const std::string& sentence) {
+        if (!options_->contacts) fail(law, sentence);
         if (options_->notes != nullptr) options_->notes->push_back(sentence);
+    };
+    const std::vector<std::uint8_t> faces = single_faces<double>(*hierarchy_);
+    const std::vector<FaceContact> contacts = face_contacts<double>(*hierarchy_, faces);
+    for (const FaceContact& contact : contacts) {
+        if (contact.is_slit) continue;  // its corners are noted
+        tell(Law::coarse_contact,
+             contact.text() +
+                 ", touch in a part whose corners they do not share: what is drawn there is open");
+    }
+    for (const auto& sentence : point_contacts<double>(*hierarchy_, faces, contacts)) {
+        tell(Law::coarse_contact, sentence);
+    }
+    for (const auto& sentence : coarse_overlaps<double>(*hierarchy_)) {
+        tell(Law::coarse_overlap, sentence);
     }
 }
 

@@ -7,21 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <utility>
 
-#define BOOST_ALLOW_DEPRECATED_HEADERS  // which Boost 1.74 itself includes
 #include <boost/container/static_vector.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
+
+#include "box_tree.hpp"
 
 namespace nestgrid::detail {
 
 namespace {
-
-namespace bg = boost::geometry;
 
 constexpr double tolerance = 1e-6;  // of the size of a face
 
@@ -167,22 +161,6 @@ bool face_each_other(const Face& a, const Face& b) {
     return dot(a.side, b.side) < (a.corners == 2 ? 0.9 : -0.9);
 }
 
-using Corner = bg::model::point<double, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Corner>;
-
-Box box_around(const Face& face) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Point lo{infinity, infinity, infinity};
-    Point hi{-infinity, -infinity, -infinity};
-    for (std::size_t k = 0; k < face.corners; ++k) {
-        for (std::size_t d = 0; d < 3; ++d) {
-            lo[d] = std::min(lo[d], face.x[k][d] - face.slack);
-            hi[d] = std::max(hi[d], face.x[k][d] + face.slack);
-        }
-    }
-    return {Corner{lo[0], lo[1], lo[2]}, Corner{hi[0], hi[1], hi[2]}};
-}
-
 template <class Real>
 std::vector<Face> find_faces(const Hierarchy<Real>& hierarchy,
                              std::span<const std::uint8_t> single) {
@@ -216,18 +194,14 @@ template <class Real>
 std::vector<FaceContact> face_contacts(const Hierarchy<Real>& hierarchy,
                                        std::span<const std::uint8_t> faces) {
     const std::vector<Face> all = find_faces(hierarchy, faces);
-    using Entry = std::pair<Box, std::size_t>;
-    std::vector<Entry> entries;
-    for (std::size_t i = 0; i < all.size(); ++i) entries.emplace_back(box_around(all[i]), i);
-    const bg::index::rtree<Entry, bg::index::linear<16>> tree(entries);
+    std::vector<BoxTree::Box> boxes;
+    for (const Face& face : all) {
+        boxes.push_back(BoxTree::around(std::span(face.x).first(face.corners), face.slack));
+    }
+    BoxTree tree(boxes);
     std::vector<FaceContact> contacts;
-    std::vector<Entry> near;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        near.clear();
-        tree.query(bg::index::intersects(entries[i].first), std::back_inserter(near));
-        std::sort(near.begin(), near.end(),
-                  [](const Entry& a, const Entry& b) { return a.second < b.second; });
-        for (const auto& [box, k] : near) {
+        for (const std::size_t k : tree.near(boxes[i])) {
             const Face& a = all[i];
             const Face& b = all[k];
             if (k <= i || a.element == b.element || !face_each_other(a, b)) continue;

@@ -24,10 +24,7 @@ DealiiGrid<dim, spacedim>::DealiiGrid(const Triangulation& triangulation,
     halving_ = &dyadic_rule(dim == 1   ? Shape::segment
                             : dim == 2 ? Shape::quadrilateral
                                        : Shape::hexahedron);
-    refined_ = triangulation.signals.any_change.connect([this] {
-        ++epoch_;
-        update();
-    });
+    refined_ = triangulation.signals.any_change.connect([this] { update(); });
     update();
 }
 
@@ -180,6 +177,11 @@ void DealiiGrid<dim, spacedim>::find_rules() {
 
 template <int dim, int spacedim>
 void DealiiGrid<dim, spacedim>::update() {
+    // The counts tell an adapter that was made after a change from one that was made before.
+    for (const std::size_t count :
+         {std::size_t{triangulation_->n_cells()}, std::size_t{triangulation_->n_vertices()}}) {
+        epoch_ = static_cast<std::uint64_t>(detail::mix(NodeKey{epoch_} + NodeKey{count} + 1U));
+    }
     all_cubes_ = triangulation_->all_reference_cells_are_hyper_cube();
     if (!all_cubes_) find_rules();
     const auto corners_of = [&](const Cell& c) {

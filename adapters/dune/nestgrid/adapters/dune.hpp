@@ -93,11 +93,15 @@ public:
                             });
     }
     bool conforming() const { return Traits::conforming; }
-    /// From the number of elements and vertices: it does not notice that as many vanished as came.
+    /// From the numbers of elements and vertices, of all leaves and on each level: it does not
+    /// notice that as many vanished on every level as came there.
     std::uint64_t epoch() const {
         auto sum = static_cast<NodeKey>(grid_->maxLevel());
         for (const int codimension : {0, dimension}) {
             sum = detail::mix(sum + static_cast<NodeKey>(grid_->leafIndexSet().size(codimension)));
+            for (int level = 0; level <= grid_->maxLevel(); ++level) {
+                sum = detail::mix(sum + static_cast<NodeKey>(grid_->size(level, codimension)));
+            }
         }
         return static_cast<std::uint64_t>(sum);
     }

@@ -7,7 +7,7 @@
 //
 // Nodes are named by p4est's own coordinates in the first tree that has them, so keys agree on
 // every process. The forest must stay where it is; after it was refined or coarsened, indicators
-// and fields must be made anew (its revision is the grid's epoch).
+// and fields must be made anew (its revision and number of leaves are the grid's epoch).
 #pragma once
 
 #include <cmath>
@@ -76,7 +76,10 @@ public:
             if ((which >> k & 1U) != 0) out[k] = mapped(trees_.canonical(node(e, new_node_[k])));
         }
     }
-    std::uint64_t epoch() const { return static_cast<std::uint64_t>(forest_->revision); }
+    std::uint64_t epoch() const {
+        const auto leaves = static_cast<std::uint64_t>(forest_->global_num_quadrants);
+        return leaves << 32U ^ static_cast<std::uint64_t>(forest_->revision);
+    }
 
     // What fields need.
     const Forest& forest() const { return *forest_; }

@@ -142,7 +142,8 @@ public:
         }
         return mask;
     }
-    std::uint64_t epoch() const { return epoch_; }
+    /// Another one after each change, also where another grid was assigned to this one.
+    std::uint64_t epoch() const { return std::uint64_t{node_count_} << 32U ^ epoch_; }
 
     /// Numbers of the new nodes of a refined element, valid until the next call with the context.
     std::span<const std::uint32_t> new_nodes(const Element& e, Context& context) const;

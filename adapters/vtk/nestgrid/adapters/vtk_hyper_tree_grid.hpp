@@ -9,6 +9,7 @@
 // (cell_data.hpp).
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@
 
 namespace nestgrid {
 
-/// A hyper tree grid of dimension 2 or 3. It must outlive this object and not change meanwhile.
+/// A hyper tree grid of dimension 2 or 3. It must outlive this object, which must be made anew when
+/// the grid has changed: when trees were refined, when it has another mask, other ghost cells or
+/// coordinates, or when one of these was told to be Modified().
 template <int dim>
 class HyperTreeGrid {
 public:
@@ -47,11 +50,13 @@ public:
     explicit HyperTreeGrid(vtkHyperTreeGrid& grid);
 
     std::size_t coarse_count() const { return trees_.size(); }
+    /// \throw GridError where the grid has changed since this object was made
     CoarseElement<Element> coarse(std::size_t i) const {
+        require_same(trees_[i]);
         CoarseElement<Element> c;
         std::array<unsigned, 3> at{};
-        grid_->GetLevelZeroCoordinatesFromIndex(trees_[i]->GetTreeIndex(), at[0], at[1], at[2]);
-        c.element = {trees_[i], 0, 0, {at[0], at[1], at[2]}};
+        grid_->GetLevelZeroCoordinatesFromIndex(trees_[i].index, at[0], at[1], at[2]);
+        c.element = {trees_[i].tree, 0, 0, {at[0], at[1], at[2]}};
         c.shape = rule_->parent;
         for (std::size_t k = 0; k < max_corners; ++k) {
             const Place corner = step(c.element.place, k);
@@ -93,10 +98,30 @@ public:
         return hidden_.empty() ? Hidden::not_at_all : hidden_[static_cast<std::size_t>(index(e))];
     }
 
+    /// From the times at which VTK says that the grid, its mask, ghost cells and coordinates were
+    /// changed, and from the sizes that trees had when this object was made. That trees were
+    /// refined since is noticed by coarse().
+    std::uint64_t epoch() const;
+
     /// Number of an element, leaf or not, in the arrays of cell data.
     vtkIdType index(const Element& e) const { return e.tree->GetGlobalIndexFromLocal(e.vertex); }
 
 private:
+    struct Tree {
+        vtkHyperTree* tree;
+        vtkIdType index;     ///< in the grid
+        vtkIdType vertices;  ///< that it had when it was read
+    };
+
+    void require_same(const Tree& tree) const {
+        const bool is_same = grid_->GetTree(tree.index) == tree.tree &&
+                             tree.tree->GetNumberOfVertices() == tree.vertices && epoch() == epoch_;
+        if (!is_same) refuse_changed();
+    }
+    [[noreturn]] static void refuse_changed() {
+        throw GridError(
+            "the hyper tree grid has changed since its adapter was made: make another one");
+    }
     Hidden read_mask(const Element& e, bool masked);
 
     /// A step in the directions in which corner, or child, k lies from the first one.
@@ -118,7 +143,9 @@ private:
     int depth_ = 0;
     std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
     std::array<std::vector<double>, 3> coordinates_;
-    std::vector<vtkHyperTree*> trees_;
+    std::vector<Tree> trees_;
+    NodeKey sizes_ = 0;                       // of all trees, mixed
+    std::uint64_t epoch_ = 0;                 // when this object was made
     vtkBitArray* mask_ = nullptr;             // where there is one
     vtkUnsignedCharArray* ghosts_ = nullptr;  // likewise
     std::vector<Hidden> hidden_;              // by index; empty without a mask and ghosts

@@ -34,7 +34,10 @@ HyperTreeGrid<dim>::HyperTreeGrid(vtkHyperTreeGrid& grid)
         for (unsigned i = 0; i < points[d]; ++i) coordinates_[d].push_back(x[d]->GetTuple1(i));
     }
     for (vtkIdType i = 0; i < grid.GetMaxNumberOfTrees(); ++i) {
-        if (vtkHyperTree* tree = grid.GetTree(i)) trees_.push_back(tree);
+        if (vtkHyperTree* tree = grid.GetTree(i)) {
+            trees_.push_back({tree, i, tree->GetNumberOfVertices()});
+            sizes_ = detail::mix(sizes_ + static_cast<NodeKey>(trees_.back().vertices));
+        }
     }
     const vtkIdType cells = grid.GetGlobalNodeIndexMax() + 1;
     const auto require_entry_for_each = [&](const char* name, vtkIdType entries) {
@@ -53,8 +56,21 @@ HyperTreeGrid<dim>::HyperTreeGrid(vtkHyperTreeGrid& grid)
     }
     if (mask_ != nullptr || ghosts_ != nullptr) {
         hidden_.resize(static_cast<std::size_t>(cells));
-        for (vtkHyperTree* tree : trees_) read_mask({tree, 0, 0, {}}, false);
+        for (const Tree& tree : trees_) read_mask({tree.tree, 0, 0, {}}, false);
     }
+    epoch_ = epoch();
+}
+
+template <int dim>
+std::uint64_t HyperTreeGrid<dim>::epoch() const {
+    NodeKey sum = detail::mix(sizes_ + static_cast<NodeKey>(grid_->GetMTime()));
+    for (vtkObject* part : std::initializer_list<vtkObject*>{
+             grid_->GetMask(), grid_->GetGhostCells(), grid_->GetXCoordinates(),
+             grid_->GetYCoordinates(), grid_->GetZCoordinates()}) {
+        const auto time = part == nullptr ? vtkMTimeType{0} : part->GetMTime();
+        sum = detail::mix(sum + static_cast<NodeKey>(time));
+    }
+    return static_cast<std::uint64_t>(sum);
 }
 
 template <int dim>

@@ -51,6 +51,11 @@ public:
     /// The least factor of the frames, and the sum of their slopes. Of frames whose weight is not
     /// 0.
     const Spread& spread() const { return spread_; }
+    /// Whether all frames, also those whose weight is 0, are of the grid in the state of this
+    /// epoch.
+    bool made_for(std::uint64_t epoch) const {
+        return std::ranges::all_of(frames_, [&](const Frame* f) { return f->made_for(epoch); });
+    }
     /// How many weights are not 0.
     std::size_t term_count() const { return terms_.size(); }
     const std::vector<const Frame*>& frames() const { return frames_; }
