@@ -108,7 +108,7 @@ class Octree(Field):
     origin       position of the corner (0, 0, 0); None: 0
     coordinates  in the place of spacing and origin: of the corners of roots, one ascending sequence
                  for each direction
-    masked       (n,): leaves that are not drawn; None: all are
+    masked       (n,): leaves that are not drawn, as those with a value that is nan; None: all are
     name         of the data, for files and tables
     unit         of length, such as "mm"
 

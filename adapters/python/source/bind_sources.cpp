@@ -99,7 +99,8 @@ std::shared_ptr<Frames> frames_of(const std::vector<py::array>& arrays,
     for (const py::array& array : arrays) {
         samples.push_back(samples_of(array, spacing, origin, direction));
     }
-    auto source = make_frames(samples);
+    auto source =
+        interruptible(1, [samples](const Call& call) { return make_frames(samples, call); });
     linear_weights(times, times.front());
     return std::make_shared<Frames>(Frames{times, std::move(source)});
 }
@@ -121,8 +122,8 @@ std::shared_ptr<OctreeSource> octree_of(const Leaves& leaves, const Numbers& val
     arrays.masked = span_of(masked);
     arrays.coordinates = coordinates;
     const std::array memory{keep(leaves), keep(values), keep(masked)};
-    return interruptible(1, [arrays, memory](const Call&) {
-        return std::shared_ptr<OctreeSource>(make_octree(arrays));
+    return interruptible(1, [arrays, memory](const Call& call) {
+        return std::shared_ptr<OctreeSource>(make_octree(arrays, call));
     });
 }
 
@@ -148,8 +149,8 @@ std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int
 
 /// The field, or its frames, and its name.
 py::tuple loaded(const std::string& path, const std::string& array) {
-    const auto field = interruptible(1, [path, array](const Call&) {
-        return std::make_shared<LoadedField>(load_hierarchy(path, array));
+    const auto field = interruptible(1, [path, array](const Call& call) {
+        return std::make_shared<LoadedField>(load_hierarchy(path, array, call));
     });
     if (field->alone) {
         return py::make_tuple(std::shared_ptr<Source>(std::move(field->alone)), field->name);
@@ -177,8 +178,10 @@ void bind_sources(py::module_& m) {
         "volume",
         [](const py::array& array, const Numbers& spacing, const Numbers& origin,
            const Numbers& direction) {
-            return std::shared_ptr<Source>(
-                make_volume(samples_of(array, spacing, origin, direction)));
+            const Samples samples = samples_of(array, spacing, origin, direction);
+            return interruptible(1, [samples](const Call& call) {
+                return std::shared_ptr<Source>(make_volume(samples, call));
+            });
         },
         py::arg("array"), py::arg("spacing"), py::arg("origin"), py::arg("direction"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),

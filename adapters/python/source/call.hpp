@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <variant>
 
 #include <nestgrid/hierarchy.hpp>
@@ -49,6 +50,11 @@ public:
     void stop() { stopped_.store(true, std::memory_order_relaxed); }
     bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
 
+    /// A hierarchy that borrows another one, and throws Stopped when this call is to end.
+    template <class Real>
+    std::unique_ptr<const Hierarchy<Real>> stoppable(const Hierarchy<Real>& hierarchy) const {
+        return std::make_unique<const Stoppable<Real>>(hierarchy, stopped_);
+    }
     /// Calls function(hierarchy) with the Hierarchy<float> or Hierarchy<double>, which throws
     /// Stopped when this call is to end.
     template <class Function>

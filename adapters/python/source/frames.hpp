@@ -7,10 +7,10 @@
 #include <optional>
 
 #include <nestgrid/algorithms/between.hpp>
-#include <nestgrid/algorithms/holes.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 
+#include "missing.hpp"
 #include "source.hpp"
 
 namespace nestgrid::python {
@@ -23,14 +23,14 @@ public:
     /// \param memory that the grid and the fields borrow from; may be null
     /// \param missing whether fields have nodes without a value, beside which no frame is drawn
     GridFrames(std::shared_ptr<const Grid> grid, std::vector<Field> fields,
-               std::shared_ptr<const void> memory, bool missing)
+               std::shared_ptr<const void> memory, bool missing, const Call& call)
         : memory_{std::move(memory)}, grid_{std::move(grid)}, fields_{std::move(fields)} {
         std::vector<const Hierarchy<Real>*> frames;
         for (const Field& field : fields_) {
             erased_.push_back(std::make_unique<Erased>(*grid_, field));
             frames.push_back(erased_.back().get());
         }
-        if (missing) hidden_ = HiddenElements::of_all<Real>(frames);
+        if (missing) hidden_ = find_hidden<Real>(frames, call);
         for (const Hierarchy<Real>* frame : frames) {
             if (hidden_) {
                 holes_.push_back(std::make_unique<Holes<Real>>(*frame, hidden_));

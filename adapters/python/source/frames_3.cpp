@@ -4,9 +4,9 @@
 
 namespace nestgrid::python {
 
-std::shared_ptr<FrameSource> make_frames_3(const std::vector<Samples>& frames) {
+std::shared_ptr<FrameSource> make_frames_3(const std::vector<Samples>& frames, const Call& call) {
     return with_sample_type(frames.front().type, [&]<class Sample>(Sample) {
-        return lattice_frames<3, Sample>(frames);
+        return lattice_frames<3, Sample>(frames, call);
     });
 }
 

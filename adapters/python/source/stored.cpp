@@ -43,12 +43,12 @@ public:
     using Grid = StoredGrid<Family>;
     using Field = NodeField<Grid, double>;
 
-    Stored(StoredHierarchy<Family> stored, const std::string& array)
+    Stored(StoredHierarchy<Family> stored, const std::string& array, const Call& call)
         : stored_(std::move(stored)),
           field_(stored_.grid, stored_.fields[index_of(stored_.fields, array)].values),
           hierarchy_(stored_.grid, field_) {
         if (any_missing(stored_.fields[index_of(stored_.fields, array)])) {
-            holes_.emplace(hierarchy_);
+            holes_.emplace(hierarchy_, find_hidden<double>({&hierarchy_}, call));
         }
     }
 
@@ -65,12 +65,13 @@ private:
 };
 
 template <class Family>
-LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& array) {
+LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& array,
+                         const Call& call) {
     LoadedField loaded;
     loaded.times = stored.times;
     loaded.name = stored.fields[index_of(stored.fields, array)].name;
     if (stored.times.size() == 1) {
-        loaded.alone = std::make_unique<Stored<Family>>(std::move(stored), array);
+        loaded.alone = std::make_unique<Stored<Family>>(std::move(stored), array, call);
         return loaded;
     }
     using Grid = StoredGrid<Family>;
@@ -83,35 +84,37 @@ LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& arra
     }
     loaded.frames = std::make_shared<GridFrames<Grid, Field>>(
         std::shared_ptr<const Grid>(kept, &kept->grid), std::move(fields), kept,
-        any_missing(kept->fields[index]));
+        any_missing(kept->fields[index]), call);
     return loaded;
 }
 
 /// \return whether the file holds this family
 template <class Family>
 bool load_family(const HierarchyHeader& header, const std::filesystem::path& path,
-                 const std::string& array, LoadedField& loaded) {
+                 const std::string& array, const Call& call, LoadedField& loaded) {
     if (header.family != Family::name || header.dimension != Family::dimension ||
         header.corners != Family::max_corners) {
         return false;
     }
-    loaded = loaded_field(read_hierarchy<Family>(path), array);
+    loaded = loaded_field(read_hierarchy<Family>(path), array, call);
     return true;
 }
 
 template <class... Families>
-LoadedField load_one_of(const std::filesystem::path& path, const std::string& array) {
+LoadedField load_one_of(const std::filesystem::path& path, const std::string& array,
+                        const Call& call) {
     const HierarchyHeader header = read_hierarchy_header(path);
     LoadedField loaded;
-    if ((load_family<Families>(header, path, array, loaded) || ...)) return loaded;
+    if ((load_family<Families>(header, path, array, call, loaded) || ...)) return loaded;
     throw IoError("'" + path.string() + "' holds a family that is not known: " + header.family);
 }
 
 }  // namespace
 
-LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array) {
+LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array,
+                           const Call& call) {
     return load_one_of<Bisection<2>, Bisection<3>, RedGreen<2, 3>, RedGreen<2, 4>, RedGreen<3, 4>,
-                       RedGreen<3, 8>, Octree<2>, Octree<3>, Prism>(path, array);
+                       RedGreen<3, 8>, Octree<2>, Octree<3>, Prism>(path, array, call);
 }
 
 }  // namespace nestgrid::python

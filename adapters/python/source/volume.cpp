@@ -33,14 +33,15 @@ void require_one_layout(const std::vector<Samples>& frames) {
 
 }  // namespace
 
-std::unique_ptr<Source> make_volume(const Samples& samples) {
-    return dimension_of(samples) == 2 ? make_volume_2(samples) : make_volume_3(samples);
+std::unique_ptr<Source> make_volume(const Samples& samples, const Call& call) {
+    return dimension_of(samples) == 2 ? make_volume_2(samples, call) : make_volume_3(samples, call);
 }
 
-std::shared_ptr<FrameSource> make_frames(const std::vector<Samples>& frames) {
+std::shared_ptr<FrameSource> make_frames(const std::vector<Samples>& frames, const Call& call) {
     if (frames.empty()) throw InvalidInput("there are no frames");
     require_one_layout(frames);
-    return dimension_of(frames.front()) == 2 ? make_frames_2(frames) : make_frames_3(frames);
+    return dimension_of(frames.front()) == 2 ? make_frames_2(frames, call)
+                                             : make_frames_3(frames, call);
 }
 
 }  // namespace nestgrid::python

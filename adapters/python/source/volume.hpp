@@ -12,7 +12,6 @@
 #include <type_traits>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/holes.hpp>
 
 #include "frames.hpp"
 #include "source.hpp"
@@ -65,12 +64,14 @@ class Volume final : public PrerolledSource {
 public:
     using Grid = LatticeBisection<dim>;
 
-    explicit Volume(const Samples& samples)
+    Volume(const Samples& samples, const Call& call)
         : memory_{samples.memory},
           grid_(lattice_geometry<dim>(samples)),
           field_{lattice_field<Sample>(grid_, samples)},
           hierarchy_{erase(grid_, field_)} {
-        if (any_missing<Sample>(samples, grid_.sample_count())) holes_.emplace(hierarchy_);
+        if (any_missing<Sample>(samples, grid_.sample_count())) {
+            holes_.emplace(hierarchy_, find_hidden<Real>({&hierarchy_}, call));
+        }
     }
 
     AnyHierarchy hierarchy() const override {
@@ -79,17 +80,19 @@ public:
     }
 
 private:
+    using Real = typename LatticeField<Grid, Sample>::value_type;
+
     std::shared_ptr<const void> memory_;
     Grid grid_;
     LatticeField<Grid, Sample> field_;
     decltype(erase(std::declval<const Grid&>(),
                    std::declval<const LatticeField<Grid, Sample>&>())) hierarchy_;
-    std::optional<Holes<typename LatticeField<Grid, Sample>::value_type>> holes_;
+    std::optional<Holes<Real>> holes_;
 };
 
 /// The samples of several arrays of one layout as frames.
 template <int dim, class Sample>
-std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) {
+std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames, const Call& call) {
     using Grid = LatticeBisection<dim>;
     using Field = LatticeField<Grid, Sample>;
     const auto grid = std::make_shared<const Grid>(lattice_geometry<dim>(frames.front()));
@@ -101,7 +104,8 @@ std::shared_ptr<FrameSource> lattice_frames(const std::vector<Samples>& frames) 
         fields.push_back(lattice_field<Sample>(*grid, frame));
         memory->push_back(frame.memory);
     }
-    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), memory, missing);
+    return std::make_shared<GridFrames<Grid, Field>>(grid, std::move(fields), memory, missing,
+                                                     call);
 }
 
 /// Calls function(Sample{}) with the type of a name.
@@ -124,9 +128,9 @@ auto with_sample_type(const std::string& type, const Function& function) {
 }
 
 // Each is compiled by itself.
-std::unique_ptr<Source> make_volume_2(const Samples& samples);
-std::unique_ptr<Source> make_volume_3(const Samples& samples);
-std::shared_ptr<FrameSource> make_frames_2(const std::vector<Samples>& frames);
-std::shared_ptr<FrameSource> make_frames_3(const std::vector<Samples>& frames);
+std::unique_ptr<Source> make_volume_2(const Samples& samples, const Call& call);
+std::unique_ptr<Source> make_volume_3(const Samples& samples, const Call& call);
+std::shared_ptr<FrameSource> make_frames_2(const std::vector<Samples>& frames, const Call& call);
+std::shared_ptr<FrameSource> make_frames_3(const std::vector<Samples>& frames, const Call& call);
 
 }  // namespace nestgrid::python

@@ -4,9 +4,9 @@
 
 namespace nestgrid::python {
 
-std::unique_ptr<Source> make_volume_3(const Samples& samples) {
+std::unique_ptr<Source> make_volume_3(const Samples& samples, const Call& call) {
     return with_sample_type(samples.type, [&]<class Sample>(Sample) {
-        return std::unique_ptr<Source>(std::make_unique<Volume<3, Sample>>(samples));
+        return std::unique_ptr<Source>(std::make_unique<Volume<3, Sample>>(samples, call));
     });
 }
 
