@@ -26,7 +26,7 @@ class Volume(Field):
     spacing    distance of samples along each index, in units of length; None: 1
     origin     position of array[0, 0, 0]; None: 0
     direction  (d, d) for d indices: column i is the axis of index i in space, such as that of a
-               scanner; None: coordinate i
+               scanner; (3, 2) for 2 indices, with an origin of 3 numbers; None: coordinate i
     name       of the data, for files and tables
     unit       of length, such as "mm"
 

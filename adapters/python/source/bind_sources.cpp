@@ -28,16 +28,18 @@ Point along_indices(const Numbers& numbers, std::size_t indices, double rest, co
 }
 
 /// The axes of an array in space.
-/// \param columns the axis of each index, with as many numbers as there are indices
-/// \throw InvalidInput where it is no square matrix of that size
+/// \param columns the axis of each index, with 3 numbers or as many as there are indices
+/// \throw InvalidInput where it is no matrix of that size
 std::array<Point, 3> axes_of(const Numbers& columns, std::size_t indices) {
     const auto size = static_cast<py::ssize_t>(indices);
-    if (columns.ndim() != 2 || columns.shape(0) != size || columns.shape(1) != size) {
+    const bool fits = columns.ndim() == 2 && columns.shape(1) == size &&
+                      (columns.shape(0) == size || columns.shape(0) == 3);
+    if (!fits) {
         throw InvalidInput("direction is no matrix of " + std::to_string(indices) + " x " +
                            std::to_string(indices) + " numbers");
     }
     std::array<Point, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (std::size_t r = 0; r < indices; ++r) {
+    for (std::size_t r = 0; r < static_cast<std::size_t>(columns.shape(0)); ++r) {
         for (std::size_t d = 0; d < indices; ++d) rows[r][d] = columns.data()[indices * r + d];
     }
     return rows;
@@ -76,7 +78,7 @@ Samples samples_of(const py::array& array, const Numbers& spacing, const Numbers
         stride *= array.shape(d);
     }
     samples.spacing = along_indices(spacing, indices, 1, "spacing");
-    samples.origin = along_indices(origin, indices, 0, "origin");
+    samples.origin = along_indices(origin, origin.size() == 3 ? 3 : indices, 0, "origin");
     samples.direction = axes_of(direction, indices);
     samples.data = array.data();
     samples.memory = keep(array);
