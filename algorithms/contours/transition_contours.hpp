@@ -141,6 +141,12 @@ public:
         return false;
     }
 
+    /// Calls function(vertex) for the vertex that each segment on a face begins at.
+    template <class Function>
+    void for_each_from(Index face, Function&& function) const {
+        for (const Segment& segment : segments_on(face)) function(segment.from);
+    }
+
     void clear() {
         segments_.clear();
         gaps_.clear();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace nestgrid::engine {
 
@@ -56,27 +57,17 @@ auto CapContour<dimension, Real>::polygon_from(Shape shape, const FaceTopology& 
     return polygon;
 }
 
-/// The key of the sides along the maximal edge around `edge` that run from corner `from` of the
-/// face to the next corner (forward), or from that one to `from`. A mirrored element reverses both.
+/// The key of the maximal edge around an edge.
 template <int dimension, class Real>
-NodeKey CapContour<dimension, Real>::side_key(std::uint8_t edge, const FaceTopology& face,
-                                              std::uint8_t from, bool forward) const {
-    const ElementView<Real>& view = cuts_->view();
-    const std::uint8_t a = face.corner[from];
-    const std::uint8_t b = face.corner[(from + 1U) % face.corners];
-    const auto& x = cuts_->positions();
-    std::array<NodeKey, 2> ends{cuts_->keys()[a], cuts_->keys()[b]};
-    bool upwards = ends[0] < ends[1];
-    if (const auto* maximal = view.closed.edge(edge)) {
-        ends = {maximal->key(0), maximal->key(1)};
-        const auto [begin, end] = cuts_->walk().positions(*maximal);
-        const bool along = dot(x[b] - x[a], end - begin) > 0;
-        upwards = along == (ends[0] < ends[1]);
-    }
-    const bool up = upwards == (forward == (view.orientation > 0));
+NodeKey CapContour<dimension, Real>::edge_key(std::uint8_t edge) const {
     FaceKey key;
-    for (const NodeKey end : ends) key.add_corner(end);
-    return key.key() + (up ? 1 : 0);
+    if (const auto* maximal = cuts_->view().closed.edge(edge)) {
+        for (const std::size_t end : {0, 1}) key.add_corner(maximal->key(end));
+    } else {
+        const auto& ends = cuts_->view().topology().edge[edge];
+        for (const std::uint8_t end : ends) key.add_corner(cuts_->keys()[end]);
+    }
+    return key.key();
 }
 
 template <int dimension, class Real>
@@ -88,50 +79,48 @@ void CapContour<dimension, Real>::record(unsigned inside, unsigned faces,
     });
 }
 
-/// Records a side of a polygon where it lies on a closed edge.
+/// Records the nodes at the ends of a side of a polygon that lies on a closed edge.
 template <int dimension, class Real>
 void CapContour<dimension, Real>::record_side(const FaceTopology& face, const Polygon& polygon,
                                               std::size_t side, TransitionContours& record) const {
     const std::uint8_t edge = polygon.edge[side];
     if (edge == no_edge || cuts_->view().closed.edge(edge) == nullptr) return;
-    const auto vertex = [&](const Corner& c) {
-        const std::uint8_t corner = face.corner[c.from];
+    for (const std::size_t end : {side, (side + 1) % polygon.count}) {
+        if (polygon.corner[end].cut) continue;
+        const std::uint8_t corner = face.corner[polygon.corner[end].from];
         const NodeKey key = cuts_->keys()[corner];
-        return c.cut ? record.vertex(cuts_->name(edge), [&] { return cuts_->cut(edge); })
-                     : record.vertex({key, key}, [&] { return cuts_->node(corner); });
-    };
-    Number from = vertex(polygon.corner[side]);
-    Number to = vertex(polygon.corner[(side + 1) % polygon.count]);
-    if (cuts_->view().orientation < 0) std::swap(from, to);
-    record.record(side_key(edge, face, polygon.corner[side].from, true), from, to);
+        const Number vertex = record.vertex({key, key}, [&] { return cuts_->node(corner); });
+        record.record(edge_key(edge), vertex, vertex);
+    }
 }
 
-/// The vertices that finer polygons beyond a side recorded between the ends of the side.
+/// The nodes that polygons around an edge recorded between the ends of a side along it. At a cut
+/// the edge leaves the level, so that no node beyond the cut was recorded.
 template <int dimension, class Real>
 auto CapContour<dimension, Real>::chain(const FaceTopology& face, const Polygon& polygon,
                                         std::size_t side, const TransitionContours* drawn_below)
     -> std::vector<Number> {
     const std::uint8_t edge = polygon.edge[side];
     if (edge == no_edge || drawn_below == nullptr || drawn_below->empty()) return {};
-    const Number* sides =
-        drawn_below->find_face(side_key(edge, face, polygon.corner[side].from, false));
-    if (sides == nullptr) return {};
-    const auto vertex = [&](const Corner& c) {
-        const NodeKey key = cuts_->keys()[face.corner[c.from]];
-        return drawn_below->find(c.cut ? cuts_->name(edge) : KeyPair(key, key));
-    };
-    const Number* from = vertex(polygon.corner[side]);
-    const Number* to = vertex(polygon.corner[(side + 1) % polygon.count]);
-    if (from == nullptr || to == nullptr) return {};
-    const bool mirrored = cuts_->view().orientation < 0;
-    if (mirrored) std::swap(from, to);
-    std::vector<Number> between;
-    const bool found = drawn_below->follow(
-        *sides, *to, [&](Number v) { return v == *from; }, [&](Number v) { between.push_back(v); });
-    if (!found) return {};
-    if (!mirrored) std::reverse(between.begin(), between.end());
-    for (Number& v : between) v = contour_->adopted(drawn_below->cut(v), face);
-    return between;
+    const Number* const on_edge = drawn_below->find_face(edge_key(edge));
+    if (on_edge == nullptr) return {};
+    const Corner& from = polygon.corner[side];
+    const Corner& to = polygon.corner[(side + 1) % polygon.count];
+    const auto& x = cuts_->positions();
+    const Point begin = x[face.corner[from.from]];
+    const Point along = x[face.corner[(from.from + 1U) % face.corners]] - begin;
+    std::vector<std::pair<double, Number>> between;
+    drawn_below->for_each_from(*on_edge, [&](Number v) {
+        const double at = dot(drawn_below->cut(v).x - begin, along);
+        if ((from.cut || at > 0) && (to.cut || at < dot(along, along))) between.emplace_back(at, v);
+    });
+    std::sort(between.begin(), between.end());
+    between.erase(std::unique(between.begin(), between.end()), between.end());
+    std::vector<Number> chain;
+    for (const auto& [at, v] : between) {
+        chain.push_back(contour_->adopted(drawn_below->cut(v), face));
+    }
+    return chain;
 }
 
 template <int dimension, class Real>

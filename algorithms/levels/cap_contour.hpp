@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Caps: the part of each boundary face of the domain that is inside a level.
+// Caps: the part of each face on the boundary of the domain, or beside hidden elements, that is
+// inside a level.
 //
-// Two boundary faces meet in an edge, and one of them may be finer than the other. The finer one
-// records its sides along closed edges, under the key of the maximal edge and the direction in
-// which they run. The coarser one adopts the vertices between, as an element does with faces
-// (transitions.hpp).
+// Such faces meet in edges, more than two of them where hidden elements touch in an edge alone, and
+// some are finer than others. Each one records its nodes on closed edges, under the key of the
+// maximal edge. All others adopt those between their own vertices.
 #pragma once
 
 #include <contours/transition_contours.hpp>
@@ -22,12 +22,12 @@ public:
     CapContour(const ElementCuts<Real>& cuts, ElementContour<dimension, Real>& contour)
         : cuts_{&cuts}, contour_{&contour} {}
 
-    /// Records the sides of the element's caps along closed edges.
+    /// Records the nodes of the element's caps on closed edges.
     /// \param inside the corners inside the level, one bit each
     /// \param faces the faces to be capped, one bit each
     void record(unsigned inside, unsigned faces, TransitionContours& record) const;
     /// Draws the element's caps; contour.begin() must have been called.
-    /// \param drawn_below what finer caps recorded, or null
+    /// \param drawn_below what all caps recorded, or null
     void draw(unsigned inside, unsigned faces, const TransitionContours* drawn_below);
 
 private:
@@ -48,8 +48,7 @@ private:
                                 const FaceContour& contour, unsigned& left);
     void record_side(const FaceTopology& face, const Polygon& polygon, std::size_t side,
                      TransitionContours& record) const;
-    NodeKey side_key(std::uint8_t edge, const FaceTopology& face, std::uint8_t from,
-                     bool forward) const;
+    NodeKey edge_key(std::uint8_t edge) const;
     std::vector<Number> chain(const FaceTopology& face, const Polygon& polygon, std::size_t side,
                               const TransitionContours* drawn_below);
     void draw_segments(unsigned inside, unsigned faces);

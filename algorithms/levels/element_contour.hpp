@@ -42,6 +42,10 @@ public:
 
     /// Begins the element at hand.
     void begin(LevelSurface<dimension>& surface) { begin(surface, cuts_->view().orientation < 0); }
+    /// Begins the caps that a hidden element draws on elements beyond its faces.
+    void begin_beyond(LevelSurface<dimension>& surface) {
+        begin(surface, cuts_->view().orientation > 0);
+    }
     /// Whether anything of the element was drawn since begin().
     bool begun() const { return begun_; }
     /// Replaces the side of a loop that follows an edge by a chain of local vertices.

@@ -85,6 +85,7 @@ void LevelSet<dimension, Real>::join(const LevelSet& leader) {
         if (leader.surfaces_[i].counts_only()) surfaces_[i].count_only();
         transitions_[i].drawn_below = leader.transitions_[i].drawn_below;
     }
+    neighbours_ = leader.neighbours_;
 }
 
 template <int dimension, class Real>
@@ -132,6 +133,7 @@ bool LevelSet<dimension, Real>::bisects_slices() const {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::run(const Executor& executor) {
+    find_hidden_faces();
     walk(executor);
     if (walks_.is_recording()) {
         walks_.finish();
@@ -191,9 +193,12 @@ Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split
 
 template <int dimension, class Real>
 Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
-    const bool caps = options_->cap && walk_->boundary(view) != 0;
-    const auto [decision, bound] = search_->look(view, split, caps, at_hand_.question);
+    const bool caps = options_->cap && may_cap_below(view);
+    const bool hidden = view.member->hidden == Hidden::wholly;
+    if (options_->cap && hidden && !caps) return {Visit::skip, 0};
+    auto [decision, bound] = search_->look(view, split, caps, at_hand_.question);
     at_hand_.bound = bound;
+    if (decision.visit == Visit::stop && stops_above_cap(view)) decision.visit = Visit::descend;
     if (options_->position_bounds != nullptr && decision.visit == Visit::stop) {
         at_hand_.position_bound =
             nestgrid::detail::greatest_eta(*options_->position_bounds, split.keys);
@@ -276,10 +281,11 @@ void LevelSet<dimension, Real>::extract(const View& view) {
     const bool records = walks_.is_recording();
     if (records && !walks_.draws_finest() && !view.closed.any && !tally_.limited()) return;
     if (walks_.is_drawn(view)) return;
-    const bool shown = !records || view.member->hidden != Hidden::wholly;
-    const bool draws = walks_.draws(view, shown);
+    const bool shown = view.member->hidden != Hidden::wholly;
+    const unsigned boundary = options_->cap ? capped_faces(view) : 0U;
+    if (!shown && options_->cap && boundary == 0) return;
+    const bool draws = walks_.draws(view, shown || boundary != 0);
     const std::size_t corners = view.corner_count();
-    const unsigned boundary = options_->cap ? walk_->boundary(view) : 0U;
     at_hand_.loaded = false;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         const Level<Real>& level = search_->levels()[i];
@@ -288,8 +294,8 @@ void LevelSet<dimension, Real>::extract(const View& view) {
         const bool lies_in = whole && !options_->cap && search_->is_slice(level);
         const unsigned faces = lies_in ? boundary_in_slice(view, level) : boundary;
         if (inside == 0 || (whole && faces == 0)) continue;
-        if (shown && !draws) {
-            if (!whole) tally_.add_later(1);
+        if ((shown || boundary != 0) && !draws) {
+            if (shown && !whole) tally_.add_later(1);
             walks_.leave_for_later(view);
         }
         if (draws || view.closed.any) extract(i, view, inside, faces, draws);
@@ -319,7 +325,9 @@ void LevelSet<dimension, Real>::extract(std::size_t level, const View& view, uns
     load(view, draws);
     at_hand_.cuts.set_level(search_->levels()[level]);
     if (walks_.is_recording() && view.closed.any) record(level, inside, boundary);
-    if (draws) draw(level, inside, boundary);
+    if (!draws) return;
+    if (view.member->hidden == Hidden::wholly) return draw_beyond(level, inside, boundary);
+    draw(level, inside, boundary);
 }
 
 /// Loads the corners of the element, and adds its gradients where it is drawn.
@@ -331,7 +339,8 @@ void LevelSet<dimension, Real>::load(const View& view, bool draws) {
         at_hand_.loads_keys || walks_.adopts() || view.closed.any || view.interpolated != 0;
     at_hand_.cuts.load(view, keys);
     deepest_ = std::max(deepest_, view.level);
-    if (options_->normals && draws) normals_.add(at_hand_.cuts);
+    const bool shown = view.member->hidden != Hidden::wholly;
+    if (options_->normals && draws && shown) normals_.add(at_hand_.cuts);
 }
 
 template <int dimension, class Real>
@@ -339,8 +348,11 @@ void LevelSet<dimension, Real>::record(std::size_t level, unsigned inside, unsig
     const View& view = at_hand_.cuts.view();
     TransitionContours& record = transitions_[level].record;
     if (inside != all_corners(view.corner_count())) {
+        // Beyond the other faces of a hidden element caps end where its neighbours draw them.
+        const bool some = options_->cap && view.member->hidden == Hidden::wholly;
+        const unsigned faces = some ? boundary : ~0U;
         const unsigned cut_faces = at_hand_.contour.table(view.shape).cut_faces(inside);
-        record_transitions(at_hand_.cuts, cut_faces, inside, record);
+        record_transitions(at_hand_.cuts, cut_faces & faces, inside, record);
     }
     if (boundary != 0) at_hand_.cap.record(inside, boundary, record);
 }
@@ -369,6 +381,48 @@ void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigne
     if (boundary != 0) at_hand_.cap.draw(inside, boundary, below);
     if (contour.begun()) end_element(surface);
     if (surface.counts_only()) surface.forget_element();
+}
+
+/// Draws the caps of a leaf that is shown on faces of a hidden element.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::draw_beyond(std::size_t level, unsigned inside, unsigned faces) {
+    LevelSurface<dimension>& surface = surfaces_[level];
+    at_hand_.contour.begin_beyond(surface);
+    at_hand_.cap.draw(inside, faces, walks_.adopts() ? transitions_[level].drawn_below : nullptr);
+    if (surface.counts_only()) return surface.forget_element();
+    surface.builder().flush_if_full();
+}
+
+/// Finds where caps are drawn beside hidden elements.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::find_hidden_faces() {
+    const Hierarchy<Real>& hierarchy = walk_->hierarchy();
+    if (!options_->cap || !hierarchy.offers(Feature::hidden) || neighbours_.any()) return;
+    neighbours_ = {*walk_, std::make_shared<const HiddenFaces>(hierarchy)};
+}
+
+/// The faces of an element that are to be capped, one bit each.
+template <int dimension, class Real>
+unsigned LevelSet<dimension, Real>::capped_faces(const View& view) {
+    if (!neighbours_.any()) return walk_->boundary(view);
+    const HiddenBeyond& beyond = neighbours_.of(view);
+    if (view.member->hidden == Hidden::wholly) return beyond.leaf;
+    return walk_->boundary(view) | beyond.whole;
+}
+
+/// Whether an element, or one below it, may have faces to be capped.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::may_cap_below(const View& view) {
+    if (!neighbours_.any()) return walk_->boundary(view) != 0;
+    if (view.member->hidden == Hidden::partly) return true;
+    return capped_faces(view) != 0 || neighbours_.of(view).part != 0;
+}
+
+/// Whether an element that may stop has a face that elements below it cap in part.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::stops_above_cap(const View& view) {
+    if (!neighbours_.any() || view.is_leaf()) return false;
+    return view.member->hidden == Hidden::not_at_all && neighbours_.of(view).part != 0;
 }
 
 /// Counts an element that was drawn, raises the error bound by its error, and hands a full chunk to

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <levels/cap_contour.hpp>
+#include <levels/hidden_neighbours.hpp>
 #include <levels/level_tasks.hpp>
 #include <levels/normals.hpp>
 #include <levels/patch_level_set.hpp>
@@ -54,7 +55,10 @@ public:
     NodeMask children(const View& view) override { return walks_.children(view); }
     Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
     /// Hidden elements record what they would draw on faces around them.
-    bool sees_hidden() const override { return walks_.is_recording(); }
+    /// Where a face of a leaf that is shown is divided beyond it, they draw caps.
+    bool sees_hidden() const override {
+        return walks_.is_recording() || neighbours_.hidden_elements_draw();
+    }
     bool takes(const View& view) override;
     Decision look(const View& view, const Split& split) override;
     void undo() override;
@@ -70,7 +74,12 @@ private:
     void record(std::size_t level, unsigned inside, unsigned boundary);
     void draw(std::size_t level, unsigned inside, unsigned boundary);
     void end_element(LevelSurface<dimension>& surface);
+    void draw_beyond(std::size_t level, unsigned inside, unsigned faces);
     void fill_gaps(std::size_t level);
+    void find_hidden_faces();
+    unsigned capped_faces(const View& view);
+    bool may_cap_below(const View& view);
+    bool stops_above_cap(const View& view);
     void load(const View& view, bool draws);
     unsigned boundary_in_slice(const View& view, const Level<Real>& level) const;
     bool draws_plainly() const;
@@ -120,6 +129,7 @@ private:
     std::vector<LevelSurface<dimension>> surfaces_;  // one a level
     std::vector<Transitions> transitions_;           // one a level
     TwoWalks<Real> walks_;
+    HiddenNeighbours<Real> neighbours_;  // where caps are drawn beside hidden elements
     SimplexTally tally_;
     Normals<Real> normals_;
     AtHand at_hand_;

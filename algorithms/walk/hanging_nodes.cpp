@@ -6,6 +6,7 @@
 #include <string>
 
 #include <nestgrid/algorithms/hanging_nodes.hpp>
+#include <nestgrid/algorithms/holes.hpp>
 #include <nestgrid/detail/hanging_probe.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
@@ -111,6 +112,9 @@ HangingNodes derive_hanging_nodes(const Hierarchy<Real>& hierarchy) {
 
 template <class Real>
 void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes) {
+    if (const Holes<Real>* holes = nestgrid::detail::holes_of(hierarchy)) {
+        return nodes.set_unseen(holes->hidden()->unseen());
+    }
     const Walk<Real> walk(hierarchy, {.values = false, .keys = true});
     UnseenSearch search(hierarchy.facts().node_count);
     for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {

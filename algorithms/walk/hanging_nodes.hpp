@@ -51,7 +51,7 @@ private:
     NodeSet seen_;
 };
 
-/// Sets the nodes of hidden leaves alone, or of no leaf. Walks the hierarchy once.
+/// Sets the nodes of hidden leaves alone, or of no leaf: those that holes know, else walks once.
 template <class Real>
 void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes);
 

@@ -11,6 +11,7 @@
 #include <nestgrid/error.hpp>
 #include <walk/for_each_element.hpp>
 #include <walk/hanging_nodes.hpp>
+#include <walk/nodes_below.hpp>
 
 namespace nestgrid {
 
@@ -19,11 +20,12 @@ class HiddenElements::Builder {
 public:
     explicit Builder(HiddenElements& to) : to_{&to} {}
 
+    /// Takes a leaf, or an element of whose leaves all are hidden, or none.
     template <class Real>
-    void add_leaf(const engine::ElementView<Real>& leaf, bool hidden) {
-        open_to(leaf);
-        put(leaf.level, leaf.child, leaf.coarse, hidden ? wholly_ : shown_);
-        if (hidden) ++to_->hidden_leaves_;
+    void add(const engine::ElementView<Real>& element, bool hidden) {
+        open_to(element);
+        put(element.level, element.child, element.coarse, hidden ? wholly_ : shown_);
+        to_->any_ = to_->any_ || hidden;
     }
     void finish() {
         close_to(0);
@@ -95,7 +97,15 @@ template <class Real>
 void HiddenElements::find(const Hierarchy<Real>& hierarchy) {
     coarse_.assign(hierarchy.coarse_count(), shown_);
     marks_.clear();
-    hidden_leaves_ = 0;
+    any_ = false;
+    const HierarchyFacts& facts = hierarchy.facts();
+    const bool hides = facts.offers(Feature::hidden) && detail::holes_of(hierarchy) == nullptr;
+    const bool by_stars = facts.knows_stars && facts.conforming && facts.components == 1 && !hides;
+    by_stars ? find_by_stars(hierarchy) : find_in_all(hierarchy);
+}
+
+template <class Real>
+void HiddenElements::find_in_all(const Hierarchy<Real>& hierarchy) {
     const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
     const engine::Walk<Real> walk(hierarchy, {.values = true, .keys = true}, &hanging);
     const std::size_t components = walk.components();
@@ -106,12 +116,41 @@ void HiddenElements::find(const Hierarchy<Real>& hierarchy) {
         const std::span<const Real> values(view.value, view.corner_count() * components);
         const bool hidden = view.member->hidden == Hidden::wholly ||
                             std::ranges::any_of(values, [](Real u) { return std::isnan(u); });
-        builder.add_leaf(view, hidden);
+        builder.add(view, hidden);
         unseen.add(walk, view, split, !hidden);
     };
     engine::for_each_element<Real>(walk, false, look);
     builder.finish();
     unseen_ = unseen.found();
+}
+
+/// Finds the hidden elements in a walk that leaves out those below which all nodes have values, or
+/// none has; then, of the nodes of leaves that were met, those of hidden leaves alone.
+template <class Real>
+void HiddenElements::find_by_stars(const Hierarchy<Real>& hierarchy) {
+    const engine::Walk<Real> walk(hierarchy, {.values = false, .keys = true});
+    std::array<NodeKey, max_corners> keys;
+    const auto corners = [&](const engine::ElementView<Real>& view) {
+        walk.corners(view, keys.data(), nullptr);
+        return std::span<const NodeKey>(keys).first(view.corner_count());
+    };
+    const engine::NodesBelow missing(hierarchy, engine::find_missing_nodes(hierarchy));
+    NodeSet of_hidden = missing.nodes();
+    Builder builder(*this);
+    engine::for_each_near(walk, missing, missing, [&](const auto& view, bool hidden) {
+        builder.add(view, hidden);
+        if (!hidden || !view.is_leaf()) return;
+        for (const NodeKey key : corners(view)) of_hidden.insert(key);
+    });
+    builder.finish();
+    if (!any()) return;
+    NodeSet seen(hierarchy.facts().node_count);
+    const engine::NodesBelow near(hierarchy, of_hidden);
+    engine::for_each_near(walk, near, missing, [&](const auto& view, bool) {
+        if (!view.is_leaf() || missing.nodes().mask(corners(view)) != 0) return;
+        for (const NodeKey key : corners(view)) seen.insert(key);
+    });
+    unseen_ = of_hidden.without(seen);
 }
 
 template <class Real>
@@ -124,7 +163,7 @@ HiddenElements::HiddenElements(const Hierarchy<Real>& hierarchy,
     };
     look();
     if (hierarchy.facts().conforming) return;
-    while (hidden_leaves_ > (already ? already->hidden_leaves_ : 0)) {
+    while (any() && !(already && *this == *already)) {
         already = std::make_shared<const HiddenElements>(std::move(*this));
         look();
     }
@@ -135,18 +174,17 @@ std::shared_ptr<const HiddenElements> HiddenElements::of_all(
     std::span<const Hierarchy<Real>* const> fields) {
     std::shared_ptr<const HiddenElements> hidden;
     const auto look = [&] {
+        const auto before = hidden;
         for (const Hierarchy<Real>* field : fields) {
             hidden = std::make_shared<const HiddenElements>(*field, std::move(hidden));
         }
-        return hidden->hidden_leaves();
+        return hidden->any() && !(before && *hidden == *before);
     };
-    std::size_t found = look();
-    const bool conforming = fields.front()->facts().conforming;
+    bool added = look();
     // Nodes hang no longer where one field hides the leaf they hung on. Another field may have no
     // value of its own there, so all are looked at again until nothing is added.
-    for (std::size_t before = 0; !conforming && fields.size() > 1 && found > before;) {
-        before = std::exchange(found, look());
-    }
+    const bool again = !fields.front()->facts().conforming && fields.size() > 1;
+    while (again && added) added = look();
     return hidden;
 }
 

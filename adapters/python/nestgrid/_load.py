@@ -25,7 +25,9 @@ from ._sources import Frames, Volume
 Numbers = Union[Sequence[float], np.ndarray]
 
 #: What load() reads, by the end of the name.
+PICTURES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm", ".pnm")
 SUFFIXES = [".nestgrid", ".vti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".raw"]
+SUFFIXES += [".dcm", ".dicom", *PICTURES]
 
 
 @takes(
@@ -54,9 +56,12 @@ def load(
     """The field of a file: a Volume, the field of a hierarchy, or Frames where there are several.
 
     path        ends in .nestgrid; or in .vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz or .raw,
-                which are volumes: Volume.array[i, j, k] is sample i of row j of slice k. Reading
-                .vti and .nii needs VTK's Python package
-    array       the name of the field, for .nestgrid and .vti; "": the only one, or the active one
+                which are volumes: Volume.array[i, j, k] is sample i of row j of slice k; or a folder
+                of DICOM, its DICOMDIR or a slice of it; or a picture. What has one sample along an
+                axis is a plane: Volume.array[i, j]. Reading .vti, .nii and pictures needs VTK's
+                Python package, DICOM pydicom
+    array       the name of the field, for .nestgrid and .vti, or of the series of DICOM; "": the
+                only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that
                 tells how many there are
     component   which of several numbers per sample, from 0
@@ -71,14 +76,15 @@ def load(
     """
     name = path.lower() if isinstance(path, str) else ""
     suffix = max((each for each in SUFFIXES if name.endswith(each)), key=len, default="")
-    if not suffix:
+    dicom = suffix in (".dcm", ".dicom") or _is_dicom(str(path))
+    if not suffix and not dicom:
         near = suggestion(os.path.splitext(name)[1], SUFFIXES)
         raise InvalidInput(f"load(): '{path}' ends in none of {', '.join(SUFFIXES)}{near}")
     raw = {"dims": dims, "type": type, "big_endian": big_endian or None, "spacing": spacing}
     given = [each for each, value in raw.items() if value is not None]
     if given and suffix != ".raw":
         raise InvalidInput(f"load(): {given[0]} is for .raw files: '{path}' describes itself")
-    if array and suffix not in (".nestgrid", ".vti"):
+    if array and not dicom and suffix not in (".nestgrid", ".vti"):
         raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
     choice = Choice(frame, component, magnitude)
     if suffix in (".nestgrid", ".raw") and choice != Choice():
@@ -88,11 +94,13 @@ def load(
         )
     if suffix == ".nestgrid":
         return _hierarchy(str(path), array)
+    if dicom:
+        return _read_apart("_read_dicom.py", str(path), array, choice)
     _require_file(str(path))
     if suffix == ".raw":
         return _raw(str(path), dims, type, big_endian, spacing)
-    if suffix in (".vti", ".nii", ".nii.gz"):
-        return _with_vtk(str(path), array, choice)
+    if suffix in (".vti", ".nii", ".nii.gz", *PICTURES):
+        return _read_apart("_read_vtk.py", str(path), array, choice)
     place: dict[str, Any] = dict(_nestgrid.volume_file(str(path), suffix in (".mhd", ".mha")))
     return _volume(str(path), _chosen(str(path), choice, **_split(place)), **place)
 
@@ -104,6 +112,17 @@ class Choice:
     frame: int | None = None
     component: int | None = None
     magnitude: bool = False
+
+
+def _is_dicom(path: str) -> bool:
+    """Whether it is a folder, or a file that begins as one of DICOM does."""
+    if os.path.isdir(path):
+        return True
+    try:
+        with open(path, "rb") as file:
+            return file.read(132)[128:] == b"DICM"
+    except OSError:
+        return False
 
 
 def _split(place: dict[str, Any]) -> dict[str, Any]:
@@ -236,12 +255,34 @@ def _volume(
     name: str,
     unit: str,
 ) -> Volume:
+    flat = [d for d in range(3) if array.shape[d] == 1]
+    if len(flat) == 1:
+        return _plane(array, spacing, origin, direction, flat[0], name, unit)
     if min(array.shape) < 2:
         counts = " x ".join(str(n) for n in array.shape)
         raise InvalidInput(
             f"{path} has {counts} samples; a volume needs at least 2 along each direction"
         )
     return Volume(array, spacing, origin, direction=direction, name=name, unit=unit)
+
+
+def _plane(
+    array: np.ndarray,
+    spacing: Numbers,
+    origin: Numbers,
+    direction: Any,
+    across: int,
+    name: str,
+    unit: str,
+) -> Volume:
+    """A volume with one sample along an axis, without that axis, where it lies in space."""
+    along = [d for d in range(3) if d != across]
+    start, axes = np.asarray(origin, float), np.asarray(direction, float)[:, along]
+    if start[2] == 0 and not axes[2].any():  # as Volume has it without a place
+        start, axes = start[:2], axes[:2]
+    samples = np.asfortranarray(array.squeeze(across))
+    steps = np.asarray(spacing, float)[along]
+    return Volume(samples, steps, start, direction=axes, name=name, unit=unit)
 
 
 def _raw(
@@ -275,9 +316,9 @@ def _read_into(stream: IO[bytes], part: memoryview) -> int:
     return len(data)
 
 
-def _with_vtk(path: str, array: str, choice: Choice) -> Volume:
-    """Reads in another process: damaged files may crash VTK, and Ctrl-C ends it at once."""
-    program = os.path.join(os.path.dirname(__file__), "_read_vtk.py")
+def _read_apart(reader_program: str, path: str, array: str, choice: Choice) -> Volume:
+    """Reads in another process: damaged files may crash libraries, and Ctrl-C ends it at once."""
+    program = os.path.join(os.path.dirname(__file__), reader_program)
     command = [sys.executable or "python3", program, os.path.abspath(path), array]
     with subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL

@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A program of its own, which reads .vti, .nii and .nii.gz files: a crash of VTK ends it alone.
+"""A program of its own, which reads .vti, .nii, .nii.gz and pictures by VTK.
 
-Arguments: the file, and the name of a point data array or nothing. Writes one line of JSON, which
-describes the volume or says what is wrong, and the bytes of the samples behind it.
+Arguments: the file, and the name of a point data array or nothing. Answers as _answer.py says.
 """
 
 from __future__ import annotations
 
 import gzip
-import json
 import math
 import os
-import sys
-from typing import Any, Sequence
+import re
+from typing import Any
+
+from _answer import Refused, answer, listed
 
 TYPES = {
     "unsigned char": "uint8",
@@ -31,17 +31,6 @@ TYPES = {
     "double": "float64",
 }
 LENGTHS = {1: "m", 2: "mm", 3: "µm"}  # of NIfTI's xyzt_units
-
-
-class Refused(Exception):
-    """A sentence, and whether the arguments are wrong, not the file."""
-
-    def __init__(
-        self, sentence: str, argument: bool = False, names: Sequence[str] = ()
-    ) -> None:
-        super().__init__(sentence)
-        self.argument = argument
-        self.names = names
 
 
 class Errors:
@@ -89,8 +78,7 @@ def chosen_array(path: str, name: str, data: Any) -> Any:
     names = names_of(data)
     if data.GetScalars() is not None or len(names) < 2:
         return data.GetScalars() or data.GetArray(0)
-    listed = ", ".join(f"'{name}'" for name in names)
-    raise Refused(f"{path} has several arrays, choose one by array: {listed}", True, names)
+    raise Refused(f"{path} has several arrays, choose one by array: {listed(names)}", True, names)
 
 
 def move_to_centres(path: str, place: dict[str, Any]) -> None:
@@ -211,9 +199,54 @@ def read_nifti(path: str) -> tuple[Any, dict[str, Any]]:
     return scalars, place
 
 
+def check_grey_map(path: str) -> None:
+    """Compares the size of a portable grey map with its header, which VTK does not."""
+    with open(path, "rb") as file:
+        begin = file.read(4096)
+    # Width, height and the greatest value, with comments between.
+    blank = rb"(?:\s|#[^\n]*\n)+"
+    header = re.match(rb"P5" + 3 * (blank + rb"(\d+)") + rb"\s", begin)
+    if begin[:2] != b"P5":
+        return
+    if header is None:
+        raise Refused(f"{path} has a damaged header")
+    width, height, greatest = map(int, header.groups())
+    needed = width * height * (2 if greatest > 255 else 1)
+    found = os.path.getsize(path) - header.end()
+    if found < needed:
+        raise Refused(f"{path} is cut off: it has {found} bytes of pixels, not {needed}")
+
+
+def read_picture(path: str) -> tuple[Any, dict[str, Any]]:
+    from vtkmodules.vtkIOImage import vtkImageReader2Factory
+
+    check_grey_map(path)
+    reader = vtkImageReader2Factory.CreateImageReader2(path)
+    if reader is None:
+        raise Refused(f"{path} is no picture that can be read")
+    errors = Errors(path, reader)
+    reader.SetFileName(path)
+    reader.Update()
+    errors.check()
+    image = reader.GetOutput()
+    scalars = image.GetPointData().GetScalars()
+    if scalars is None:
+        raise Refused(f"{path} holds no picture")
+    place: dict[str, Any] = {"name": "", "unit": "", "origin": list(image.GetOrigin())}
+    place["direction"] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    place["spacing"] = list(image.GetSpacing())
+    place["shape"] = list(image.GetDimensions())
+    return scalars, place
+
+
 def read(path: str, array: str) -> tuple[dict[str, Any], memoryview]:
-    is_vti = path.lower().endswith(".vti")
-    scalars, place = read_vti(path, array) if is_vti else read_nifti(path)
+    name = path.lower()
+    if name.endswith(".vti"):
+        scalars, place = read_vti(path, array)
+    elif name.endswith((".nii", ".nii.gz")):
+        scalars, place = read_nifti(path)
+    else:
+        scalars, place = read_picture(path)
     kind = TYPES.get(scalars.GetDataTypeAsString())
     if kind is None:
         raise Refused(f"{path} has samples of a type that is not read", True)
@@ -224,22 +257,5 @@ def read(path: str, array: str) -> tuple[dict[str, Any], memoryview]:
     return place, memoryview(scalars)
 
 
-def main() -> None:
-    out = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what VTK prints is no part of the answer
-    try:
-        place, samples = read(sys.argv[1], sys.argv[2])
-    except ImportError as error:
-        needed = "reading it needs the package vtk (python3-vtk9 of Debian)"
-        out.write(json.dumps({"error": f"{sys.argv[1]}: {needed}: {error}"}).encode() + b"\n")
-    except Refused as refused:
-        answer = {"error": str(refused), "argument": refused.argument, "names": refused.names}
-        out.write(json.dumps(answer).encode() + b"\n")
-    else:
-        out.write(json.dumps(place).encode() + b"\n")
-        out.write(samples)
-    out.close()
-
-
 if __name__ == "__main__":
-    main()
+    answer(read)

@@ -26,7 +26,7 @@ class Volume(Field):
     spacing    distance of samples along each index, in units of length; None: 1
     origin     position of array[0, 0, 0]; None: 0
     direction  (d, d) for d indices: column i is the axis of index i in space, such as that of a
-               scanner; None: coordinate i
+               scanner; (3, 2) for 2 indices, with an origin of 3 numbers; None: coordinate i
     name       of the data, for files and tables
     unit       of length, such as "mm"
 
@@ -108,7 +108,7 @@ class Octree(Field):
     origin       position of the corner (0, 0, 0); None: 0
     coordinates  in the place of spacing and origin: of the corners of roots, one ascending sequence
                  for each direction
-    masked       (n,): leaves that are not drawn; None: all are
+    masked       (n,): leaves that are not drawn, as those with a value that is nan; None: all are
     name         of the data, for files and tables
     unit         of length, such as "mm"
 

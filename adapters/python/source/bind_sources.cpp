@@ -28,16 +28,18 @@ Point along_indices(const Numbers& numbers, std::size_t indices, double rest, co
 }
 
 /// The axes of an array in space.
-/// \param columns the axis of each index, with as many numbers as there are indices
-/// \throw InvalidInput where it is no square matrix of that size
+/// \param columns the axis of each index, with 3 numbers or as many as there are indices
+/// \throw InvalidInput where it is no matrix of that size
 std::array<Point, 3> axes_of(const Numbers& columns, std::size_t indices) {
     const auto size = static_cast<py::ssize_t>(indices);
-    if (columns.ndim() != 2 || columns.shape(0) != size || columns.shape(1) != size) {
+    const bool fits = columns.ndim() == 2 && columns.shape(1) == size &&
+                      (columns.shape(0) == size || columns.shape(0) == 3);
+    if (!fits) {
         throw InvalidInput("direction is no matrix of " + std::to_string(indices) + " x " +
                            std::to_string(indices) + " numbers");
     }
     std::array<Point, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (std::size_t r = 0; r < indices; ++r) {
+    for (std::size_t r = 0; r < static_cast<std::size_t>(columns.shape(0)); ++r) {
         for (std::size_t d = 0; d < indices; ++d) rows[r][d] = columns.data()[indices * r + d];
     }
     return rows;
@@ -76,7 +78,7 @@ Samples samples_of(const py::array& array, const Numbers& spacing, const Numbers
         stride *= array.shape(d);
     }
     samples.spacing = along_indices(spacing, indices, 1, "spacing");
-    samples.origin = along_indices(origin, indices, 0, "origin");
+    samples.origin = along_indices(origin, origin.size() == 3 ? 3 : indices, 0, "origin");
     samples.direction = axes_of(direction, indices);
     samples.data = array.data();
     samples.memory = keep(array);
@@ -95,7 +97,9 @@ std::shared_ptr<Frames> frames_of(const std::vector<py::array>& arrays,
         samples.push_back(samples_of(array, spacing, origin, direction));
     }
     linear_weights(times, times.front());
-    return std::make_shared<Frames>(make_frames(samples, times));
+    return interruptible(1, [samples, times](const Call& call) {
+        return std::make_shared<Frames>(make_frames(samples, times, call));
+    });
 }
 
 using Leaves = py::array_t<std::int64_t, py::array::c_style>;
@@ -115,7 +119,8 @@ std::shared_ptr<OctreeSource> octree_of(const Leaves& leaves, const Numbers& val
     arrays.masked = span_of(masked);
     arrays.coordinates = coordinates;
     const std::array memory{keep(leaves), keep(values), keep(masked)};
-    return interruptible(1, [arrays, memory](const Call&) { return make_octree(arrays); });
+    return interruptible(1,
+                         [arrays, memory](const Call& call) { return make_octree(arrays, call); });
 }
 
 py::tuple leaves_of(const OctreeSource& octree) {
@@ -140,8 +145,8 @@ std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int
 
 /// The field, or its frames, and its name.
 py::tuple loaded(const std::string& path, const std::string& array) {
-    const auto field = interruptible(1, [path, array](const Call&) {
-        return std::make_shared<LoadedField>(load_hierarchy(path, array));
+    const auto field = interruptible(1, [path, array](const Call& call) {
+        return std::make_shared<LoadedField>(load_hierarchy(path, array, call));
     });
     if (field->frames.count() == 1) {
         return py::make_tuple(std::make_shared<Source>(field->frames[0]), field->name);
@@ -168,7 +173,9 @@ void bind_sources(py::module_& m) {
         "volume",
         [](const py::array& array, const Numbers& spacing, const Numbers& origin,
            const Numbers& direction) {
-            return make_volume(samples_of(array, spacing, origin, direction));
+            const Samples samples = samples_of(array, spacing, origin, direction);
+            return interruptible(
+                1, [samples](const Call& call) { return make_volume(samples, call); });
         },
         py::arg("array"), py::arg("spacing"), py::arg("origin"), py::arg("direction"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),

@@ -68,7 +68,12 @@ public:
         number_corners();
         masked_.resize(arrays.masked.size());
         for (std::size_t i = 0; i < masked_.size(); ++i) masked_[i] = arrays.masked[order_[i]];
-        arrays.values.size() == leaves_.size() ? average(arrays.values) : gather(arrays.values);
+        if (arrays.values.size() == leaves_.size()) {
+            mask_missing(arrays.values);
+            average(arrays.values);
+        } else {
+            gather(arrays.values);
+        }
     }
 
     MaskedOctree<dim> grid() const {
@@ -80,6 +85,10 @@ public:
     }
     std::span<const std::uint32_t> element_nodes() const { return nodes_; }
     std::span<const double> values() const { return values_; }
+    /// Whether nodes of leaves that are not masked have no value.
+    bool any_missing() const {
+        return std::any_of(values_.begin(), values_.end(), [](double u) { return std::isnan(u); });
+    }
     OctreeLeaves leaves() const;
 
 private:
@@ -88,6 +97,7 @@ private:
     void sort_leaves();
     void make_coarse(const OctreeArrays& arrays);
     void number_corners();
+    void mask_missing(std::span<const double> of_leaves);
     void average(std::span<const double> of_leaves);
     void gather(std::span<const double> of_corners);
 
@@ -129,15 +139,19 @@ void Forest<dim>::check(const OctreeArrays& arrays) {
     if (arrays.max_level < 0 || arrays.max_level > 20) {
         throw InvalidInput("max_level is " + std::to_string(arrays.max_level) + ", not 0 to 20");
     }
+    std::size_t missing = 0;
+    std::size_t present = 0;
     const std::size_t of_a_leaf = count == 0 ? 1 : arrays.values.size() / count;
     for (std::size_t i = 0; i < arrays.values.size(); ++i) {
         const std::size_t leaf = i / of_a_leaf;
         if (!arrays.masked.empty() && arrays.masked[leaf] != 0) continue;  // nobody looks at it
-        if (!std::isfinite(arrays.values[i])) {
+        if (std::isinf(arrays.values[i])) {
             throw InvalidInput("the value " + std::to_string(arrays.values[i]) + " of leaf " +
                                std::to_string(leaf) + " is not finite; hide such leaves by masked");
         }
+        ++(std::isnan(arrays.values[i]) ? missing : present);
     }
+    if (missing > 0 && present == 0) throw InvalidInput("no leaf has a value");
 }
 
 template <int dim>
@@ -257,6 +271,16 @@ void Forest<dim>::number_corners() {
     values_.resize(node + std::size_t{1});
 }
 
+/// Masks the leaves that have no value.
+template <int dim>
+void Forest<dim>::mask_missing(std::span<const double> of_leaves) {
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+        if (!std::isnan(of_leaves[order_[i]])) continue;
+        masked_.resize(leaves_.size());
+        masked_[i] = 1;
+    }
+}
+
 /// The mean of the leaves around a node, hidden ones aside, as CellAverages has it.
 template <int dim>
 void Forest<dim>::average(std::span<const double> of_leaves) {
@@ -287,7 +311,8 @@ void Forest<dim>::gather(std::span<const double> of_corners) {
         if (!masked_.empty() && masked_[i / corners] != 0) continue;  // nobody looks at it
         const std::uint32_t node = nodes_[i];
         const double value = of_corners[corners * order_[i / corners] + i % corners];
-        if (set[node] && values_[node] != value) {
+        const bool both_missing = std::isnan(value) && std::isnan(values_[node]);
+        if (set[node] && values_[node] != value && !both_missing) {
             throw InvalidInput("corner " + std::to_string(i % corners) + " of " +
                                name_of(i / corners) + " has the value " + std::to_string(value) +
                                ", but another leaf has " + std::to_string(values_[node]) +
@@ -316,29 +341,32 @@ public:
     using Grid = MaskedOctree<dim>;
     using Field = LinearOctreeField<Grid, double, std::uint32_t>;
 
-    explicit ForestSource(const std::shared_ptr<const Forest<dim>>& forest)
-        : OctreeSource(std::make_shared<Prerolls>(field_of(forest))), forest_{forest} {}
+    ForestSource(const std::shared_ptr<const Forest<dim>>& forest, const Call& call)
+        : OctreeSource(field_of(forest, call)), forest_{forest} {}
 
     OctreeLeaves leaves() const override { return forest_->leaves(); }
 
 private:
-    static FieldOnGrid field_of(const std::shared_ptr<const Forest<dim>>& forest) {
+    static std::shared_ptr<Prerolls> field_of(const std::shared_ptr<const Forest<dim>>& forest,
+                                              const Call& call) {
         const auto grid = std::make_shared<const Grid>(forest->grid());
-        return shared_field(grid, Field(*grid, forest->element_nodes(), forest->values()), forest);
+        const Field field(*grid, forest->element_nodes(), forest->values());
+        const Frames one = shared_frames(grid, std::vector{field}, {0}, forest);
+        return (forest->any_missing() ? one.without_missing(call.work()) : one)[0];
     }
 
     std::shared_ptr<const Forest<dim>> forest_;
 };
 
 template <int dim>
-std::shared_ptr<OctreeSource> forest_source(const OctreeArrays& arrays) {
-    return std::make_shared<ForestSource<dim>>(std::make_shared<const Forest<dim>>(arrays));
+std::shared_ptr<OctreeSource> forest_source(const OctreeArrays& arrays, const Call& call) {
+    return std::make_shared<ForestSource<dim>>(std::make_shared<const Forest<dim>>(arrays), call);
 }
 
 }  // namespace
 
-std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays) {
-    return arrays.dimension == 2 ? forest_source<2>(arrays) : forest_source<3>(arrays);
+std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays, const Call& call) {
+    return arrays.dimension == 2 ? forest_source<2>(arrays, call) : forest_source<3>(arrays, call);
 }
 
 }  // namespace nestgrid::python

@@ -53,11 +53,11 @@ struct Samples {
 /// The samples as the corners of bisected triangles or tetrahedra. Index d of the array runs along
 /// column d of the direction, whatever the order in memory is.
 /// \throw InvalidInput as LatticeBisection, and for a type that no field takes
-std::shared_ptr<Source> make_volume(const Samples& samples);
+std::shared_ptr<Source> make_volume(const Samples& samples, const Call& call);
 /// \param frames of one shape, order, type and place, one at least
 /// \param times one for each, ascending
 /// \throw InvalidInput as make_volume(), and where they differ in these
-Frames make_frames(const std::vector<Samples>& frames, std::vector<double> times);
+Frames make_frames(const std::vector<Samples>& frames, std::vector<double> times, const Call& call);
 
 /// Leaves and values of an octree or quadtree, copied.
 struct OctreeArrays {
@@ -80,8 +80,9 @@ public:
     using Source::Source;
     virtual OctreeLeaves leaves() const = 0;
 };
+/// Leaves without a value (NaN) are hidden, and those with such a corner.
 /// \throw InvalidInput where the leaves are no forest, or values at one node differ
-std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays);
+std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays, const Call& call);
 
 /// The field of a file: one frame, or several.
 struct LoadedField {
@@ -92,6 +93,7 @@ struct LoadedField {
 /// \param array name of the field; may be empty where there is only one
 /// \throw InvalidInput where there is no such field
 /// \throw IoError where the file cannot be read, is damaged, or holds no hierarchy
-LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array);
+LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array,
+                           const Call& call);
 
 }  // namespace nestgrid::python

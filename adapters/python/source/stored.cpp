@@ -38,7 +38,8 @@ bool any_missing(const NamedField& field) {
 }
 
 template <class Family>
-LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& array) {
+LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& array,
+                         const Call& call) {
     using Grid = StoredGrid<Family>;
     using Field = NodeField<Grid, double>;
     const std::size_t index = index_of(stored.fields, array);
@@ -50,34 +51,37 @@ LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& arra
     }
     const Frames frames = shared_frames(std::shared_ptr<const Grid>(kept, &kept->grid),
                                         std::move(fields), kept->times, kept);
-    return {any_missing(named) ? frames.without_missing() : frames, named.name};
+    return {any_missing(named) ? frames.without_missing(call.work()) : frames, named.name};
 }
 
 /// \return whether the file holds this family
 template <class Family>
 bool load_family(const HierarchyHeader& header, const std::filesystem::path& path,
-                 const std::string& array, std::optional<LoadedField>& loaded) {
+                 const std::string& array, const Call& call, std::optional<LoadedField>& loaded) {
     if (header.family != Family::name || header.dimension != Family::dimension ||
         header.corners != Family::max_corners) {
         return false;
     }
-    loaded = loaded_field(read_hierarchy<Family>(path), array);
+    loaded = loaded_field(read_hierarchy<Family>(path), array, call);
     return true;
 }
 
 template <class... Families>
-LoadedField load_one_of(const std::filesystem::path& path, const std::string& array) {
+LoadedField load_one_of(const std::filesystem::path& path, const std::string& array,
+                        const Call& call) {
     const HierarchyHeader header = read_hierarchy_header(path);
     std::optional<LoadedField> loaded;
-    if ((load_family<Families>(header, path, array, loaded) || ...)) return *std::move(loaded);
+    if ((load_family<Families>(header, path, array, call, loaded) || ...))
+        return *std::move(loaded);
     throw IoError("'" + path.string() + "' holds a family that is not known: " + header.family);
 }
 
 }  // namespace
 
-LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array) {
+LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array,
+                           const Call& call) {
     return load_one_of<Bisection<2>, Bisection<3>, RedGreen<2, 3>, RedGreen<2, 4>, RedGreen<3, 4>,
-                       RedGreen<3, 8>, Octree<2>, Octree<3>, Prism>(path, array);
+                       RedGreen<3, 8>, Octree<2>, Octree<3>, Prism>(path, array, call);
 }
 
 }  // namespace nestgrid::python

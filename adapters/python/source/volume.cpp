@@ -33,15 +33,16 @@ void require_one_layout(const std::vector<Samples>& frames) {
 
 }  // namespace
 
-std::shared_ptr<Source> make_volume(const Samples& samples) {
-    return std::make_shared<Source>(make_frames({samples}, {0})[0]);
+std::shared_ptr<Source> make_volume(const Samples& samples, const Call& call) {
+    return std::make_shared<Source>(make_frames({samples}, {0}, call)[0]);
 }
 
-Frames make_frames(const std::vector<Samples>& frames, std::vector<double> times) {
+Frames make_frames(const std::vector<Samples>& frames, std::vector<double> times,
+                   const Call& call) {
     if (frames.empty()) throw InvalidInput("there are no frames");
     require_one_layout(frames);
-    return dimension_of(frames.front()) == 2 ? make_frames_2(frames, std::move(times))
-                                             : make_frames_3(frames, std::move(times));
+    return dimension_of(frames.front()) == 2 ? make_frames_2(frames, std::move(times), call)
+                                             : make_frames_3(frames, std::move(times), call);
 }
 
 }  // namespace nestgrid::python

@@ -59,7 +59,8 @@ bool any_missing(const Samples& samples, std::size_t count) {
 
 /// The samples of several arrays of one layout as frames.
 template <int dim, class Sample>
-Frames lattice_frames(const std::vector<Samples>& frames, std::vector<double> times) {
+Frames lattice_frames(const std::vector<Samples>& frames, std::vector<double> times,
+                      const Call& call) {
     using Grid = LatticeBisection<dim>;
     using Field = LatticeField<Grid, Sample>;
     const auto grid = std::make_shared<const Grid>(lattice_geometry<dim>(frames.front()));
@@ -72,7 +73,7 @@ Frames lattice_frames(const std::vector<Samples>& frames, std::vector<double> ti
         memory->push_back(frame.memory);
     }
     Frames all = shared_frames(grid, std::move(fields), std::move(times), memory);
-    return missing ? all.without_missing() : all;
+    return missing ? all.without_missing(call.work()) : all;
 }
 
 /// Calls function(Sample{}) with the type of a name.
@@ -95,7 +96,9 @@ auto with_sample_type(const std::string& type, const Function& function) {
 }
 
 // Each is compiled by itself.
-Frames make_frames_2(const std::vector<Samples>& frames, std::vector<double> times);
-Frames make_frames_3(const std::vector<Samples>& frames, std::vector<double> times);
+Frames make_frames_2(const std::vector<Samples>& frames, std::vector<double> times,
+                     const Call& call);
+Frames make_frames_3(const std::vector<Samples>& frames, std::vector<double> times,
+                     const Call& call);
 
 }  // namespace nestgrid::python

@@ -4,9 +4,10 @@
 
 namespace nestgrid::python {
 
-Frames make_frames_3(const std::vector<Samples>& frames, std::vector<double> times) {
+Frames make_frames_3(const std::vector<Samples>& frames, std::vector<double> times,
+                     const Call& call) {
     return with_sample_type(frames.front().type, [&]<class Sample>(Sample) {
-        return lattice_frames<3, Sample>(frames, std::move(times));
+        return lattice_frames<3, Sample>(frames, std::move(times), call);
     });
 }
 

@@ -31,8 +31,9 @@ namespace nestgrid {
 class HiddenElements {
 public:
     /// Hides the leaves that the grid hides, those at whose corners data have no value, and, where
-    /// nodes hang no longer and have no value of their own, those around these. Walks all of the
-    /// hierarchy, once where it is conforming, else until no leaf is added.
+    /// nodes hang no longer and have no value of their own, those around these. Of grids that know
+    /// their stars, such as samples, walks what is around nodes without a value, of others all of
+    /// the hierarchy, once where it is conforming, else until no leaf is added.
     /// \param already hidden elements of the grid, which stay hidden; may be null
     /// \throw GridError as derive_hanging_nodes(), where the field gives nothing at all at a node,
     ///        and for more than 2^32 children of elements that are hidden in part
@@ -63,8 +64,11 @@ public:
     void require_same(const Hierarchy<Real>& hierarchy) const {
         made_for_.require_same(hierarchy, "the list of hidden elements");
     }
-    std::size_t hidden_leaves() const { return hidden_leaves_; }
-    bool any() const { return hidden_leaves_ > 0; }
+    bool any() const { return any_; }
+    /// Whether the same elements are hidden, of the same grid.
+    bool operator==(const HiddenElements& other) const {
+        return coarse_ == other.coarse_ && marks_ == other.marks_;
+    }
     std::size_t memory_bytes() const {
         return (coarse_.capacity() + marks_.capacity()) * sizeof(Mark) + unseen_.memory_bytes();
     }
@@ -73,6 +77,10 @@ private:
     class Builder;
     template <class Real>
     void find(const Hierarchy<Real>& hierarchy);
+    template <class Real>
+    void find_in_all(const Hierarchy<Real>& hierarchy);
+    template <class Real>
+    void find_by_stars(const Hierarchy<Real>& hierarchy);
 
     // Marks from partly_ on are of elements that are hidden in part: partly_ and the place in
     // marks_ at which the marks of the children begin.
@@ -84,7 +92,7 @@ private:
     std::vector<Mark> coarse_;
     std::vector<Mark> marks_;
     NodeSet unseen_;
-    std::size_t hidden_leaves_ = 0;
+    bool any_ = false;
 };
 
 #define NESTGRID_HIDDEN_ELEMENTS(prefix, Real)                                             \
@@ -141,5 +149,21 @@ private:
 
 extern template class Holes<float>;
 extern template class Holes<double>;
+
+namespace detail {
+
+/// The holes of a hierarchy, also behind others that hand every question on to it; or null.
+template <class Real>
+const Holes<Real>* holes_of(const Hierarchy<Real>& hierarchy) {
+    const Hierarchy<Real>* at = &hierarchy;
+    while (at != nullptr) {
+        if (const auto* holes = dynamic_cast<const Holes<Real>*>(at)) return holes;
+        const auto* forwards = dynamic_cast<const ForwardingHierarchy<Real>*>(at);
+        at = forwards == nullptr ? nullptr : &forwards->inner();
+    }
+    return nullptr;
+}
+
+}  // namespace detail
 
 }  // namespace nestgrid

@@ -67,7 +67,7 @@ struct IsosurfaceOptions {
     /// Unit normals from gradients: the field's own where it offers them, else the mean of the
     /// gradients of the extracted elements around a node, weighted by volume.
     bool normals = false;
-    /// Close the surface along the boundary of the domain, around the region U >= C.
+    /// Close the surface along the boundary of the domain and of what is hidden, around U >= C.
     bool cap = false;
     /// Keep the extracted elements and which triangle comes from which.
     bool elements = true;

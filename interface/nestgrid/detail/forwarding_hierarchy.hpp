@@ -11,6 +11,8 @@ namespace nestgrid::detail {
 template <class Real>
 class ForwardingHierarchy : public Hierarchy<Real> {
 public:
+    const Hierarchy<Real>& inner() const { return *inner_; }
+
     std::size_t coarse_count() const override { return inner_->coarse_count(); }
     std::uint64_t epoch() const override { return inner_->epoch(); }
     Elements make_elements() const override { return inner_->make_elements(); }
@@ -71,8 +73,6 @@ protected:
     /// \param facts those of `inner`, but for what is changed
     ForwardingHierarchy(const Hierarchy<Real>& inner, const HierarchyFacts& facts)
         : Hierarchy<Real>(facts), inner_{&inner} {}
-
-    const Hierarchy<Real>& inner() const { return *inner_; }
 
 private:
     const Hierarchy<Real>* inner_;

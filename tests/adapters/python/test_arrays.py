@@ -3,6 +3,7 @@
 """Results are those of C++, to the last bit."""
 import math
 import os
+import pickle
 
 import numpy as np
 import pytest
@@ -167,10 +168,47 @@ def test_forest_and_mask():
     for hidden in (math.nan, 1.5, 1000):  # at corners, which other leaves may contradict
         beside = np.where(masked[:, None], hidden, values)
         assert nestgrid.Octree(leaves, beside, masked=masked).isosurface(1.5).report() == hole
+    missing = nestgrid.Octree(leaves, np.where(masked, math.nan, cells[0]))
+    np.testing.assert_array_equal(missing.isosurface(2.2).vertices, drawn[0])
+    again = pickle.loads(pickle.dumps(missing))
+    np.testing.assert_array_equal(again.isosurface(2.2).vertices, drawn[0])
     with pytest.raises(nestgrid.InvalidInput, match="leaf 3 is not finite"):
-        nestgrid.Octree(leaves, np.where(np.arange(len(leaves)) == 3, math.nan, cells[0]))
+        nestgrid.Octree(leaves, np.where(np.arange(len(leaves)) == 3, math.inf, cells[0]))
+    with pytest.raises(nestgrid.InvalidInput, match="no leaf has a value"):
+        nestgrid.Octree(leaves, np.full(len(leaves), math.nan))
     moved = nestgrid.Octree(leaves, values, coordinates=[(0, 1, 5), (0, 2), (0, 4)])
     assert math.isclose(moved.isosurface(1.5).report()["area"], 8)
+
+
+def test_octrees_with_missing_nodes():
+    """Leaves with a corner that has no value are hidden, and capped surfaces are closed."""
+    random = np.random.default_rng(5)
+    fine = np.array([[x, y, z, 3] for x in range(4) for y in range(8) for z in range(8)])
+    coarse = np.array([[x, y, z, 2] for x in (4, 6) for y in (0, 2, 4, 6) for z in (0, 2, 4, 6)])
+    leaves = np.vstack([fine, coarse])
+    corners = np.array([[c & 1, c >> 1 & 1, c >> 2] for c in range(8)])
+    at = leaves[:, None, :3] + corners * (2 ** (3 - leaves[:, 3]))[:, None, None]
+    number = np.ravel_multi_index(at.transpose(2, 0, 1), (9, 9, 9))
+    values = 5.1 - np.linalg.norm(at - 4.2, axis=2)
+    # At x = 4 nodes hang on the coarse leaves, whose values they take.
+    inside = np.arange(729) // 81
+    missing = (random.random(729) < 0.05) & (inside != 4)
+    holes = np.where(missing[number], math.nan, values)
+    hidden = np.isnan(holes).any(axis=1)
+    assert 0 < hidden.sum() < len(leaves)
+    octree = nestgrid.Octree(leaves, holes)
+    masked = nestgrid.Octree(leaves, values, masked=hidden)
+    for threshold in 0, 0.1:
+        ours = octree.isosurface(0.5, threshold=threshold)
+        theirs = masked.isosurface(0.5, threshold=threshold)
+        np.testing.assert_array_equal(ours.vertices, theirs.vertices)
+        np.testing.assert_array_equal(ours.triangles, theirs.triangles)
+    again = pickle.loads(pickle.dumps(octree))
+    np.testing.assert_array_equal(again.isosurface(0.5).vertices, octree.isosurface(0.5).vertices)
+    differs = holes.copy()
+    differs[0, 7] = math.nan if math.isfinite(differs[0, 7]) else 1
+    with pytest.raises(nestgrid.InvalidInput, match="another leaf has"):
+        nestgrid.Octree(leaves, differs)
 
 
 def same_bits(ours, theirs):

@@ -132,6 +132,14 @@ def test_frames(array):
     interrupted(lambda: frames.at(0.5))
 
 
+def test_holes(array):
+    """Missing samples all over, so that no large part is known to have values."""
+    missing = np.random.default_rng(3).random(array.shape, np.float32) < 0.01
+    holes = np.where(missing, np.float32(np.nan), array)
+    interrupted(lambda: nestgrid.Volume(holes))
+    interrupted(lambda: nestgrid.Frames([array, holes]), after=0.1)
+
+
 def test_octrees():
     side = np.arange(128)
     leaves = np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3)
