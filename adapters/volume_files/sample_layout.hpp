@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,7 +29,7 @@ struct SampleLayout {
     std::size_t components = 1;
     std::size_t frames = 1;
     double time_step = 1;  ///< from a frame to the next
-    double slope = 1;  ///< a value is slope times sample plus intercept
+    double slope = 1;      ///< a value is slope times sample plus intercept
     double intercept = 0;
     std::vector<std::filesystem::path> files{};  ///< each holds as many samples as the others
     std::uintmax_t header_bytes = 0;             ///< before everything else in each file
@@ -46,6 +47,11 @@ SampleLayout nrrd_layout(const std::filesystem::path& path);
 /// \throw nestgrid::IoError where the files are too short for them
 /// \throw std::bad_alloc where no memory could hold them
 std::size_t checked_size(const SampleLayout& layout);
+
+/// The byte of the file at which all samples stand as they do in memory; nothing where they are
+/// packed, written in another order of bytes, in several files, or not at a multiple of their size.
+/// \throw nestgrid::IoError where the file cannot be opened
+std::optional<std::uintmax_t> mappable_from(const SampleLayout& layout);
 
 /// Reads all samples.
 /// \param samples of checked_size() bytes, aligned for the type

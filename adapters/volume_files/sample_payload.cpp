@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
@@ -164,6 +165,17 @@ std::size_t checked_size(const SampleLayout& layout) {
         }
     }
     return samples * bytes_of(layout.type);
+}
+
+std::optional<std::uintmax_t> mappable_from(const SampleLayout& layout) {
+    const std::size_t size = bytes_of(layout.type);
+    const bool own_order =
+        size == 1 || layout.big_endian == (std::endian::native == std::endian::big);
+    if (layout.files.size() != 1 || layout.encoding != Encoding::raw || !own_order) return {};
+    std::ifstream file = open_samples(layout, layout.files.front(), checked_size(layout));
+    const std::streamoff begin = file.tellg();
+    if (begin < 0 || static_cast<std::uintmax_t>(begin) % size != 0) return {};
+    return static_cast<std::uintmax_t>(begin);
 }
 
 void read_samples(const SampleLayout& layout, std::span<std::byte> samples) {

@@ -68,6 +68,7 @@ public:
     bool any() const { return faces_ != nullptr; }
     bool hidden_elements_draw() const { return any() && faces_->any_leaf(); }
     const HiddenBeyond& of(const View& view);
+    std::size_t memory_bytes() const { return any() ? faces_->memory_bytes() : 0; }
 
 private:
     struct AtLevel {

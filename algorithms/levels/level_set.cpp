@@ -176,7 +176,8 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
         {surfaces_[i].error_bound() + off_level, result.range_bound, result.surface_error});
     result.position_bound = surfaces_[i].position_bound();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
-    result.table_bytes = normals_.memory_bytes() + walks_.memory_bytes();
+    result.table_bytes =
+        normals_.memory_bytes() + walks_.memory_bytes() + neighbours_.memory_bytes();
     for (const auto& surface : surfaces_) result.table_bytes += surface.memory_bytes();
     for (const auto& t : transitions_) result.table_bytes += t.record.memory_bytes();
 }

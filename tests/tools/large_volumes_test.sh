@@ -36,6 +36,11 @@ meta 'HeaderSize = -1' 'ElementDataFile = behind.raw' >behind.mhd
 meta 'ElementDataFile = LIST' part0.raw part1.raw part2.raw part3.raw >list.mhd
 meta 'ElementDataFile = part%d.raw 0 3 1' >pattern.mhd
 { meta 'ElementDataFile = LOCAL' && cat large.raw; } >plain.mha
+# Of two lengths, so that the samples of one of them begin at an odd byte, where none can be looked at.
+{ meta 'Comment = a' 'ElementDataFile = LOCAL' && cat large.raw; } >shifted.mha
+{ meta 'Comment = ab' 'ElementDataFile = LOCAL' && cat large.raw; } >more.mha
+{ head -c $((2 * 256 * 256 * 108)) /dev/zero && cat large.raw; } >two.raw
+meta 'ElementDataFile = two.raw' | sed 's/NDims = 3/NDims = 4/; s/256 256 108/& 2/; s/1 1 1/& 1/' >two.mhd
 nrrd 'encoding: raw' 'endian: little' 'data file: large.raw' '' >plain.nhdr
 nrrd 'encoding: raw' 'endian: big' 'datafile: ./swapped.raw' '' >swapped.nhdr
 nrrd 'encoding: gzip' 'endian: little' 'data file: large.raw.gz' >packed.nhdr && echo >>packed.nhdr
@@ -51,11 +56,12 @@ nrrd 'encoding: ascii' 'data file: large.txt' '' >text.nhdr
 raw_options=(--dims 256,256,108 --type int16)
 expected=
 for file in large.raw large.vti plain.mhd swapped.mhd behind.mhd list.mhd pattern.mhd \
-    large_packed.mhd plain.mha large_packed.mha plain.nhdr swapped.nhdr packed.nhdr skip.nhdr \
+    large_packed.mhd plain.mha shifted.mha more.mha two.mhd large_packed.mha plain.nhdr swapped.nhdr packed.nhdr skip.nhdr \
     behind.nhdr list.nhdr pattern.nhdr text.nhdr plain.nrrd packed.nrrd text.nrrd large.nii \
     large.nii.gz; do
     options=()
     [ $file = large.raw ] && options=("${raw_options[@]}")
+    [ $file = two.mhd ] && options=(--frame 1)
     if ! "$program" info $file "${options[@]}" >out 2>err; then
         fail "$file: $(cat err)"
         continue

@@ -14,6 +14,7 @@
 #include "formats.hpp"
 #include "input/child_process.hpp"
 #include "input/input_file.hpp"
+#include "input/mapped_file.hpp"
 #include "suggestion.hpp"
 
 namespace {
@@ -51,11 +52,32 @@ void set_image(Volume& volume, const std::byte* samples) {
     volume.image->GetPointData()->SetScalars(array);
 }
 
-/// The volume in a parcel, whose samples stay there.
+/// The samples of all frames that were chosen, in a parcel or in a file.
+struct OpenedSamples {
+    explicit OpenedSamples(std::shared_ptr<const Parcel> from)
+        : parcel{std::move(from)},
+          description{parcel->block<VolumeDescription>(0).front()},
+          bytes{parcel->block<std::byte>(1)} {
+        if (description.mapped_from < 0) return;
+        const std::span<const char> path = parcel->block<char>(1);
+        file.emplace(
+            std::string(path.begin(), path.end()),
+            static_cast<std::uintmax_t>(description.mapped_from),
+            description.frames * description.sample_count() * bytes_of(description.type.data()));
+        bytes = file->bytes();
+    }
+
+    std::shared_ptr<const Parcel> parcel;
+    const VolumeDescription& description;
+    std::optional<MappedFile> file;
+    std::span<const std::byte> bytes;
+};
+
+/// A volume whose samples stay where they are.
 /// \param frame of those that were chosen
-Volume open_volume(const std::shared_ptr<const Parcel>& parcel, std::size_t frame) {
-    const VolumeDescription& description = parcel->block<VolumeDescription>(0).front();
-    const std::span<const std::byte> all = parcel->block<std::byte>(1);
+Volume open_volume(const std::shared_ptr<const OpenedSamples>& kept, std::size_t frame) {
+    const VolumeDescription& description = kept->description;
+    const std::span<const std::byte> all = kept->bytes;
     const std::size_t bytes = all.size() / description.frames;
     const std::span<const std::byte> samples = all.subspan(frame * bytes, bytes);
     Volume volume;
@@ -68,7 +90,7 @@ Volume open_volume(const std::shared_ptr<const Parcel>& parcel, std::size_t fram
     volume.geometry = description.geometry;
     volume.time = description.first_time + static_cast<double>(frame) * description.time_step;
     set_image(volume, samples.data());
-    volume.memory = parcel;
+    volume.memory = kept;
     return volume;
 }
 
@@ -165,8 +187,10 @@ std::vector<Volume> read_volumes(const fs::path& path, const VolumeChoice& choic
             mask = format_of_samples(choice.mask).read_samples(choice.mask, {});
         put_chosen(samples, choice, mask ? &*mask : nullptr, to);
     });
+    const auto kept = std::make_shared<const OpenedSamples>(parcel);
     std::vector<Volume> volumes;
-    const std::size_t frames = parcel->block<VolumeDescription>(0).front().frames;
-    for (std::size_t i = 0; i < frames; ++i) volumes.push_back(open_volume(parcel, i));
+    for (std::size_t i = 0; i < kept->description.frames; ++i) {
+        volumes.push_back(open_volume(kept, i));
+    }
     return volumes;
 }

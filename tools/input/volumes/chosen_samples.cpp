@@ -13,6 +13,7 @@
 #include <nestgrid/error.hpp>
 
 #include "input/child_process.hpp"
+#include "input/mapped_file.hpp"
 #include "sample_layout.hpp"
 #include "samples.hpp"
 
@@ -214,10 +215,11 @@ std::string place_of(std::size_t i, const nestgrid::LatticeGeometry<3>& geometry
            std::to_string(i / nx / ny % nz) + ")";
 }
 
+/// \param first number of the first of the samples
 /// \return how many samples have no value
-/// \throw nestgrid::InvalidInput for an infinite one, and where none has a value
+/// \throw nestgrid::InvalidInput for an infinite one
 std::size_t count_missing(const FileSamples& file, const std::string& type, const std::byte* data,
-                          std::size_t count) {
+                          std::size_t count, std::size_t first = 0) {
     std::size_t missing = 0;
     with_samples(type, data, count, [&]<class Sample>(std::span<Sample> samples) {
         if constexpr (std::is_floating_point_v<Sample>) {
@@ -225,14 +227,27 @@ std::size_t count_missing(const FileSamples& file, const std::string& type, cons
                 if (std::isfinite(samples[i])) continue;
                 if (std::isinf(samples[i])) {
                     throw InvalidInput(file.path.string() + ": the sample at " +
-                                       place_of(i, file.geometry) +
+                                       place_of(first + i, file.geometry) +
                                        " is infinite; --missing takes a value for none");
                 }
                 ++missing;
             }
         }
     });
-    if (missing == count) throw InvalidInput(file.path.string() + ": no sample has a value");
+    return missing;
+}
+
+/// Does so for samples in a file, of which few are looked at at a time, as memory may hold no more.
+std::size_t count_missing(const FileSamples& file, const NumbersInFile& at, std::size_t count) {
+    const std::size_t size = bytes_of(file.type);
+    constexpr std::size_t step = std::size_t{1} << 24U;
+    std::size_t missing = 0;
+    if (!file.type.starts_with("float")) count = 0;  // whole numbers are all there
+    for (std::size_t first = 0; first < count; first += step) {
+        const std::size_t some = std::min(step, count - first);
+        const MappedFile part(at.path, at.begin + first * size, some * size);
+        missing += count_missing(file, file.type, part.bytes().data(), some, first);
+    }
     return missing;
 }
 
@@ -347,7 +362,10 @@ void put_frame(const FileSamples& samples, const VolumeChoice& choice, const Kep
 }
 
 /// Says how many samples have no value.
-void note_missing(VolumeDescription& description, std::size_t missing, std::size_t all) {
+/// \throw nestgrid::InvalidInput where none has one
+void note_missing(const FileSamples& file, VolumeDescription& description, std::size_t missing,
+                  std::size_t all) {
+    if (missing == all) throw InvalidInput(file.path.string() + ": no sample has a value");
     description.missing = missing;
     if (missing == 0) return;
     const std::string before = description.note.data();
@@ -390,6 +408,7 @@ FileSamples read_layout(const SampleLayout& layout) {
     FileSamples samples{.path = layout.path, .type = layout.type, .geometry = layout.geometry};
     checked_size(layout);
     samples.fill = [layout](std::span<std::byte> block) { read_samples(layout, block); };
+    if (const auto begin = mappable_from(layout)) samples.in_file = {layout.files[0], *begin};
     samples.components.count = layout.components;
     samples.frames.count = layout.frames;
     samples.time_step = layout.time_step;
@@ -431,16 +450,25 @@ void put_chosen(FileSamples& samples, const VolumeChoice& choice, FileSamples* m
     const std::size_t all = description.frames * count;
     const bool as_they_are = !is_computed(samples, choice);
     const bool in_order = is_dense(samples) && samples.frames.stride == count;
+    const bool one_frame = description.frames == 1 && is_dense(samples);
+    if (as_they_are && samples.in_file && (one_frame || (numbers == all && in_order))) {
+        NumbersInFile at = *samples.in_file;
+        at.begin += offset * bytes_of(type);
+        note_missing(samples, description, count_missing(samples, at, all), all);
+        description.mapped_from = static_cast<std::int64_t>(at.begin);
+        return parcel.put(std::span<const char>(at.path.native()));
+    }
     if (as_they_are && numbers == all && samples.data == nullptr && (in_order || all == count)) {
         const std::span<std::byte> block = parcel.append(all * bytes_of(type));
         samples.fill(block);
-        note_missing(description, count_missing(samples, type, block.data(), all), all);
+        note_missing(samples, description, count_missing(samples, type, block.data(), all), all);
         return;
     }
     fill(samples, numbers);
     samples.data += offset * bytes_of(samples.type);
     if (as_they_are && description.frames == 1 && is_dense(samples)) {
-        note_missing(description, count_missing(samples, type, samples.data, count), count);
+        note_missing(samples, description, count_missing(samples, type, samples.data, count),
+                     count);
         parcel.put_last_use({samples.data, count * bytes_of(type)});
         return;
     }
@@ -450,5 +478,5 @@ void put_chosen(FileSamples& samples, const VolumeChoice& choice, FileSamples* m
                   type);
         samples.data += samples.frames.stride * bytes_of(samples.type);
     }
-    note_missing(description, count_missing(samples, type, block.data(), all), all);
+    note_missing(samples, description, count_missing(samples, type, block.data(), all), all);
 }

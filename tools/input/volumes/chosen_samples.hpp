@@ -42,6 +42,8 @@ struct VolumeDescription {
     double first_time = 0;
     double time_step = 1;
     std::size_t missing = 0;  ///< samples of all frames that have no value, and are NaN
+    /// Where the samples stand in a file, whose path is in the parcel in their place; -1: nowhere.
+    std::int64_t mapped_from = -1;
 
     /// Of one frame.
     std::size_t sample_count() const;
@@ -50,7 +52,7 @@ struct VolumeDescription {
 /// Appends a description and the chosen samples, frame after frame, in the type of the file unless
 /// they are computed: then in float32, or in float64 where that would lose digits. Those of a
 /// plane, whose third axis has one sample, are always of these types. Samples without a value are
-/// not a number (NaN).
+/// not a number (NaN). What stands in a file as it does in memory is not copied.
 /// \param mask samples that are kept are not 0 there; null for all
 /// \throw nestgrid::InvalidInput where the choice is missing or does not fit the file, for a space
 ///        that places cannot be turned to, for a mask on other places, and for samples that are

@@ -7,9 +7,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -23,12 +25,20 @@ struct SampleAxis {
     std::size_t stride = 0;  ///< from one to the next, in numbers
 };
 
+/// A file in which numbers stand as they do in memory.
+struct NumbersInFile {
+    std::filesystem::path path;
+    std::uintmax_t begin = 0;  ///< byte of the first one, a multiple of their size
+};
+
 struct FileSamples {
     std::filesystem::path path;
     std::byte* data = nullptr;       ///< the numbers; null where they are not read yet
     std::shared_ptr<void> memory{};  ///< keeps them
     /// Reads all numbers, of which there are numbers_in_file(), where they are not read yet.
     std::function<void(std::span<std::byte> block)> fill{};
+    /// Where all numbers stand in a file without gaps, in the order of the strides.
+    std::optional<NumbersInFile> in_file{};
     std::string type{};  ///< of the numbers, like uint8
     nestgrid::LatticeGeometry<3> geometry{};
     std::array<std::size_t, 3> stride{};  ///< along each axis of space, in numbers

@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,7 @@
 
 #include "formats.hpp"
 #include "input/volumes/file_samples.hpp"
+#include "samples.hpp"
 
 namespace {
 
@@ -49,15 +51,37 @@ std::string reason_of_failure() {
 
 using NrrdPointer = std::unique_ptr<Nrrd, Nrrd* (*)(Nrrd*)>;
 
-void load(const fs::path& path, Nrrd* nrrd, bool header_only) {
-    const std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)> state(nrrdIoStateNew(),
-                                                                             nrrdIoStateNix);
+using StatePointer = std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)>;
+
+/// \return how the file was read
+StatePointer load(const fs::path& path, Nrrd* nrrd, bool header_only) {
+    StatePointer state(nrrdIoStateNew(), nrrdIoStateNix);
     state->skipData = header_only ? 1 : 0;
     // For headers that leave the order of bytes out.
     state->endian = airEndianLittle;
     if (nrrdLoad(nrrd, path.c_str(), state.get()) != 0) {
         throw IoError(path.string() + " is truncated or damaged: " + reason_of_failure());
     }
+    return state;
+}
+
+/// Where the numbers stand as they do in memory: in this file, behind the empty line that ends the
+/// header, or from the beginning of another one.
+std::optional<NumbersInFile> mappable_part(const fs::path& path, const NrrdIoState& state,
+                                           std::size_t size) {
+    const bool skips = state.lineSkip != 0 || state.byteSkip != 0;
+    const bool own_order = size == 1 || state.endian == airMyEndian();
+    if (state.encoding != nrrdEncodingRaw || skips || !own_order) return {};
+    if (state.dataFNFormat != nullptr || state.dataFNArr->len > 1) return {};
+    if (state.dataFNArr->len == 1) return NumbersInFile{path.parent_path() / state.dataFN[0], 0};
+    std::ifstream file(path, std::ios::binary);
+    for (std::string line; std::getline(file, line);) {
+        if (!line.empty() && line != "\r") continue;
+        const auto begin = static_cast<std::uintmax_t>(file.tellg());
+        if (begin % size != 0) return {};
+        return NumbersInFile{path, begin};
+    }
+    return {};
 }
 
 /// Reads the numbers that a header describes.
@@ -251,9 +275,10 @@ void add_axis(FileSamples& samples, const Nrrd& nrrd, unsigned axis, Role role,
 
 FileSamples read_nrrd(const fs::path& path, const WantedSamples& /*wanted*/) {
     const std::shared_ptr<Nrrd> nrrd(nrrdNew(), nrrdNuke);
-    load(path, nrrd.get(), true);
+    const StatePointer state = load(path, nrrd.get(), true);
     FileSamples samples{.path = path};
     samples.type = type_of(path, *nrrd);
+    samples.in_file = mappable_part(path, *state, bytes_of(samples.type));
     samples.fill = [path, nrrd](std::span<std::byte> block) { read_numbers(path, *nrrd, block); };
     std::vector<Role> roles;
     for (unsigned a = 0; a < nrrd->dim; ++a) roles.push_back(role_of(*nrrd, a));
