@@ -73,7 +73,8 @@ void measure_one(const nestgrid::Surface<3>& surface, const nestgrid::Surface<3>
 
 /// The threshold of what is drawn before edges are collapsed.
 double first_threshold(const ExtractionRequest& request, double threshold) {
-    return request.collapses ? threshold / 2 : threshold;
+    if (!request.collapses) return threshold;
+    return request.keeps_distances ? threshold / 2 : nestgrid::begun_with * threshold;
 }
 
 /// Draws one surface.

@@ -43,7 +43,7 @@ struct ExtractionRequest {
     /// Whether thresholds are distances that are kept there and back.
     bool keeps_distances = false;
     /// Whether edges are collapsed while the error, or where distances are kept these, keep within
-    /// the thresholds. What is drawn first has half of them.
+    /// the thresholds. What is drawn first has a part of them.
     bool collapses = false;
     bool measures = false;       ///< against the surface of all data
     bool keep_surfaces = false;  ///< for files and pictures

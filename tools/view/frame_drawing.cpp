@@ -56,7 +56,7 @@ std::vector<FramePart> FrameDrawing::draw(double threshold) const {
         });
     }
     if (!request_.isovalue) return parts;
-    const double first = request_.collapses() ? threshold / 2 : threshold;
+    const double first = request_.collapses() ? begun_with * threshold : threshold;
     with_criterion(first, [&](const auto& hierarchy, const Criterion& criterion) {
         parts.push_back(draw_isosurface(hierarchy, criterion));
         if (request_.collapses()) collapse_edges(parts.back(), hierarchy);

@@ -118,7 +118,8 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
             .progress = progress_of(call)};
 }
 
-/// Draws one isosurface. Where edges are collapsed, what is drawn first has half the threshold.
+/// Draws one isosurface. Where edges are collapsed, what is drawn first has a part of the
+/// threshold.
 template <class Real, class CriterionAt>
 Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue,
                        const CriterionAt& criterion_at, double threshold, const Bounds& bounds,
@@ -127,7 +128,8 @@ Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue,
     const auto draw = [&](const Criterion& by, const IsosurfaceOptions& how) {
         return isosurface<3>(hierarchy, isovalue, by, bounds, how, call.executor());
     };
-    const double first = request.collapses ? threshold / 2 : threshold;
+    const double part = request.keeps_distance ? 0.5 : begun_with;
+    const double first = request.collapses ? part * threshold : threshold;
     const auto criterion = criterion_at(first);
     CollapseOptions kept;
     Isosurface<3> whole;
