@@ -120,13 +120,14 @@ private:
         const std::uint64_t most = taken * best_.max_triangles;
         const double least = std::ldexp(bounds_.range, all > most ? -octaves_tried : -5);
         double error = bounds_.range;
-        while (error > least && (all <= most || drawn(error / 2, most))) error /= 2;
+        while (error > least && (all <= most || drawn(collapse_start * error, most))) error /= 2;
         return error;
     }
     void attempt(int code) {
         const double error = bfloat16_value(static_cast<std::uint16_t>(code));
-        Isosurface<3> result = isosurface<3>(hierarchy_, isovalue_, *criterion_at_(error / 2),
-                                             bounds_.bounds, options_, executor_);
+        Isosurface<3> result =
+            isosurface<3>(hierarchy_, isovalue_, *criterion_at_(collapse_start * error), bounds_.bounds,
+                          options_, executor_);
         if (result.cancelled) throw engine::Cancelled{};
         Surface<3>& surface = result.surface;
         best_.extracted += surface.simplices.size();

@@ -23,6 +23,7 @@
 
 #include "colour_figure.hpp"
 #include "discontinuous_figure.hpp"
+#include "error_figures.hpp"
 #include "growth_figures.hpp"
 #include "indicator_figures.hpp"
 #include "lens_figures.hpp"
@@ -416,6 +417,9 @@ int main(int argc, char** argv) {
         {"isosurface_series", series_figure},
         {"budget", budget_figure},
         {"region", region_figure},
+        {"error_asked", error_asked_figure},
+        {"error_kept", error_kept_figure},
+        {"error_told", error_told_figure},
         {"lens", lens_figure},
         {"blended", blended_figure},
         {"criteria", criteria_figure},

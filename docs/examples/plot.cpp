@@ -81,10 +81,10 @@ double write(Picture& picture, double x, double y, const std::string& text, cons
         }
         if (c == ' ') raised = false;
         const double size = raised ? 0.7 * letter : letter;
-        const double lift = raised ? 3.5 * letter : 0;
+        const double shift_up = raised ? 3.5 * letter : 0;
         const auto at = [&](const char* digits) {
             const double a = along + size * (digits[0] - '0');
-            const double b = lift + size * (digits[1] - '2');
+            const double b = shift_up + size * (digits[1] - '2');
             return upwards ? Point{x - b, y + a, 0} : Point{x + a, y + b, 0};
         };
         std::istringstream strokes(glyphs().at(c));

@@ -19,6 +19,7 @@
 #include <vtkStaticCellLocator.h>
 
 #include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/cut_indicator.hpp>
 
 #include "vtk_samples.hpp"
 
@@ -175,9 +176,14 @@ void compare(const Data& data, int n, int steps) {
     contest.add("draw_and_collapse", [&] {
         const nestgrid::HierarchicalIndicator deviations(erase(grid, field),
                                                          nestgrid::NodeError::deviation);
-        surface = nestgrid::isosurface(grid, field, data.isovalue, deviations,
-                                       {.threshold = data.error / 2, .elements = false})
-                      .surface;
+        // As the program does.
+        const nestgrid::SweptIndicator cuts = nestgrid::cut_deviations(
+            grid, field, std::span<const double>(&data.isovalue, 1), deviations);
+        surface =
+            nestgrid::isosurface(grid, field, data.isovalue,
+                                 nestgrid::Threshold(&cuts, nestgrid::collapse_start * data.error),
+                                 deviations, {.elements = false})
+                .surface;
         begun = surface.simplices.size();
         result = collapse(surface, grid, field, data.isovalue, deviations, {.error = data.error});
         ours = static_cast<double>(surface.simplices.size());

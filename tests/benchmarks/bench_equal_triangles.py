@@ -5,11 +5,15 @@
 scikit-image's step_size sets the number of triangles; the others are asked for as many. Distances
 are in samples, between a surface and the full one of VTK's flying edges, at points spread evenly
 over the area: "there" from the coarse surface to the full one, "back" from the full one to the
-coarse one. Times are processor times, "again" of a second surface of the same samples at another
-isovalue, close by. Prints the tables of docs/equal_triangles.md.
+coarse one. Normals are those of triangles: the mean angle between that of the coarse surface and that
+of the full one at the nearest point. "Least angle" is the mean of those of all triangles. Times are
+processor times, "again" of a second surface of the same samples at another isovalue, close by. Prints
+the tables of docs/equal_triangles.md.
 
-Arguments: --quick for small volumes; --step N ..., the values of step_size; --brain FILE, the NIfTI
-volume in the place of the one of the Debian package mricron-data; --cgal, the program cgal_collapse.
+Arguments: --quick for small volumes; --step N ..., the values of step_size; --data NAME ..., of the
+volumes; --brain FILE, the NIfTI volume in the place of the one of the Debian package mricron-data;
+--cgal, the program cgal_collapse; --envelope, CGAL's collapses in an envelope, too, which is as wide as
+the collapsed surface is far, which takes minutes to hours.
 Needs VTK and scikit-image; OpenVDB (pyopenvdb) where it is found.
 """
 import argparse
@@ -32,9 +36,10 @@ try:
     from skimage.measure import marching_cubes
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkPoints, vtkSMPTools
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
+    from vtkmodules.vtkCommonCore import reference
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkGenericCell, vtkImageData
+    from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticCellLocator
     from vtkmodules.vtkFiltersCore import vtkDecimatePro, vtkFlyingEdges3D, vtkQuadricDecimation
-    from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 except ImportError as missing:
     print(missing)
     sys.exit(77)
@@ -180,7 +185,7 @@ class Samples:
         filter.PreserveTopologyOff()
         return self.decimated(filter, level, most)
 
-    def cgal(self, level, most, program):
+    def cgal(self, level, most, program, *distance):
         vertices, triangles = arrays(self.flying_edges(level))
         with tempfile.TemporaryDirectory() as folder:
             before, after = f"{folder}/before.off", f"{folder}/after.off"
@@ -188,7 +193,7 @@ class Samples:
                 file.write(f"OFF\n{len(vertices)} {len(triangles)} 0\n")
                 np.savetxt(file, vertices, "%.9g")
                 np.savetxt(file, np.insert(triangles, 0, 3, axis=1), "%d")
-            command = [program, str(most), before, after]
+            command = [program, str(most), before, after, *map(str, distance)]
             seconds = subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout
             with open(after) as file:
                 words = file.read().split()[1:]
@@ -218,23 +223,50 @@ class Samples:
         return high
 
 
+def corners(vertices, triangles):
+    return [vertices[triangles[:, k]].astype(float) for k in range(3)]
+
+
+def unit(rows):
+    return rows / np.maximum(np.linalg.norm(rows, axis=1), 1e-30)[:, None]
+
+
+def normals(vertices, triangles):
+    a, b, c = corners(vertices, triangles)
+    return unit(np.cross(b - a, c - a))
+
+
+def least_angle(vertices, triangles):
+    """The mean of the least angles of triangles, in degrees."""
+    a, b, c = corners(vertices, triangles)
+    cosines = [np.sum(unit(q - p) * unit(r - p), axis=1) for p, q, r in ((a, b, c), (b, c, a), (c, a, b))]
+    return np.degrees(np.arccos(np.clip(np.max(cosines, axis=0), -1, 1))).mean()
+
+
 def spread(vertices, triangles, count):
-    """Points spread evenly over the area."""
-    a, b, c = (vertices[triangles[:, k]].astype(float) for k in range(3))
+    """Points spread evenly over the area, and the triangles that they are on."""
+    a, b, c = corners(vertices, triangles)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).cumsum()
     random = np.random.default_rng(1)
     chosen = np.searchsorted(area, (np.arange(count) + random.random(count)) / count * area[-1])
     s, t = random.random((2, count, 1))
     s, t = np.where(s + t > 1, 1 - s, s), np.where(s + t > 1, 1 - t, t)
-    return a[chosen] + s * (b - a)[chosen] + t * (c - a)[chosen]
+    return a[chosen] + s * (b - a)[chosen] + t * (c - a)[chosen], chosen
 
 
-def distances(points, surface):
-    """From the points to the surface: their mean and greatest."""
-    distance = vtkImplicitPolyDataDistance()
-    distance.SetInput(surface)
-    found = np.abs([distance.EvaluateFunction(x) for x in points])
-    return found.mean(), found.max()
+def nearest(points, surface):
+    """From the points to the surface: distances, and the triangles that are nearest."""
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(surface)
+    locator.BuildLocator()
+    at, cell = [0.0, 0.0, 0.0], vtkGenericCell()
+    number, part, square = reference(0), reference(0), reference(0.0)
+    distances, triangles = [], []
+    for x in points:
+        locator.FindClosestPoint(x, at, cell, number, part, square)
+        distances.append(float(square) ** 0.5)
+        triangles.append(int(number))
+    return np.array(distances), np.array(triangles)
 
 
 def timed(call, *arguments):
@@ -243,11 +275,13 @@ def timed(call, *arguments):
     return result, time.process_time() - start
 
 
-def compare(name, values, level, steps, count, cgal):
+def compare(name, values, level, steps, count, cgal, envelope):
     samples = Samples(values)
     full = samples.flying_edges(level)
-    there = spread(*arrays(full), count)
+    there, _ = spread(*arrays(full), count)
+    normals_of_full = normals(*arrays(full))
     nearby = level + 1e-3 * float(np.ptp(values))
+    reached = {}  # the greatest distance, by program
 
     def row(step, by, contestant, *how):
         (vertices, triangles, *inside), first = timed(contestant, level, *how)
@@ -255,10 +289,17 @@ def compare(name, values, level, steps, count, cgal):
         if inside:  # files count for nothing
             edges = timed(samples.flying_edges, level)[1]
             first, again = inside[0] + edges, inside_again[0] + edges
-        near = distances(spread(vertices, triangles, count), full)
-        back = distances(there, poly_data(vertices, triangles))
-        print(f"| {name} | {step} | {by} | {len(triangles):,} | {near[0]:.3f} | {back[0]:.3f} | "
-              f"{near[1]:.2f} | {back[1]:.2f} | {first:.2f} | {again:.2f} |", flush=True)
+        points, on = spread(vertices, triangles, count)
+        near, nearby_triangles = nearest(points, full)
+        back, _ = nearest(there, poly_data(vertices, triangles))
+        # Programs differ in which side is the front.
+        same = np.sum(normals(vertices, triangles)[on] * normals_of_full[nearby_triangles], axis=1)
+        turn = np.degrees(np.arccos(np.clip(np.abs(same), 0, 1))).mean()
+        angle = least_angle(vertices, triangles)
+        print(f"| {name} | {step} | {by} | {len(triangles):,} | {near.mean():.3f} | {back.mean():.3f} | "
+              f"{near.max():.2f} | {back.max():.2f} | {turn:.1f} | {angle:.0f} | {first:.2f} | "
+              f"{again:.2f} |", flush=True)
+        reached[by] = max(near.max(), back.max())
         return len(triangles)
 
     row("", "VTK, all", lambda level: arrays(samples.flying_edges(level)))
@@ -273,6 +314,9 @@ def compare(name, values, level, steps, count, cgal):
         row(step, "VTK, DecimatePro", samples.decimate_pro, most)
         if cgal:
             row(step, "CGAL, collapses", samples.cgal, most, cgal)
+            if envelope:
+                distance = reached["nestgrid, collapsed"]
+                row(step, "CGAL, envelope", samples.cgal, 4, cgal, distance)
         adaptivity = samples.adaptivity(level, most) if pyopenvdb else None
         if adaptivity is not None:
             row(step, "OpenVDB", samples.openvdb, adaptivity)
@@ -283,19 +327,23 @@ def main():
     arguments.add_argument("--quick", action="store_true")
     arguments.add_argument("--step", type=int, nargs="+", default=[2, 3, 5])
     arguments.add_argument("--brain", default=BRAIN)
+    arguments.add_argument("--data", nargs="+", default=["brain", "molecule", "ripples", "scan"])
     arguments.add_argument("--cgal")
+    arguments.add_argument("--envelope", action="store_true")
     chosen = arguments.parse_args()
     vtkSMPTools.Initialize(1)
     n, count, steps = (33, 300, [2]) if chosen.quick else (129, 20_000, chosen.step)
     print("| data | step_size | by | triangles | mean there | mean back | greatest there | "
-          "greatest back | first, s | again, s |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+          "greatest back | normals | least angle | first, s | again, s |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
+    volumes = {"molecule": (lambda: molecule(n), 0.35), "ripples": (lambda: cap(n), 0.0),
+               "scan": (lambda: scan(n), 400.0)}
     if os.path.exists(chosen.brain):
-        values = brain(chosen.brain, chosen.quick)
-        compare("brain", values, 95.5, steps, count, chosen.cgal)
-    compare("molecule", molecule(n), 0.35, steps, count, chosen.cgal)
-    compare("ripples", cap(n), 0.0, steps, count, chosen.cgal)
-    compare("scan", scan(n), 400.0, steps, count, chosen.cgal)
+        volumes["brain"] = (lambda: brain(chosen.brain, chosen.quick), 95.5)
+    for name in chosen.data:
+        if name in volumes:
+            make, level = volumes[name]
+            compare(name, make(), level, steps, count, chosen.cgal, chosen.envelope)
 
 
 if __name__ == "__main__":

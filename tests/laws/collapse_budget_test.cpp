@@ -20,7 +20,8 @@ namespace collapse_budget_test {
 template <class Real>
 std::size_t collapsed_triangles(const Hierarchy<Real>& h, double isovalue,
                                 const HierarchicalIndicator& deviations, double error) {
-    auto surface = isosurface<3>(h, isovalue, deviations, {.threshold = error / 2}).surface;
+    auto surface =
+        isosurface<3>(h, isovalue, deviations, {.threshold = collapse_start * error}).surface;
     collapse(surface, h, isovalue, deviations, {.error = error});
     return surface.simplices.size();
 }

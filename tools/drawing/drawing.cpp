@@ -205,7 +205,9 @@ private:
         tell_({});
         const nestgrid::Surface<3> whole = this->whole();
         const bool collapses = request_.collapses && d.threshold > 0;
-        const double first = collapses ? d.threshold / 2 : d.threshold;
+        const bool of_error = request_.isovalue && !request_.keeps_distances;
+        const double part = of_error ? nestgrid::collapse_start : 0.5;
+        const double first = collapses ? part * d.threshold : d.threshold;
         d = draw(std::move(d),
                  [&](Drawn& to) { draw_with(criterion_at(first), first, whole, to); });
         if (collapses) collapse_one(whole, d);

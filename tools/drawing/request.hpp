@@ -54,7 +54,7 @@ struct DrawingRequest {
     /// Triangles are split until colours follow the data within this; 0 splits none.
     double colour_tolerance = 0;
     /// Whether edges are collapsed while the errors, or where distances are kept these, keep within
-    /// the thresholds. What is drawn first has half of them.
+    /// the thresholds. What is drawn first has a part of them.
     bool collapses = false;
     bool keeps_distances = false;  ///< thresholds are distances that are kept there and back
     bool measures = false;         ///< the isosurface against that of all data

@@ -50,7 +50,7 @@ std::vector<FramePart> FrameDrawing::draw(double threshold) const {
             parts.push_back({"slice", draw_slice(hierarchy, criteria_.detail.at(threshold))});
         }
         if (!request_.isovalue) return;
-        const double first = request_.collapses() ? threshold / 2 : threshold;
+        const double first = request_.collapses() ? collapse_start * threshold : threshold;
         parts.push_back(draw_isosurface(hierarchy, criteria_.detail.at(first)));
         if (request_.collapses()) collapse_edges(parts.back(), hierarchy);
     });

@@ -31,7 +31,8 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
             .progress = progress_of(call)};
 }
 
-/// Draws one isosurface. Where edges are collapsed, what is drawn first has half the threshold.
+/// Draws one isosurface. Where edges are collapsed, what is drawn first has a part of the
+/// threshold.
 template <class Real>
 Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue, const Criteria& criteria,
                        double threshold, const SurfaceRequest& request, const Call& call) {
@@ -40,7 +41,8 @@ Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue, const 
     const auto draw = [&](const Criterion& by, const IsosurfaceOptions& how) {
         return isosurface<3>(hierarchy, isovalue, by, bounds, how, call.executor());
     };
-    const double first = request.collapses ? threshold / 2 : threshold;
+    const double part = request.keeps_distance ? 0.5 : collapse_start;
+    const double first = request.collapses ? part * threshold : threshold;
     const auto criterion = criteria.at(first);
     CollapseOptions kept;
     Isosurface<3> whole;

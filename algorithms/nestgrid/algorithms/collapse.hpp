@@ -65,8 +65,13 @@ struct Collapsed {
     }
 };
 
+/// The part of the error with which a surface is best drawn before its edges are collapsed within
+/// the whole: with less there are more edges to collapse, and as many are left; with more there is
+/// no room to move.
+inline constexpr double collapse_start = 0.75;
+
 /// Collapses edges of a surface that isosurface() or isosurface_within() has drawn, without a cap.
-/// Best begun with one of half the error or distance, whose triangles fit the data and are few.
+/// Best begun with one of three quarters of the error (collapse_start), or of half the distance.
 ///
 /// Afterwards the surface has vertices, triangles and boundary edges, and normals and attributes
 /// where it had them: normals from its triangles, attributes of the data at its vertices. What is

@@ -3,9 +3,9 @@
 //
 // The least error at which an isosurface can be collapsed (collapse.hpp) to a number of triangles.
 //
-// Errors are searched among bfloat16 numbers. Each trial draws with half the error and collapses
-// within it; the next one is interpolated between those that exceed the number and those that keep
-// within it.
+// Errors are searched among bfloat16 numbers. Each trial draws with a part of the error
+// (collapse_start) and collapses within it; the next one is interpolated between those that exceed the
+// number and those that keep within it.
 // Promise: the surface of the error that is found keeps within the number, and has nine tenths of
 // it, or the next lesser bfloat16 number has more triangles.
 // Not promised: that no lesser error keeps within the number, as triangles get fewer with the error
@@ -29,7 +29,7 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
 
 }  // namespace detail
 
-/// The least error such that the isosurface that is drawn with half of it, and then collapsed
+/// The least error such that the isosurface that is drawn with collapse_start of it, and then collapsed
 /// within it, has at most max_triangles. It is the `threshold` of the result; where that is 0, all
 /// data have no more triangles, and nothing is to be collapsed.
 /// \param criterion_at of an error, such as a Threshold on deviations

@@ -324,7 +324,8 @@ TYPED_TEST(Explored, CollapsedFramesKeepTheError) {
         const SweptIndicator cuts = cut_deviations(grid, field, std::span(&at_zero, 1), deviations);
         const bool of_one = cuts_are_errors(erase(grid, field).facts());
         const Indicator& indicator = of_one ? static_cast<const Indicator&>(cuts) : deviations;
-        auto drawn = isosurface(grid, field, at_zero, Threshold(&indicator, error / 2), deviations);
+        auto drawn =
+            isosurface(grid, field, at_zero, Threshold(&indicator, collapse_start * error), deviations);
         collapse(drawn.surface, grid, field, at_zero, deviations, {.error = error})
             .hand_to(drawn, drawn.surface_error);
         const Frame frame = frame_of(explorer, what);

@@ -74,6 +74,8 @@ def check_image_data():
     filter.Collapse, filter.MaxTriangles = 0, 0
     filter.Distance = 0.5
     same(fetch(filter), volume.isosurface(157, distance=0.5))
+    filter.DistanceField = 1
+    same(fetch(filter), volume.isosurface(157, distance=0.5, distance_field=True))
     filter.Distance = 0
     filter.Cap = 1
     assert open_edges(fetch(filter)) == 0
@@ -86,6 +88,10 @@ def check_image_data():
     np.testing.assert_array_equal(values, expected.attributes[:, 0])
     slice.Error = 2
     same(fetch(slice), volume.slice(plane=((1, 0, 0), (1, 1, 0)), error=2))
+    slice.Collapse = 1
+    fewer = volume.slice(plane=((1, 0, 0), (1, 1, 0)), error=2, collapse=True)
+    same(fetch(slice), fewer)
+    assert fewer.triangles.shape[0] < expected.triangles.shape[0]
 
 
 def check_hyper_tree_grid():
@@ -112,6 +118,11 @@ def check_reader():
     reader.Draw = "Slice"
     reader.Origin, reader.Normal = [0.4, 0.5, 0.5], [1, 0, 0]
     assert fetch(reader).GetPointData().GetArray("wave") is not None
+    reader.Distance = 0.1  # of isosurfaces
+    across = ((0.4, 0.5, 0.5), (1, 0, 0))
+    same(fetch(reader), nestgrid.load(path, "wave").slice(plane=across, threshold=0.05))
+    reader.Error, reader.Collapse = 0.05, 1
+    same(fetch(reader), nestgrid.load(path, "wave").slice(plane=across, error=0.05, collapse=True))
 
 
 def check_times():

@@ -86,13 +86,21 @@ DISTANCE = """
   length: an estimate; 0 asks for nothing. Goes before the threshold.</Documentation>
 </DoubleVectorProperty>
 """
+DISTANCE_FIELD = """
+<IntVectorProperty name="DistanceField" command="SetDistanceField" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <BooleanDomain name="bool"/>
+  <Documentation>Keep the distance there and back: draw more where the surfaces are farther from
+  each other, which takes longer.</Documentation>
+</IntVectorProperty>
+"""
 COLLAPSE = """
 <IntVectorProperty name="Collapse" command="SetCollapse" number_of_elements="1"
     default_values="0">
   <BooleanDomain name="bool"/>
   <Documentation>Take edges away while the error, or the distance there and back, is kept, or
   down to the triangles asked for: fewer triangles, in more time. With a threshold or a cap
-  nothing is taken away.</Documentation>
+  nothing is taken away. Of slices the colours keep the error, and the place.</Documentation>
 </IntVectorProperty>
 """
 MAX_TRIANGLES = """
@@ -156,6 +164,7 @@ class Drawing(VTKPythonAlgorithmBase):
         self._fineness = {"error": 0.0, "distance": 0.0, "max_triangles": 0, "threshold": 0.0}
         self._indicator = {"indicator": "offset"}
         self._collapse = {"collapse": False}
+        self._distance_field = {"distance_field": False}
         self._isovalue = 0.0
         self._plane = {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)}
         self._surface_options = {"normals": True, "cap": False}
@@ -176,6 +185,9 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def SetCollapse(self, value):
         self._set(self._collapse, "collapse", bool(value))
+
+    def SetDistanceField(self, value):
+        self._set(self._distance_field, "distance_field", bool(value))
 
     def SetMaxTriangles(self, value):
         self._set(self._fineness, "max_triangles", value)
@@ -200,15 +212,17 @@ class Drawing(VTKPythonAlgorithmBase):
     def SetNormal(self, x, y, z):
         self._set(self._plane, "normal", (x, y, z))
 
-    def fineness(self):
+    def fineness(self, without=()):
         """What says how fine to draw, as arguments of a field."""
-        asked = [name for name, value in self._fineness.items() if value > 0]
+        asked = [name for name, value in self._fineness.items() if value > 0 and name not in without]
         name = asked[0] if asked else "threshold"
         kind = self._indicator if name in ("threshold", "max_triangles") else {}
         return {name: self._fineness[name], **kind}
 
     def isosurface(self, field):
         options = {**self.fineness(), **self._surface_options}
+        if "distance" in options:
+            options.update(self._distance_field)
         if "threshold" not in options and not options["cap"]:
             options.update(self._collapse)
             if options["collapse"]:
@@ -217,7 +231,10 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def slice(self, field):
         plane = (self._plane["origin"], self._plane["normal"])
-        return field.slice(plane=plane, **self.fineness())
+        options = self.fineness(without=("distance",))  # a slice is where it is
+        if "error" in options:
+            options.update(self._collapse)
+        return field.slice(plane=plane, **options)
 
     def draw(self, outInfo, field_of_data, drawing, name):
         """Draws into the output. What the library refuses is empty, with a message in the log."""
@@ -275,8 +292,8 @@ class Filter(Drawing):
 
 @smproxy.filter(name="NestgridIsosurface", label="Nestgrid Isosurface")
 @properties(
-    INPUT, ARRAY, ISOVALUE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE, INDICATOR,
-    NORMALS, CAP,
+    INPUT, ARRAY, ISOVALUE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE,
+    DISTANCE_FIELD, INDICATOR, NORMALS, CAP,
 )
 class NestgridIsosurface(Filter):
     def RequestData(self, request, inInfo, outInfo):
@@ -284,7 +301,7 @@ class NestgridIsosurface(Filter):
 
 
 @smproxy.filter(name="NestgridSlice", label="Nestgrid Slice")
-@properties(INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, THRESHOLD, MAX_TRIANGLES, ERROR)
+@properties(INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE)
 class NestgridSlice(Filter):
     def RequestData(self, request, inInfo, outInfo):
         return self.request(inInfo, outInfo, self.slice)
@@ -328,7 +345,7 @@ FREE_ISOVALUE = """
 )
 @properties(
     FILE_NAMES, FIELD_NAME, DRAW, FREE_ISOVALUE, FREE_PLANE, NORMAL, THRESHOLD, MAX_TRIANGLES,
-    ERROR, COLLAPSE, DISTANCE, INDICATOR, NORMALS, CAP,
+    ERROR, COLLAPSE, DISTANCE, DISTANCE_FIELD, INDICATOR, NORMALS, CAP,
 )
 class NestgridReader(Drawing):
     """Draws hierarchies from files; their elements are no data of VTK."""
