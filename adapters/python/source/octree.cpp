@@ -64,6 +64,7 @@ public:
         check(arrays);
         read_leaves(arrays);
         sort_leaves();
+        require_tiling();
         make_coarse(arrays);
         number_corners();
         masked_.resize(arrays.masked.size());
@@ -95,6 +96,7 @@ private:
     static void check(const OctreeArrays& arrays);
     void read_leaves(const OctreeArrays& arrays);
     void sort_leaves();
+    void require_tiling() const;
     void make_coarse(const OctreeArrays& arrays);
     void number_corners();
     void mask_missing(std::span<const double> of_leaves);
@@ -106,6 +108,13 @@ private:
         Place p = low_[leaf];
         for (std::size_t d = 0; d < size; ++d) p[d] += (c >> d & 1U) != 0 ? width : 0;
         return p;
+    }
+    bool lies_in(const Place& x, std::size_t leaf) const {
+        const std::int64_t width = std::int64_t{1} << (max_level_ - leaves_[leaf].level);
+        for (std::size_t d = 0; d < size; ++d) {
+            if (x[d] < low_[leaf][d] || x[d] >= low_[leaf][d] + width) return false;
+        }
+        return true;
     }
     std::string name_of(std::size_t leaf) const { return "leaf " + std::to_string(order_[leaf]); }
 
@@ -181,6 +190,13 @@ void Forest<dim>::read_leaves(const OctreeArrays& arrays) {
                                std::to_string(row[size]) + ", not 0 to " +
                                std::to_string(max_level_));
         }
+        const std::int64_t width = std::int64_t{1} << (max_level_ - row[size]);
+        for (std::size_t d = 0; d < size; ++d) {
+            if (low[d] % width == 0) continue;
+            throw InvalidInput("leaf " + std::to_string(i) +
+                               " is not aligned to its level: " + std::to_string(low[d]) +
+                               " is no multiple of " + std::to_string(width));
+        }
         low_.push_back(low);
         tree_.push_back(tree);
         leaves_.push_back({low[0] & in_tree, low[1] & in_tree, low[2] & in_tree, row[size]});
@@ -219,6 +235,28 @@ void Forest<dim>::sort_leaves() {
         if (i == 0 || tree_[i] != tree_[i - 1]) first_.push_back(i);
     }
     first_.push_back(tree_.size());
+}
+
+/// Of leaves that are sorted, one that overlaps another one lies in that before it.
+/// \throw InvalidInput in the numbering of the arrays
+template <int dim>
+void Forest<dim>::require_tiling() const {
+    for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
+        std::uint64_t filled = 0;
+        for (std::size_t i = first_[t]; i < first_[t + 1]; ++i) {
+            if (i > first_[t] && lies_in(low_[i], i - 1)) {
+                throw InvalidInput(name_of(i) + " overlaps " + name_of(i - 1));
+            }
+            filled += std::uint64_t{1}
+                      << size * static_cast<unsigned>(max_level_ - leaves_[i].level);
+        }
+        if (filled == std::uint64_t{1} << size * static_cast<unsigned>(max_level_)) continue;
+        std::string place;
+        for (std::size_t d = 0; d < size; ++d) {
+            place += (d == 0 ? "" : ", ") + std::to_string(low_[first_[t]][d] >> max_level_);
+        }
+        throw InvalidInput("the leaves of the root (" + place + ") do not fill it");
+    }
 }
 
 template <int dim>
