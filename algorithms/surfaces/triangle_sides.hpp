@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -24,22 +25,42 @@ struct OrientedSide {
     auto ends() const { return std::pair(low, high); }
 };
 
-/// All sides of all triangles. The sides on one edge follow each other.
-inline std::vector<OrientedSide> sorted_sides(
-    std::span<const std::array<std::uint32_t, 3>> triangles) {
-    std::vector<OrientedSide> sides;
-    sides.reserve(3 * triangles.size());
+/// Calls function(side) for all sides of all triangles, one triangle after the other.
+template <class Function>
+void for_each_side(std::span<const std::array<std::uint32_t, 3>> triangles,
+                   const Function& function) {
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         const auto& v = triangles[t];
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t a = v[i];
             const std::uint32_t b = v[(i + 1) % 3];
-            sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
+            function(OrientedSide{std::min(a, b), std::max(a, b), t, a < b});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const OrientedSide& a, const OrientedSide& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+}
+
+/// All sides of all triangles. The sides on one edge follow each other, in the order of their
+/// triangles. Vertices may have any numbers, but those of few triangles should not be far apart.
+inline std::vector<OrientedSide> sorted_sides(
+    std::span<const std::array<std::uint32_t, 3>> triangles) {
+    std::size_t vertices = 0;
+    for_each_side(triangles, [&](const OrientedSide& side) {
+        vertices = std::max(vertices, std::size_t{side.low} + 1);
     });
+    // Where the sides of each lower end begin, and then where the next of them goes.
+    std::vector<std::size_t> next(vertices + 1, 0);
+    for_each_side(triangles, [&](const OrientedSide& side) { ++next[side.low + 1]; });
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<OrientedSide> sides(3 * triangles.size());
+    for_each_side(triangles, [&](const OrientedSide& side) { sides[next[side.low]++] = side; });
+    std::size_t begin = 0;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const std::span<OrientedSide> around(sides.data() + begin, next[v] - begin);
+        std::sort(around.begin(), around.end(), [](const OrientedSide& a, const OrientedSide& b) {
+            return std::tie(a.high, a.triangle) < std::tie(b.high, b.triangle);
+        });
+        begin = next[v];
+    }
     return sides;
 }
 

@@ -80,7 +80,7 @@ void add_elements(const nestgrid::Surface<dimension>& surface, vtkPolyData* data
 template <int dimension>
 vtkSmartPointer<vtkPolyData> borrowed(nestgrid::Surface<dimension>& surface,
                                       const std::string& colours, bool elements) {
-    const vtkSmartPointer<vtkPolyData> data = nestgrid::share_poly_data(surface);
+    vtkSmartPointer<vtkPolyData> data = nestgrid::share_poly_data(surface);
     vtkPointData* const points = data->GetPointData();
     if (vtkDataArray* const attribute = points->GetArray("attributes")) {
         attribute->SetName(colours.c_str());

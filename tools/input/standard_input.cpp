@@ -31,7 +31,7 @@ std::string checked(const std::string& ending) {
         throw nestgrid::InvalidInput(
             "standard input has no name that tells its format: give --input-format, like nii.gz");
     }
-    const std::string dotted = lower(ending.front() == '.' ? ending : "." + ending);
+    std::string dotted = lower(ending.front() == '.' ? ending : "." + ending);
     const std::vector<std::string> known = endings_of_fields();
     if (std::ranges::find(known, dotted) == known.end()) {
         throw nestgrid::InvalidInput("the input format '" + ending + "' is none of " +

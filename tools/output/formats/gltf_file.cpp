@@ -109,7 +109,7 @@ std::string write_gltf(vtkPolyData* surface, const std::filesystem::path& path) 
         surface->GetCenter(origin->data());
     }
     writer->SetInputData(as_blocks(prepared(surface, origin)));
-    const std::string reason = written_by(writer.Get(), path);
+    std::string reason = written_by(writer.Get(), path);
     const Json::Value known = known_of(surface);
     if (!reason.empty() || (known.empty() && !origin)) return reason;
     return complete(path, known, origin);
