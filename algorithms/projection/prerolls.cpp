@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/prerolls.hpp>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <string>
@@ -146,7 +147,9 @@ private:
         }
         const std::scoped_lock lock(mutex_);
         OfLevelSets& last = of_level_sets_[&kind];
-        if (last.made && last.blend == blend && std::ranges::equal(last.isovalues, isovalues)) {
+        if (last.made && last.blend == blend &&
+            std::equal(last.isovalues.begin(), last.isovalues.end(), isovalues.begin(),
+                       isovalues.end())) {
             return last.made;
         }
         last = {blend, std::vector(isovalues.begin(), isovalues.end()),
