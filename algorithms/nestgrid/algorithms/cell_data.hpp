@@ -103,12 +103,13 @@ CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue of_leaf)
         throw InvalidInput("the means of cells need a grid with node keys of its own");
     }
     KeyTable<NodeKey, Running> running;
-    detail::for_each_leaf(
-        erase(grid, ZeroField<Grid>{}), [&](const Handle& leaf, std::span<const NodeKey> keys) {
-            const double value = leaf_value(detail::element_of<Element>(leaf));
-            elsewhere_.add(value);
-            for (const NodeKey key : keys) running.insert(key, {}).first->add(value);
-        });
+    detail::for_each_leaf(erase(grid, ZeroField<Grid>{}),
+                          [&](const Handle& leaf, std::span<const NodeKey> keys) {
+                              const double value = leaf_value(detail::element_of<Element>(leaf));
+                              elsewhere_.add(value);
+                              for (const NodeKey key : keys)
+                                  running.insert(key, {}).first->add(value);
+                          });
     means_.reserve(running.size());
     running.for_each([&](NodeKey key, const Running& r) { means_.insert(key, r.mean); });
 }
