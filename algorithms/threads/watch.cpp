@@ -80,6 +80,9 @@ private:
     FieldOnGrid kept_;
     const Watch& watch_;
 };
+// clang 14 instantiates them nowhere else.
+template class WatchedHierarchy<float>;
+template class WatchedHierarchy<double>;
 
 }  // namespace
 
