@@ -41,6 +41,16 @@ std::shared_ptr<const Sum> weighted_sum(std::vector<std::shared_ptr<const Indica
     return {kept, &kept->sum};
 }
 
+/// \throw GridError where the grid has changed since the hierarchy was made for it
+void require_unchanged(const FieldOnGrid& field) {
+    field.visit([](const auto& hierarchy) {
+        const std::unique_ptr<Task> task = hierarchy.open();
+        Coarse coarse;
+        Family family;
+        if (hierarchy.coarse_count() > 0) hierarchy.coarse(task.get(), 0, coarse, family);
+    });
+}
+
 }  // namespace
 
 /// All that is kept, behind one lock.
@@ -57,10 +67,9 @@ public:
 
     ChosenIndicator choose(const IndicatorKind& kind, double blend,
                            std::span<const double> isovalues, const Work& work) {
-        const FieldOnGrid field = work.on(field_);
+        const FieldOnGrid& field = work.same_field == nullptr ? field_ : *work.same_field;
         kind.require(field.facts());
-        // Refuses a grid that has changed since the hierarchy was made for it.
-        field.visit([](const auto& hierarchy) { hierarchy.open(); });
+        require_unchanged(field);
         ChosenIndicator chosen = kind.of_nodes ? of_nodes(*kind.of_nodes, blend, work)
                                                : of_nodes(NodeError::offset, 1, work);
         chosen.kind = &kind;

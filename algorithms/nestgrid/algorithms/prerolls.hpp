@@ -34,6 +34,7 @@ struct ChosenIndicator {
     std::shared_ptr<const Bounds> bounds;
 };
 
+/// The indicators of one field that projections of it have needed so far. Safe for threads.
 class Prerolls {
 public:
     /// \param field shared where it is to be kept alive. It is not asked by work that has a field
