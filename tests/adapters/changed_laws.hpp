@@ -70,7 +70,12 @@ public:
             {"holes", [&] { HierarchicalIndicator{holes_}; }},
             {"hidden elements", [&] { Holes<Real>(now, hidden_); }},
             {"series", [&] { series_.draw(0.1); }},
-            {"prerolls", [&] { prerolls_.bounds({}); }},
+            {"prerolls",
+             [&] {
+                 const ChosenIndicator kept = prerolls_.choose("offset", 1, {}, {});
+                 probe<Real>(hierarchy_, middle_, Threshold(kept.indicator.get(), 0.1),
+                             *kept.bounds);
+             }},
             {"data that jump", [&] { probe(jumping_, middle_); }},
         };
     }
