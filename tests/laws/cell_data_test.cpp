@@ -20,6 +20,8 @@ using CellFunction = std::function<double(const Point& centre)>;
 
 constexpr Point slope{0.3, 0.7, -0.4};
 
+constexpr std::array rules{CellRule::smooth, CellRule::sharp_centres, CellRule::sharp_means};
+
 double linear(const Point& x) { return dot(slope, x) + 2; }
 
 /// What looks like noise, and has one value for all numberings of the corners of a cell.
@@ -110,12 +112,14 @@ TYPED_TEST(CellData, OfLinearFunctionsGiveThemAtAllNodes) {
             grid.adapt([](const Leaf&) { return Mark::refine; });
             refine_at_random(grid, 2 * TypeParam::steps, seed);
             const Cells cells(grid);
-            const CellAverages field(grid, cells.data(linear));
-            double off = 0;
-            for_each_corner(grid, field, [&](const Point& x, double value, const auto&) {
-                off = std::max(off, std::abs(value - linear(x)));
-            });
-            EXPECT_LE(off, 1e-12);
+            for (const CellRule rule : rules) {
+                const CellAverages field(grid, cells.data(linear), rule);
+                double off = 0;
+                for_each_corner(grid, field, [&](const Point& x, double value, const auto&) {
+                    off = std::max(off, std::abs(value - linear(x)));
+                });
+                EXPECT_LE(off, 1e-12);
+            }
         }
     }
 }
@@ -123,9 +127,12 @@ TYPED_TEST(CellData, OfLinearFunctionsGiveThemAtAllNodes) {
 TYPED_TEST(CellData, ThatAreConstantStayFlat) {
     for (auto& grid : TypeParam::grids()) {
         refine_at_random(grid, 2 * TypeParam::steps, 5);
-        const CellAverages field(grid, [](const auto&) { return 0.1; });
-        for_each_corner(grid, field,
-                        [](const Point&, double value, const auto&) { ASSERT_EQ(value, 0.1); });
+        for (const CellRule rule : rules) {
+            const CellAverages field(
+                grid, [](const auto&) { return 0.1; }, rule);
+            for_each_corner(grid, field,
+                            [](const Point&, double value, const auto&) { ASSERT_EQ(value, 0.1); });
+        }
     }
 }
 
@@ -134,12 +141,14 @@ TYPED_TEST(CellData, StayNearTheRangeOfCells) {
     for (auto& grid : TypeParam::grids()) {
         refine_at_random(grid, 2 * TypeParam::steps, 6);
         const Cells cells(grid);
-        const CellAverages field(grid,
-                                 cells.data([](const Point& x) { return x[0] < 0.4 ? 0 : 1; }));
-        for_each_corner(grid, field, [](const Point&, double value, const auto&) {
-            ASSERT_GE(value, -1);
-            ASSERT_LE(value, 2);
-        });
+        for (const CellRule rule : rules) {
+            const CellAverages field(
+                grid, cells.data([](const Point& x) { return x[0] < 0.4 ? 0 : 1; }), rule);
+            for_each_corner(grid, field, [](const Point&, double value, const auto&) {
+                ASSERT_GE(value, -1);
+                ASSERT_LE(value, 2);
+            });
+        }
     }
 }
 
@@ -192,6 +201,7 @@ TYPED_TEST(CellDataInOctrees, AreMeansByOneOverSizeInside) {
 
 TYPED_TEST(CellDataInOctrees, DoNotDependOnNumbers) {
     std::map<Point, double> values;
+    const CellRule rule = CellRule::sharp_means;  // which contains the smooth one
     for (const bool other : {false, true}) {
         const CoarseGrid coarse = this->cube(2);
         auto grid = this->make(other ? shaken(coarse, 3, 0) : coarse);
@@ -202,7 +212,7 @@ TYPED_TEST(CellDataInOctrees, DoNotDependOnNumbers) {
             });
         }
         const Cells cells(grid);
-        const CellAverages field(grid, cells.data(noise));
+        const CellAverages field(grid, cells.data(noise), rule);
         for_each_corner(grid, field, [&](const Point& x, double value, const auto&) {
             if (!other) values[x] = value;
             ASSERT_EQ(values.at(x), value);
@@ -241,13 +251,13 @@ TEST(CellData, DrawPlanesWithoutACrease) {
 
 /// Relative errors of the area and of the volume of a ball that a wall cuts and a change of level
 /// crosses, and the greatest distance of a vertex from the sphere.
-std::array<double, 3> errors_of_ball(int n) {
+std::array<double, 3> errors_of_ball(int n, CellRule rule = CellRule::smooth) {
     const OctreeGrid<3> grid = half_refined(n, 1);
     const Cells cells(grid);
     const Point centre{0.2, 0.5, 0.5};
     const double radius = 0.4;
-    const CellAverages field(grid,
-                             cells.data([&](const Point& x) { return norm(x - centre) - radius; }));
+    const CellAverages field(
+        grid, cells.data([&](const Point& x) { return norm(x - centre) - radius; }), rule);
     const auto surface = isosurface(grid, field, 0).surface;
     std::array<double, 3> sum{};  // area, volume, distance
     const Point in_wall{0, 0.5, 0.5};
@@ -272,6 +282,32 @@ TEST(CellData, DrawBallsOfSecondOrderAtWallsAndChangesOfLevel) {
         SCOPED_TRACE(coarse[i]);
         EXPECT_LE(fine[i], coarse[i] / 3.2);
         EXPECT_LE(fine[i], 0.005);
+    }
+}
+
+TEST(CellData, DrawBallsBetterWhereTheyAreSharp) {
+    const auto smooth = errors_of_ball(16);
+    const auto sharp = errors_of_ball(16, CellRule::sharp_centres);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(sharp[i], smooth[i] / 1.3);
+}
+
+/// Of centres, and of means, which add a 24th of the second derivatives times the squared size.
+TEST(CellData, ThatAreSharpGiveQuadraticFunctionsInside) {
+    const double h = 1.0 / 12;
+    const OctreeGrid<3> grid(hexahedra(12));
+    const Cells cells(grid);
+    const auto f = [](const Point& x) {
+        return x[0] + (x[0] + 0.1) * (x[1] + 0.2) + 0.2 * x[2] * x[2] + 2 * x[2];
+    };
+    for (const CellRule rule : {CellRule::sharp_centres, CellRule::sharp_means}) {
+        const double mean = rule == CellRule::sharp_means ? 0.4 * h * h / 24 : 0;
+        const CellAverages field(grid, cells.data([&](const Point& x) { return f(x) + mean; }),
+                                 rule);
+        for_each_corner(grid, field, [&](const Point& x, double value, const auto&) {
+            const auto [low, high] = std::minmax_element(x.begin(), x.end());
+            if (*low < 2.5 * h || *high > 1 - 2.5 * h) return;
+            ASSERT_NEAR(value, f(x), 1e-13);
+        });
     }
 }
 

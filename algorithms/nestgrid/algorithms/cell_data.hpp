@@ -19,6 +19,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <utility>
 
 #include <nestgrid/algorithms/detail/for_each_leaf.hpp>
@@ -27,6 +28,15 @@
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {
+
+/// How values of cells become values at nodes. Those that are sharp have second differences of the
+/// cells taken off, which the means add, as far as the range of the cells around a node lets them:
+/// on cubes of one size, quadratic functions are reproduced inside.
+enum class CellRule : std::uint8_t {
+    smooth,         ///< the means, which lie within the range of the cells
+    sharp_centres,  ///< of values at the centres of cells
+    sharp_means,    ///< of means of cells, as finite volumes have
+};
 
 /// \tparam Grid with node keys of its own
 /// \tparam LeafValue callable as a number of LeafValue(const Element&) for every leaf
@@ -41,10 +51,10 @@ public:
     using value_type = double;
     using Element = ElementOf<Grid>;
 
-    /// Walks the whole hierarchy, and asks each leaf twice, for the same number. The grid must
-    /// outlive the field and stay as it is.
+    /// Walks the whole hierarchy twice, or five times where the rule is sharp, and asks each leaf
+    /// as often, for the same number. The grid must outlive the field and stay as it is.
     /// \throw InvalidInput where the grid has no node keys of its own
-    CellAverages(const Grid& grid, LeafValue of_leaf);
+    CellAverages(const Grid& grid, LeafValue of_leaf, CellRule rule = CellRule::smooth);
 
     /// The value of the cell itself; only leaves have one.
     double leaf_value(const Element& leaf) const { return static_cast<double>(leaf_value_(leaf)); }
@@ -73,14 +83,19 @@ public:
     std::size_t memory_bytes() const { return means_.memory_bytes(); }
 
 private:
-    detail::NodeMeans make_means() const {
+    detail::NodeMeans make_means(CellRule rule) const {
         const auto hierarchy = erase(*grid_, ZeroField<Grid>{});
-        return {Grid::dimension, [&](const auto& visit) {
-                    detail::for_each_leaf(hierarchy, [&](const detail::LeafView& leaf) {
-                        visit({leaf.shape, leaf.keys, leaf.positions,
-                               leaf_value(detail::element_of<Element>(leaf.element))});
-                    });
-                }};
+        const detail::ForEachCell for_each_cell = [&](const auto& visit) {
+            detail::for_each_leaf(hierarchy, [&](const detail::LeafView& leaf) {
+                visit({leaf.shape, leaf.keys, leaf.positions,
+                       leaf_value(detail::element_of<Element>(leaf.element))});
+            });
+        };
+        detail::NodeMeans means(Grid::dimension, for_each_cell);
+        if (rule == CellRule::smooth) return means;
+        const double part = rule == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3;
+        means.sharpen(Grid::dimension, for_each_cell, part);
+        return means;
     }
     NodeMask look_up(std::span<const NodeKey> keys, NodeMask which, std::span<double> out) const {
         NodeMask missing = 0;
@@ -104,12 +119,12 @@ private:
 };
 
 template <class Grid, class LeafValue>
-CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue of_leaf)
+CellAverages<Grid, LeafValue>::CellAverages(const Grid& grid, LeafValue of_leaf, CellRule rule)
     : grid_{&grid}, leaf_value_{std::move(of_leaf)}, epoch_{epoch(grid)} {
     if (!offers(grid, Feature::own_keys)) {
         throw InvalidInput("the means of cells need a grid with node keys of its own");
     }
-    means_ = make_means();
+    means_ = make_means(rule);
 }
 
 }  // namespace nestgrid

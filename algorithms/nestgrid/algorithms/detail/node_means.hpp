@@ -47,6 +47,12 @@ public:
     /// \param for_each_cell called twice
     NodeMeans(int dimension, const ForEachCell& for_each_cell);
 
+    /// Takes off second differences, within the range of the cells around a node and its value.
+    /// \param for_each_cell as before; called three times
+    /// \param part of what cells differ by from the means of their corners: 1/2 where their values
+    ///        are those at their centres, 2/3 where they are means
+    void sharpen(int dimension, const ForEachCell& for_each_cell, double part);
+
     /// The value at a node, or null where no cell has it for a corner. It is not a number where
     /// the value of a cell around the node is not finite.
     const double* find(NodeKey key) const {
