@@ -11,6 +11,7 @@
 
 #include "element_in.hpp"
 #include "families.hpp"
+#include "refusal.hpp"
 
 using namespace nestgrid_test;
 
@@ -308,6 +309,29 @@ TEST(CellData, ThatAreSharpGiveQuadraticFunctionsInside) {
             if (*low < 2.5 * h || *high > 1 - 2.5 * h) return;
             ASSERT_NEAR(value, f(x), 1e-13);
         });
+    }
+}
+
+/// The nodes around have no number, and no other ones.
+TEST(CellData, ThatAreNoNumbersStayWhereTheyAre) {
+    const OctreeGrid<3> grid(hexahedra(8));
+    const Cells cells(grid);
+    const Point middle{0.5, 0.5, 0.5};
+    const double nowhere = std::numeric_limits<double>::quiet_NaN();
+    const auto f = [&](const Point& x) { return norm(x - middle) < 0.12 ? nowhere : linear(x); };
+    for (const CellRule rule : rules) {
+        const CellAverages field(grid, cells.data(f), rule);
+        expect_refused([&] { HierarchicalIndicator(grid, field); }, "nan");
+        std::size_t missing = 0;
+        for_each_corner(grid, field, [&](const Point& x, double value, const auto&) {
+            if (std::isnan(value)) {
+                ++missing;
+                ASSERT_LT(norm(x - middle), 0.25);
+            } else {
+                ASSERT_NEAR(value, linear(x), 1e-12);
+            }
+        });
+        EXPECT_GT(missing, 0U);
     }
 }
 
