@@ -62,7 +62,7 @@ template <int dimension, class Real>
 NodeKey CapContour<dimension, Real>::edge_key(std::uint8_t edge) const {
     FaceKey key;
     if (const auto* maximal = cuts_->view().closed.edge(edge)) {
-        for (const std::size_t end : {0, 1}) key.add_corner(maximal->key(end));
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) key.add_corner(maximal->key(end));
     } else {
         const auto& ends = cuts_->view().topology().edge[edge];
         for (const std::uint8_t end : ends) key.add_corner(cuts_->keys()[end]);

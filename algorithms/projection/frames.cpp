@@ -27,17 +27,28 @@ HiddenPointer missing_elements(std::span<const FieldOnGrid> fields) {
     });
 }
 
+/// A field with holes, and what it is made of.
+template <class Real>
+struct FieldWithHoles {
+    FieldWithHoles(FieldOnGrid of, const Hierarchy<Real>& hierarchy, const HiddenPointer& hidden)
+        : inner{std::move(of)}, holes(hierarchy, hidden) {}
+
+    FieldOnGrid inner;
+    Holes<Real> holes;
+};
+
+template <class Real>
+FieldOnGrid make_holes(const FieldOnGrid& field, const Hierarchy<Real>& hierarchy,
+                       const HiddenPointer& hidden) {
+    const auto kept = std::make_shared<const FieldWithHoles<Real>>(field, hierarchy, hidden);
+    return std::shared_ptr<const Hierarchy<Real>>(kept, &kept->holes);
+}
+// clang 14 emits nothing that is instantiated by a generic lambda alone.
+template FieldOnGrid make_holes(const FieldOnGrid&, const Hierarchy<float>&, const HiddenPointer&);
+template FieldOnGrid make_holes(const FieldOnGrid&, const Hierarchy<double>&, const HiddenPointer&);
+
 FieldOnGrid with_holes(const FieldOnGrid& field, const HiddenPointer& hidden) {
-    return field.visit([&]<class Real>(const Hierarchy<Real>& hierarchy) -> FieldOnGrid {
-        struct Kept {
-            Kept(FieldOnGrid of, const Hierarchy<Real>& hierarchy, const HiddenPointer& hidden)
-                : inner{std::move(of)}, holes(hierarchy, hidden) {}
-            FieldOnGrid inner;
-            Holes<Real> holes;
-        };
-        const auto kept = std::make_shared<const Kept>(field, hierarchy, hidden);
-        return std::shared_ptr<const Hierarchy<Real>>(kept, &kept->holes);
-    });
+    return field.visit([&](const auto& hierarchy) { return make_holes(field, hierarchy, hidden); });
 }
 
 }  // namespace

@@ -57,7 +57,10 @@ public:
 
     ChosenIndicator choose(const IndicatorKind& kind, double blend,
                            std::span<const double> isovalues, const Work& work) {
-        kind.require(work.on(field_).facts());
+        const FieldOnGrid field = work.on(field_);
+        kind.require(field.facts());
+        // Refuses a grid that has changed since the hierarchy was made for it.
+        field.visit([](const auto& hierarchy) { hierarchy.open(); });
         ChosenIndicator chosen = kind.of_nodes ? of_nodes(*kind.of_nodes, blend, work)
                                                : of_nodes(NodeError::offset, 1, work);
         chosen.kind = &kind;

@@ -81,13 +81,21 @@ private:
     const Watch& watch_;
 };
 
+template <class Real>
+FieldOnGrid watched_field(const FieldOnGrid& field, const Hierarchy<Real>& hierarchy,
+                          const Watch& watch) {
+    return std::shared_ptr<const Hierarchy<Real>>(
+        std::make_shared<const WatchedHierarchy<Real>>(field, hierarchy, watch));
+}
+// clang 14 emits nothing that is instantiated by a generic lambda alone.
+template FieldOnGrid watched_field(const FieldOnGrid&, const Hierarchy<float>&, const Watch&);
+template FieldOnGrid watched_field(const FieldOnGrid&, const Hierarchy<double>&, const Watch&);
+
 }  // namespace
 
 FieldOnGrid watched(const FieldOnGrid& field, const Watch& watch) {
-    return field.visit([&]<class Real>(const Hierarchy<Real>& hierarchy) -> FieldOnGrid {
-        return std::shared_ptr<const Hierarchy<Real>>(
-            std::make_shared<const WatchedHierarchy<Real>>(field, hierarchy, watch));
-    });
+    return field.visit(
+        [&](const auto& hierarchy) { return watched_field(field, hierarchy, watch); });
 }
 
 void TellingExecutor::run(std::size_t count, const std::function<void(std::size_t)>& work,

@@ -25,6 +25,7 @@
 #include <nestgrid/algorithms/node_levels.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
+#include <nestgrid/algorithms/prerolls.hpp>
 #include <nestgrid/algorithms/probe_line.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/slice.hpp>
@@ -49,7 +50,9 @@ public:
     using Real = typename Field::value_type;
 
     /// Both are borrowed.
-    MadeOnce(const Grid& grid, const Field& field) : grid_{&grid}, field_{&field} {}
+    MadeOnce(const Grid& grid, const Field& field) : grid_{&grid}, field_{&field} {
+        prerolls_.bounds({});
+    }
 
     const HierarchicalIndicator& indicator() const { return indicator_; }
 
@@ -67,6 +70,7 @@ public:
             {"holes", [&] { HierarchicalIndicator{holes_}; }},
             {"hidden elements", [&] { Holes<Real>(now, hidden_); }},
             {"series", [&] { series_.draw(0.1); }},
+            {"prerolls", [&] { prerolls_.bounds({}); }},
             {"data that jump", [&] { probe(jumping_, middle_); }},
         };
     }
@@ -95,6 +99,7 @@ public:
         add("first of two", swept && Exact{});
         add("second of two", Exact{} || swept);
         add("one that insists", Unsaturated(swept));
+        add("any criterion", AnyCriterion(swept));
         return all;
     }
 
@@ -157,6 +162,7 @@ private:
     IsosurfaceSeries<dimension> series_{*grid_, *field_};
     DiscontinuousData jumping_{*grid_, one};
     ElementDeviations jumps_{jumping_};
+    Prerolls prerolls_{FieldOnGrid(hierarchy_)};
     HierarchicalIndicator indicator_{hierarchy_};
     HierarchicalIndicator deviations_{hierarchy_, NodeError::deviation};
     NodeLevels levels_{*grid_};

@@ -157,7 +157,9 @@ class Samples:
                 high = error
                 if triangles > 0.9 * most:
                     break
-            guess = error * max(triangles, 1) / most
+            # Until an error is enough, the next one is clearly greater.
+            least = 1.5 if high == np.inf else 0.0
+            guess = error * max(triangles / most, 1 / most, least)
             error = guess if low < guess < high else (low + min(high, 4 * error)) / 2
         return high
 

@@ -19,7 +19,7 @@ anchors() {
     sed -nE 's/^#+ //p' "$1" | tr '[:upper:]' '[:lower:]' | sed -E "s/[^a-z0-9 _-]//g; s/ /-/g"
 }
 
-for page in README.md CHANGELOG.md docs/*.md docs/tutorial/*.md; do
+for page in README.md CHANGELOG.md CONTRIBUTING.md docs/*.md docs/tutorial/*.md; do
     while IFS= read -r target; do
         case "$target" in http*) continue ;; esac
         count=$((count + 1))

@@ -29,6 +29,7 @@ public:
     bool wants_positions() const override { return inner_->wants_positions(); }
     bool saturated() const override { return inner_->saturated(); }
     bool needs_one_level_a_node() const override { return inner_->needs_one_level_a_node(); }
+    bool made_for(std::uint64_t epoch) const override { return inner_->made_for(epoch); }
     double surface_error(std::span<const double> isovalues) const override {
         return inner_->surface_error(isovalues);
     }

@@ -89,6 +89,10 @@ std::string Explorer::info() const {
     text.key("least").number(least_).key("greatest").number(greatest_);
     text.key("usual_range").numbers(usual_range_).key("box").open('[');
     for (const Point& corner : field_.box) text.numbers(corner);
+    text.close(']').key("indicators").open('[');
+    for (const IndicatorKind* const kind : page_indicators()) {
+        text.open('[').string(kind->name).string(kind->measures).close(']');
+    }
     text.close(']').key("times").numbers(field_.times());
     text.key("isovalue").number(field_.isovalue.value_or((least_ + greatest_) / 2));
     text.key("histogram").open('{').key("least").number(h.least);

@@ -46,8 +46,9 @@ public:
 
     /// What a page needs to begin with, as JSON: a title, the name of the field, its range, that
     /// of nearly all values (the same unless few lie far off), box,
-    /// unit of length (empty where it is not known), times, a histogram, an isovalue to begin with,
-    /// samples (0 where the field has none), nodes, and seconds of the preroll.
+    /// indicators (a name and what it measures), unit of length (empty where it is not known),
+    /// times, a histogram, an isovalue to begin with, samples (0 where the field has none), nodes,
+    /// and seconds of the preroll.
     std::string info() const;
 
     /// Draws a frame.

@@ -198,6 +198,7 @@ public:
     bool saturated() const override { return criterion_->saturated(); }
     bool needs_one_level_a_node() const override { return criterion_->needs_one_level_a_node(); }
     bool insists() const override { return criterion_->insists(); }
+    bool made_for(std::uint64_t epoch) const override { return criterion_->made_for(epoch); }
     double surface_error(std::span<const double> isovalues) const override {
         return criterion_->surface_error(isovalues);
     }

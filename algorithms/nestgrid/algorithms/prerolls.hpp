@@ -55,6 +55,7 @@ public:
     /// \param name of indicators(), or "error" as of Projection
     /// \param blend the factor by which the indicator is spread, at least 1
     /// \param isovalues where the indicator is that of level sets
+    /// \throw GridError where the grid has changed since the field's hierarchy was made for it
     /// \throw InvalidInput for an unknown name, where the grid lacks what the indicator needs,
     /// where
     ///        one of level sets is asked for without isovalues, and as the functions that make them

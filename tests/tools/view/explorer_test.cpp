@@ -324,8 +324,8 @@ TYPED_TEST(Explored, CollapsedFramesKeepTheError) {
         const SweptIndicator cuts = cut_deviations(grid, field, std::span(&at_zero, 1), deviations);
         const bool of_one = cuts_are_errors(erase(grid, field).facts());
         const Indicator& indicator = of_one ? static_cast<const Indicator&>(cuts) : deviations;
-        auto drawn =
-            isosurface(grid, field, at_zero, Threshold(&indicator, collapse_start * error), deviations);
+        auto drawn = isosurface(grid, field, at_zero, Threshold(&indicator, collapse_start * error),
+                                deviations);
         collapse(drawn.surface, grid, field, at_zero, deviations, {.error = error})
             .hand_to(drawn, drawn.surface_error);
         const Frame frame = frame_of(explorer, what);
@@ -475,7 +475,8 @@ TEST(Info, TellsOfTheSamplesAndNotOfNodesBeyondThem) {
     const std::vector<std::span<const float>> both{first, second};
     const Explorer explorer(explored_samples(cube_of(n), both, {0, 1}), executor);
     const std::string info = explorer.info();
-    for (const char* part : {"\"samples\":8000", "\"least\":0,\"greatest\":40"}) {
+    for (const char* part : {"\"samples\":8000", "\"least\":0,\"greatest\":40",
+                             "[\"norm\",\"offsets of all components"}) {
         EXPECT_NE(info.find(part), std::string::npos) << part << " in " << info;
     }
 }

@@ -76,10 +76,20 @@ export class Controls {
     byId('isovalue-number').setAttribute('aria-invalid', 'false');
   }
 
+  /** Offers the indicators of the field: those that the page has no text for by what they measure. */
+  #offer({ indicators }) {
+    const select = byId('indicator');
+    const named = [...select.options].map((option) => option.value);
+    for (const [name, measures] of indicators) {
+      if (!named.includes(name)) select.add(new Option(measures, name));
+    }
+  }
+
   /** Shows a state. */
   show(state, info) {
     this.#state = state;
     this.#info = info;
+    this.#offer(info);
     byId('surface').checked = state.surface;
     byId('outlines').checked = state.outlines;
     byId('collapse').checked = state.collapse;

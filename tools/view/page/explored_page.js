@@ -163,7 +163,7 @@ export class ExploredPage {
   }
 
   #restore(state = null) {
-    this.#state = state ?? stateFromAddress(location.hash, this.#start);
+    this.#state = state ?? stateFromAddress(location.hash, this.#start, this.#info.indicators);
     Object.assign(this.#state, chosenOf(this.#info));
     this.#picture.project(this.#state.projection);
     if (this.#namesFiles) this.#state.file = this.#info.title;

@@ -63,7 +63,6 @@ export function choiceFromAddress(hash, files) {
 
 const choices = {
   detail: ['triangles', 'error', 'distance', 'threshold'],
-  indicator: ['offset', 'deviation', 'visual', 'numerical', 'wavelet'],
   slice: ['none', 'x', 'y', 'z', 'view'],
   lens: ['off', 'cursor', 'click'],
   projection: ['perspective', 'parallel'],
@@ -71,12 +70,14 @@ const choices = {
 const lists = { normal: 3, centre: 3, camera: 9 };
 
 /** The state in an address, #key=value&..., on top of where a page begins; what is malformed does not
-    count. */
-export function stateFromAddress(hash, start) {
+    count. Indicators are those of the field, [name, what it measures]. */
+export function stateFromAddress(hash, start, indicators = []) {
   const state = { ...start };
   for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ''))) {
     if (!(key in state)) continue;
-    if (choices[key]) {
+    if (key === 'indicator') {
+      if (indicators.some(([name]) => name === text)) state[key] = text;
+    } else if (choices[key]) {
       if (choices[key].includes(text)) state[key] = text;
     } else if (typeof state[key] === 'boolean') {
       state[key] = text === 'on';

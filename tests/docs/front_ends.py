@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes or checks the table of docs/front_ends.md: what each front end has, and by which name.
+
+Each name must occur in what the front end tells its users: public headers, the program's help, the
+keys of the page's requests, Python's signatures, the properties of ParaView's filters. Each hole has
+a reason. Every option of Python's isosurface(), of C's options, of the page and of VTK's sources
+must be in the table.
+
+Usage: front_ends.py SOURCE PROGRAM [--write]
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+REASONS = {
+    "a": "not yet",
+    "b": "VTK's filters do it with the surface",
+    "c": "a file holds no such data",
+    "d": "two-dimensional fields are not explored",
+    "e": "always all threads",
+    "f": "the caller keeps its surfaces",
+    "g": "by C++ only: it is a function of the caller's own types",
+    "h": "by Ctrl-C, or by the next request",
+    "i": "printed with every surface",
+}
+FRONT_ENDS = ["C++", "C, Fortran", "program", "page", "Python", "VTK", "ParaView"]
+# Of each feature one cell for each front end: a name, or the letter of a reason.
+TABLE = {
+    "What is drawn": {
+        "an isosurface": "isosurface nestgrid_isosurface_with isosurface isovalue isosurface IsosurfaceSource "
+        "NestgridIsosurface",
+        "several in one walk": "isosurfaces a a a a a a",
+        "a series of them": "IsosurfaceSeries a a a a a a",
+        "a band between two": "isoband a a a a a a",
+        "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
+        "by a sphere, a cylinder": "Sphere nestgrid_slice_along --sphere a sphere SetCutFunction a",
+        "by any function": "LevelFunction nestgrid_slice_along --function a a SetCutFunction a",
+        "isolines in the plane": "isolines nestgrid_isolines isolines d isolines a a",
+        "isolines on a surface": "surface_isolines nestgrid_surface_isolines --on-surface a isolines b b",
+        "a height field, a shading": "height_field nestgrid_height_field height d height_field "
+        "HeightFieldSource a",
+        "the boundary of the domain": "boundary_surface a boundary a a a a",
+        "data that jump": "DiscontinuousData a c c c a c",
+        "values at points": "probe nestgrid_probe probe a probe b b",
+        "edges of elements": "outlines elements --outlines outlines outlines a a",
+        "cracks, area, volume": "surface_report f i a report b b",
+        "measured errors": "measure_error a --measure a a a a",
+    },
+    "How finely": {
+        "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
+        "an error that is kept": "error_indicator error --error error error a Error",
+        "a distance, estimated": "slope_deviations NESTGRID_SLOPE --distance distance distance a Distance",
+        "a distance that is kept": "isosurface_within a --distance-field a distance_field a "
+        "DistanceField",
+        "a number of triangles": "max_triangles max_triangles --max-triangles triangles max_triangles "
+        "SetMaxTriangles MaxTriangles",
+        "collapsed edges": "collapse a --collapse collapse collapse a Collapse",
+        "an indicator by name": "indicators indicator --indicator indicator indicator a Indicator",
+        "nodes that move": "Blended a --blend a blend a a",
+        "a lens": "Lens a --lens lens lens a a",
+        "a region": "Region a --box a a a a",
+        "a criterion of one's own": "Criterion g g g g g g",
+        "times between frames": "Frames a --time time Frames a TimestepValues",
+    },
+    "How, and what is kept": {
+        "normals": "normals normals --no-normals normals normals SetNormals Normals",
+        "caps": "cap cap --cap a cap SetCap Cap",
+        "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes a a",
+        "cuts on finest data": "Cuts finest_cuts --cuts a cuts a a",
+        "the element of a triangle": "elements elements --elements outlines elements a a",
+        "places in elements": "reference reference a a a a a",
+        "colours that follow the data": "refine_colours a --colour-tolerance a a a a",
+        "threads": "Executor threads --threads e threads a e",
+        "work that is ended": "Watch progress h h h a a",
+    },
+}
+# Names that a front end has beside those of the table: data, places, and the like.
+OTHERS = {
+    "page": {"axis", "at", "finest", "coarsest", "slope", "motion"},
+    "Python": {"level", "self"},
+    "C, Fortran": {"size", "attributes", "attribute_count", "progress_data", "prerolls"},
+    "VTK": {"SetGrid", "SetOrigin", "SetNormal", "SetIsovalue", "SetScale"},
+}
+MARKED_BEGIN = "<!-- made by tests/docs/front_ends.py -->\n"
+
+
+def text_of(folder, *patterns):
+    return "\n".join(p.read_text() for pattern in patterns for p in sorted(folder.glob(pattern)))
+
+
+def python_arguments(source):
+    """The parameters of isosurface() in Python."""
+    text = (source / "adapters/python/nestgrid/_fields.py").read_text()
+    signature = re.search(r"def isosurface\((.*?)\) ->", text, re.S).group(1)
+    return set(re.findall(r"^\s*(\w+)\s*:", signature, re.M)) | {"self"}
+
+
+def public_text(source, program):
+    """What each front end tells its users."""
+    commands = ["isosurface", "slice", "isolines", "height", "boundary", "probe"]
+    run = [subprocess.run([program, c, "--help-all"], capture_output=True, text=True) for c in commands]
+    helps = "\n".join(done.stdout for done in run)
+    request = (source / "tools/view/frame_request.cpp").read_text()
+    keys = "".join(re.findall(r'"([^"]*)"', request.split("known_keys", 1)[1].split(";", 1)[0]))
+    return {
+        "C++": text_of(source / "algorithms/nestgrid/algorithms", "*.hpp"),
+        "C, Fortran": text_of(source / "algorithms/c/nestgrid/algorithms", "*.h"),
+        "program": " ".join(commands) + helps,
+        "page": keys,
+        "Python": text_of(source / "adapters/python/nestgrid", "_fields.py", "_sources.py", "_results.py"),
+        "VTK": text_of(source / "adapters/vtk/nestgrid/adapters", "*_source.hpp"),
+        "ParaView": text_of(source / "adapters/python/nestgrid/paraview/plugin", "*.py"),
+    }
+
+
+def options_of(source, texts):
+    """What a front end offers of which nothing may be missing in the table."""
+    struct = texts["C, Fortran"].split("typedef struct nestgrid_options {", 1)[1].split("}", 1)[0]
+    struct = re.sub(r"/\*.*?\*/", "", struct, flags=re.S)
+    struct = re.sub(r"\(\*(\w+)\)\([^)]*\)", r"\1", struct)
+    return {
+        "page": set(re.findall(r"\w+", texts["page"])) - {"and"},
+        "Python": python_arguments(source),
+        "C, Fortran": set(re.findall(r"(\w+);", struct)),
+        "VTK": set(re.findall(r"void (Set\w+)\(", texts["VTK"])),
+    }
+
+
+def rows():
+    for features in TABLE.values():
+        for feature, cells in features.items():
+            yield feature, dict(zip(FRONT_ENDS, cells.split(), strict=True))
+
+
+def faults(source, texts):
+    found = []
+    named = {front_end: set() for front_end in FRONT_ENDS}
+    for feature, cells in rows():
+        for front_end, cell in cells.items():
+            if cell in REASONS:
+                continue
+            named[front_end].add(cell)
+            if not re.search(rf"(?<![\w-]){re.escape(cell)}(?![\w-])", texts[front_end]):
+                found.append(f"{feature}: {front_end} tells nobody of '{cell}'")
+    for front_end, options in options_of(source, texts).items():
+        for option in sorted(options - named[front_end] - OTHERS[front_end]):
+            found.append(f"the table lacks '{option}' of {front_end}")
+    return found
+
+
+def table():
+    lines = []
+    for title, features in TABLE.items():
+        lines += [f"## {title}", "", "| | " + " | ".join(FRONT_ENDS) + " |"]
+        lines.append("|---" * (len(FRONT_ENDS) + 1) + "|")
+        for feature, cells in features.items():
+            shown = (f"({c})" if c in REASONS else f"`{c}`" for c in cells.split())
+            lines.append(f"| {feature} | " + " | ".join(shown) + " |")
+        lines.append("")
+    used = {c for _, cells in rows() for c in cells.values() if c in REASONS}
+    lines += [f"- ({letter}) {REASONS[letter]}" for letter in sorted(used)]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    source, program = Path(sys.argv[1]), sys.argv[2]
+    found = faults(source, public_text(source, program))
+    page = source / "docs/front_ends.md"
+    before, _, after = page.read_text().partition(MARKED_BEGIN)
+    if "--write" in sys.argv:
+        page.write_text(before + MARKED_BEGIN + "\n" + table())
+    elif after != "\n" + table():
+        found.append("docs/front_ends.md is not what tests/docs/front_ends.py --write makes")
+    print(*found, f"{sum(1 for _ in rows())} features, {len(found)} faults", sep="\n")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
