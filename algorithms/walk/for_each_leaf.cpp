@@ -7,13 +7,16 @@
 namespace nestgrid::detail {
 
 void for_each_leaf(const Hierarchy<float>& hierarchy, const LeafFunction& function) {
-    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true});
+    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true, .positions = true});
     std::array<NodeKey, max_corners> keys;
+    std::array<Point, max_corners> positions;
     engine::for_each_element(
         walk, false, [&](const engine::ElementView<float>& view, const engine::Split& split) {
             if (split.rule != nullptr || view.member->hidden == Hidden::wholly) return;
-            walk.corners(view, keys.data(), nullptr);
-            function(view.element(), std::span(keys).first(view.corner_count()));
+            walk.corners(view, keys.data(), positions.data());
+            const std::size_t count = view.corner_count();
+            function({view.element(), view.shape, std::span(keys).first(count),
+                      std::span(positions).first(count)});
         });
 }
 

@@ -100,9 +100,9 @@ class Octree(Field):
 
     leaves       (n, 4) integers x, y, z, level ((n, 3): x, y, level): the lowest corner of each
                  leaf in cells of max_level, and its level, that of a root being 0
-    values       (n,): of the leaves, from which nodes get means; or (n, 8) ((n, 4)): at the corners
-                 of the leaves, x fastest, equal where leaves meet. From numbered nodes:
-                 values_at_nodes[nodes_of_leaves]
+    values       (n,): of the leaves, from which nodes get means that are exact for linear
+                 functions; or (n, 8) ((n, 4)): at the corners of the leaves, x fastest,
+                 equal where leaves meet. From numbered nodes: values_at_nodes[nodes_of_leaves]
     max_level    0 to 20: a root is 2**max_level cells wide; None: the greatest level
     spacing      size of a cell of max_level, in units of length; None: 1
     origin       position of the corner (0, 0, 0); None: 0

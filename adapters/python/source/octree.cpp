@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include <nestgrid/adapters/linear_octree.hpp>
+#include <nestgrid/algorithms/detail/node_means.hpp>
 
 #include "source.hpp"
 
@@ -108,6 +109,20 @@ private:
         Place p = low_[leaf];
         for (std::size_t d = 0; d < size; ++d) p[d] += (c >> d & 1U) != 0 ? width : 0;
         return p;
+    }
+    /// Of a corner of a leaf, between the corners of its coarse element.
+    Point position(std::size_t tree, std::size_t leaf, std::size_t c) const {
+        const Point& first = coarse_.nodes[coarse_.element(tree).front()];
+        const Point& last = coarse_.nodes[coarse_.element(tree).back()];
+        const Place at = corner(leaf, c);
+        const std::int64_t width = std::int64_t{1} << max_level_;
+        Point x = first;
+        for (std::size_t d = 0; d < size; ++d) {
+            const std::int64_t inside = at[d] - (low_[leaf][d] >> max_level_) * width;
+            x[d] = std::lerp(first[d], last[d],
+                             static_cast<double>(inside) / static_cast<double>(width));
+        }
+        return x;
     }
     bool lies_in(const Place& x, std::size_t leaf) const {
         const std::int64_t width = std::int64_t{1} << (max_level_ - leaves_[leaf].level);
@@ -319,26 +334,26 @@ void Forest<dim>::mask_missing(std::span<const double> of_leaves) {
     }
 }
 
-/// The mean of the leaves around a node, hidden ones aside, as CellAverages has it.
+/// Values at nodes as CellAverages has them, hidden leaves aside.
 template <int dim>
 void Forest<dim>::average(std::span<const double> of_leaves) {
-    std::vector<std::uint32_t> count(values_.size());
-    const auto add = [&](double& mean, std::uint32_t& number, double value) {
-        mean = ++number == 1 ? value : mean + (value - mean) / number;
-    };
-    double elsewhere = 0;
-    std::uint32_t shown = 0;
-    for (std::size_t i = 0; i < leaves_.size(); ++i) {
-        if (!masked_.empty() && masked_[i] != 0) continue;
-        const double value = of_leaves[order_[i]];
-        add(elsewhere, shown, value);
-        for (std::size_t c = 0; c < corners; ++c) {
-            const std::uint32_t node = nodes_[corners * i + c];
-            add(values_[node], count[node], value);
+    constexpr Shape shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
+    const detail::NodeMeans means(dim, [&](const auto& visit) {
+        std::array<NodeKey, corners> keys;
+        std::array<Point, corners> positions;
+        for (std::size_t i = 0, tree = 0; i < leaves_.size(); ++i) {
+            if (i == first_[tree + 1]) ++tree;
+            if (!masked_.empty() && masked_[i] != 0) continue;
+            for (std::size_t c = 0; c < corners; ++c) {
+                keys[c] = nodes_[corners * i + c];
+                positions[c] = position(tree, i, c);
+            }
+            visit({shape, keys, positions, of_leaves[order_[i]]});
         }
-    }
+    });
     for (std::size_t node = 0; node < values_.size(); ++node) {
-        if (count[node] == 0) values_[node] = elsewhere;
+        const double* mean = means.find(node);
+        values_[node] = mean == nullptr ? means.middle() : *mean;
     }
 }
 

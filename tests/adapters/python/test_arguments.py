@@ -170,7 +170,7 @@ def test_what_things_say_of_themselves():
     surface = volume.slice(plane=((1, 1, 1), (0, 0, 1)), elements=True)
     assert "3 x 3 x 3 samples of float64, from 0 to 26" in repr(volume)
     assert "8 leaves" in repr(nestgrid.Octree(LEAVES, np.arange(8.0)))
-    assert "from 0 to 7" in repr(nestgrid.Octree(LEAVES, np.arange(8.0)))
+    assert "from -3.5 to 10.5" in repr(nestgrid.Octree(LEAVES, np.arange(8.0)))  # at corners
     frames = nestgrid.Frames([CUBE, CUBE + 1])
     assert "2 frames" in repr(frames) and "from 0 to 27" in repr(frames)
     assert "time 0.5" in repr(frames.at(0.5)) and "from 0.5 to 26.5" in repr(frames.at(0.5))

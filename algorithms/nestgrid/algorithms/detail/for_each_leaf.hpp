@@ -9,8 +9,15 @@
 
 namespace nestgrid::detail {
 
-/// Takes a leaf and the keys of its corners.
-using LeafFunction = std::function<void(const Handle& leaf, std::span<const NodeKey> corner_keys)>;
+/// A leaf, and the keys and positions of its corners.
+struct LeafView {
+    Handle element;
+    Shape shape = Shape::point;
+    std::span<const NodeKey> keys;
+    std::span<const Point> positions;
+};
+
+using LeafFunction = std::function<void(const LeafView&)>;
 
 /// Calls a function for every leaf that is not hidden, in order.
 void for_each_leaf(const Hierarchy<float>& hierarchy, const LeafFunction& function);
