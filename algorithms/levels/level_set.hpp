@@ -54,8 +54,8 @@ public:
     void extract(const View& view) override;
     NodeMask children(const View& view) override { return walks_.children(view); }
     Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
-    /// Hidden elements record what they would draw on faces around them.
-    /// Where a face of a leaf that is shown is divided beyond it, they draw caps.
+    /// Hidden elements are walked to record what they would draw on faces around them, and to draw
+    /// caps on those faces which they divide more finely than the leaf that is shown.
     bool sees_hidden() const override {
         return walks_.is_recording() || neighbours_.hidden_elements_draw();
     }

@@ -65,9 +65,15 @@ public:
     const FieldOnGrid& field() const { return field_; }
     bool between_frames() const { return !frames_.empty(); }
 
+    /// \param name as of Projection::indicator
+    const IndicatorKind& kind_of(std::string_view name, bool between, const Work& work) const {
+        return name == "error" ? error_indicator(asked(work).facts(), between)
+                               : indicator_named(name);
+    }
+
     ChosenIndicator choose(const IndicatorKind& kind, double blend,
                            std::span<const double> isovalues, const Work& work) {
-        const FieldOnGrid& field = work.same_field == nullptr ? field_ : *work.same_field;
+        const FieldOnGrid& field = asked(work);
         kind.require(field.facts());
         require_unchanged(field);
         ChosenIndicator chosen = kind.of_nodes ? of_nodes(*kind.of_nodes, blend, work)
@@ -125,6 +131,10 @@ public:
 
 private:
     using Made = std::shared_ptr<const SweptIndicator>;
+
+    const FieldOnGrid& asked(const Work& work) const {
+        return work.same_field == nullptr ? field_ : *work.same_field;
+    }
 
     /// A hierarchical indicator, which has bounds, too.
     ChosenIndicator of_nodes(NodeError error, double blend, const Work& work) {
@@ -224,18 +234,13 @@ bool Prerolls::between_frames() const { return kept_->between_frames(); }
 
 ChosenIndicator Prerolls::choose(std::string_view name, double blend,
                                  std::span<const double> isovalues, const Work& work) {
-    const IndicatorKind& kind = name == "error"
-                                    ? error_indicator(work.on(field()).facts(), between_frames())
-                                    : indicator_named(name);
-    return kept_->choose(kind, blend, isovalues, work);
+    return kept_->choose(kept_->kind_of(name, between_frames(), work), blend, isovalues, work);
 }
 
 std::shared_ptr<const Bounds> Prerolls::prepare(const Projection& projection, bool shared,
                                                 const Work& work) {
-    const bool between = shared || between_frames();
-    const IndicatorKind& kind = projection.indicator == "error"
-                                    ? error_indicator(work.on(field()).facts(), between)
-                                    : indicator_named(projection.indicator);
+    const IndicatorKind& kind =
+        kept_->kind_of(projection.indicator, shared || between_frames(), work);
     if (projection.lens) sizes(projection.sizes_spread(), work);
     if (kind.of_nodes || (shared && kind.between_frames)) {
         return kept_->choose(kind, projection.blend, {}, work).bounds;

@@ -201,9 +201,7 @@ TEST(SurfaceFileSentences, NameBadSurfaces) {
 
 TEST(Refusals, OfSurfacesInFiles) {
     RefusalRows rows("surfaces in files");
-    const auto before = std::filesystem::current_path();
-    std::filesystem::current_path(
-        testing::TempDir());  // sentences name the files as they are given
+    const InTestFolder folder;
     const auto read = [](const std::string& name, const std::string& content) {
         return [name, content] {
             write_file(name, content);
@@ -227,7 +225,6 @@ TEST(Refusals, OfSurfacesInFiles) {
     rows.add("two vertices at one place",
              read("twice.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n1 0 0\n3 0 1 2\n"));
     rows.add("a surface of one side", read("strip.off", off_file(moebius_strip(9))));
-    std::filesystem::current_path(before);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <string>
@@ -13,6 +14,18 @@
 #include "refusal.hpp"
 
 namespace nestgrid_test {
+
+/// Works in the folder of the tests, so that sentences name files as they are given.
+class InTestFolder {
+public:
+    InTestFolder() { std::filesystem::current_path(testing::TempDir()); }
+    InTestFolder(const InTestFolder&) = delete;
+    InTestFolder& operator=(const InTestFolder&) = delete;
+    ~InTestFolder() { std::filesystem::current_path(before_); }
+
+private:
+    std::filesystem::path before_ = std::filesystem::current_path();
+};
 
 /// The rows of one adapter. Each that is called must stand in the page, and each of the page must
 /// be called. With NESTGRID_PRINT_REFUSALS in the environment the rows are printed.

@@ -217,9 +217,7 @@ TEST(TetGenSentences, NameBadComplexes) {
 
 TEST(Refusals, OfTetGen) {
     RefusalRows rows("TetGen");
-    const auto before = std::filesystem::current_path();
-    std::filesystem::current_path(
-        testing::TempDir());  // sentences name the files as they are given
+    const InTestFolder folder;
     const auto read = [](const std::string& name, const std::string& content) {
         return [name, content] {
             write_file(name, content);
@@ -250,7 +248,6 @@ TEST(Refusals, OfTetGen) {
         write_file("box.smesh", box + "6 0\n" + faces + "0\n");
         read_tetgen("box.smesh", {.switches = "r"});
     });
-    std::filesystem::current_path(before);
 }
 
 }  // namespace

@@ -78,11 +78,6 @@ Drawn drawn_of(Isosurface<3> result, const TriangleBudget& search) {
             result.cancelled};
 }
 
-/// Whether the projection draws everything by offsets, so that no preroll is needed.
-bool draws_everything(const Projection& projection) {
-    return projection.indicator == "offset" && projection.draws_everything() && !projection.lens;
-}
-
 /// The function that find_threshold() asks for criteria.
 auto criterion_at(const Criteria& criteria) {
     return [&criteria](double threshold) { return criteria.at(threshold); };
@@ -116,7 +111,7 @@ Drawn draw_slice(const Source& source, const LevelFunction& function, const Surf
                  const Projection& projection, const Call& call) {
     return call.with(source.field(), [&](const auto& hierarchy) {
         const IsosurfaceOptions options = options_of(request, call);
-        if (draws_everything(projection)) {
+        if (projection.draws_everything()) {
             return drawn_of(slice(hierarchy, function, options, call.executor()), {});
         }
         const Criteria criteria(source.prerolls(), projection, {}, call.work());
@@ -187,7 +182,7 @@ Drawn draw_height_field(const Source& source, std::optional<double> scale, doubl
 ProbeResult probe_points(const Source& source, std::span<const Point> points,
                          const Projection& projection, const Call& call) {
     return call.with(source.field(), [&](const auto& hierarchy) {
-        if (draws_everything(projection)) return probe(hierarchy, points);
+        if (projection.draws_everything()) return probe(hierarchy, points);
         const Criteria criteria(source.prerolls(), projection, {}, call.work());
         return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
     });

@@ -110,7 +110,7 @@ private:
         for (std::size_t d = 0; d < size; ++d) p[d] += (c >> d & 1U) != 0 ? width : 0;
         return p;
     }
-    /// Of a corner of a leaf, between the corners of its coarse element.
+    /// The position of a corner of a leaf, interpolated between the corners of its coarse element.
     Point position(std::size_t tree, std::size_t leaf, std::size_t c) const {
         const Point& first = coarse_.nodes[coarse_.element(tree).front()];
         const Point& last = coarse_.nodes[coarse_.element(tree).back()];
@@ -252,7 +252,7 @@ void Forest<dim>::sort_leaves() {
     first_.push_back(tree_.size());
 }
 
-/// Of leaves that are sorted, one that overlaps another one lies in that before it.
+/// Leaves are sorted, so that a leaf which overlaps others lies in the one before it.
 /// \throw InvalidInput in the numbering of the arrays
 template <int dim>
 void Forest<dim>::require_tiling() const {

@@ -49,7 +49,7 @@ public:
     /// \return the least and the greatest value of all frames
     /// \throw InvalidInput as Prerolls::choose()
     std::array<double, 2> prepare(const Projection& projection, const Work& work) const;
-    /// Of what the prerolls keep.
+    /// Bytes of all that the prerolls of the frames keep.
     std::size_t memory_bytes() const;
     /// Drops what all prerolls keep.
     void clear();

@@ -42,7 +42,8 @@ struct Projection {
     }
     /// Whether it can be kept without a preroll: everything is drawn.
     bool draws_everything() const {
-        return least_threshold() == 0 && max_triangles == 0 && blend == 1;
+        return indicator == "offset" && least_threshold() == 0 && max_triangles == 0 &&
+               blend == 1 && !lens;
     }
     /// How the sizes of elements are spread, which the lens is compared with.
     Spread sizes_spread() const { return {.factor = blend, .slope = lens->slope}; }
