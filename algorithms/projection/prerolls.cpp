@@ -234,6 +234,7 @@ bool Prerolls::between_frames() const { return kept_->between_frames(); }
 
 ChosenIndicator Prerolls::choose(std::string_view name, double blend,
                                  std::span<const double> isovalues, const Work& work) {
+    if (name == "error" && isovalues.empty()) name = "deviation";
     return kept_->choose(kept_->kind_of(name, between_frames(), work), blend, isovalues, work);
 }
 

@@ -13,6 +13,14 @@ void Projection::check() const {
         throw InvalidInput("blend is not a finite number of at least 1");
     }
     if (!(least_threshold() >= 0)) throw InvalidInput("the threshold is not a number >= 0");
+    if (collapse && !threshold && max_triangles == 0) {
+        throw InvalidInput(
+            "edges are collapsed within a threshold or a number of triangles: neither is given");
+    }
+    if (collapse && lens) throw InvalidInput("edges are collapsed without a lens");
+    if (keeps_distance && !threshold) {
+        throw InvalidInput("a distance is to be kept, but there is no threshold that says which");
+    }
     if (lens && (!(lens->slope >= 0) || !std::isfinite(lens->slope))) {
         throw InvalidInput("the slope of the lens is not a finite number >= 0");
     }

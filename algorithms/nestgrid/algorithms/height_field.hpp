@@ -30,25 +30,23 @@ Shading height_field(const Hierarchy<Real>& hierarchy, double scale,
 // Each also takes a grid and a field in the place of the hierarchy.
 
 template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-Shading height_field(const Grid& grid, const Field& field, double scale, const Criterion& criterion,
-                     const Bounds& bounds, const ShadingOptions& options = {},
-                     const Executor& executor = SequentialExecutor{}) {
-    return height_field(erase(grid, field), scale, criterion, bounds, options, executor);
-}
+    requires NodalField<Field, Grid> Shading
+    height_field(const Grid& grid, const Field& field, double scale, const Criterion& criterion,
+                 const Bounds& bounds, const ShadingOptions& options = {},
+                 const Executor& executor = SequentialExecutor{}) {
+        return height_field(erase(grid, field), scale, criterion, bounds, options, executor);
+    }
 template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-Shading height_field(const Grid& grid, const Field& field, double scale,
-                     const HierarchicalIndicator& indicator, const ShadingOptions& options = {},
-                     const Executor& executor = SequentialExecutor{}) {
-    return height_field(erase(grid, field), scale, indicator, options, executor);
-}
+    requires NodalField<Field, Grid> Shading height_field(
+        const Grid& grid, const Field& field, double scale, const HierarchicalIndicator& indicator,
+        const ShadingOptions& options = {}, const Executor& executor = SequentialExecutor{}) {
+        return height_field(erase(grid, field), scale, indicator, options, executor);
+    }
 template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-Shading height_field(const Grid& grid, const Field& field, double scale,
-                     const ShadingOptions& options = {},
-                     const Executor& executor = SequentialExecutor{}) {
-    return height_field(erase(grid, field), scale, options, executor);
-}
+    requires NodalField<Field, Grid> Shading height_field(
+        const Grid& grid, const Field& field, double scale, const ShadingOptions& options = {},
+        const Executor& executor = SequentialExecutor{}) {
+        return height_field(erase(grid, field), scale, options, executor);
+    }
 
 }  // namespace nestgrid

@@ -29,12 +29,19 @@ struct Projection {
     std::optional<double> threshold{};
     /// The largest number of triangles, beside which there is no threshold; 0 asks for none.
     std::uint64_t max_triangles = 0;
-    /// Of indicators(); or "error", which is error_indicator().
+    /// Of indicators(); or "error", with which the threshold is the error that is kept: on level
+    /// sets error_indicator(), else deviations.
     std::string indicator = "offset";
     /// Nodes move from their mean to their value between the threshold and this many times it
     /// (blended.hpp), at least 1.
     double blend = 1;
     std::optional<LensRequest> lens{};
+    /// Whether edges are taken away as long as the threshold stays the error that is kept
+    /// (collapse.hpp). Then max_triangles asks for the least such error.
+    bool collapse = false;
+    /// Whether the threshold is a distance, which an isosurface and that of all data keep there and
+    /// back (isosurface_within.hpp), in units of length.
+    bool keeps_distance = false;
 
     /// The threshold where none is searched for.
     double least_threshold() const {

@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/drawing.hpp>
+
+#include <algorithm>
+
+#include <nestgrid/algorithms/boundary_surface.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
+#include <nestgrid/algorithms/collapse_colours.hpp>
+#include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
+#include <nestgrid/algorithms/refine_colours.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <nestgrid/error.hpp>
+
+namespace nestgrid {
+
+namespace {
+
+/// The part of an error that colours have before edges are collapsed.
+constexpr double colour_start = 0.5;
+
+void refuse_collapse(const Projection& projection, const char* drawing) {
+    if (projection.collapse) {
+        throw InvalidInput(std::string("edges of ") + drawing + " are not collapsed");
+    }
+}
+void refuse_budget(const Projection& projection, const char* drawing) {
+    if (projection.max_triangles > 0) {
+        throw InvalidInput(std::string("no threshold is searched for a number of triangles of ") +
+                           drawing);
+    }
+}
+void refuse_collapse_in_budget(const Projection& projection) {
+    if (projection.collapse && projection.max_triangles > 0) {
+        throw InvalidInput(
+            "edges are collapsed within a number of triangles on isosurfaces only: give the error "
+            "of the colours");
+    }
+}
+void refuse_distance(const Projection& projection) {
+    if (projection.keeps_distance) {
+        throw InvalidInput("distances are kept by isosurfaces in space only");
+    }
+}
+
+/// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
+template <class Function>
+auto with_field(Prerolls& prerolls, const Work& work, int dimension, const Function& function) {
+    const FieldOnGrid field = work.on(prerolls.field());
+    field.facts().require_dimension(dimension);
+    return field.visit(function);
+}
+
+auto criteria_at(const Criteria& criteria) {
+    return [&criteria](double threshold) { return criteria.at(threshold); };
+}
+
+/// The threshold that the projection gives, or the one that find() finds for its number.
+template <class Find>
+TriangleBudget threshold_of(const Projection& projection, const Find& find) {
+    if (projection.max_triangles > 0) return find();
+    return {.threshold = projection.least_threshold()};
+}
+
+/// An isosurface in space that keeps a distance, or an error; then fewer triangles, which do.
+template <class Real>
+class KeptIsosurface {
+public:
+    KeptIsosurface(const Hierarchy<Real>& hierarchy, double isovalue, const Criteria& criteria,
+                   const IsosurfaceOptions& options, const Executor& executor)
+        : hierarchy_{hierarchy},
+          isovalue_{isovalue},
+          criteria_{criteria},
+          options_{options},
+          executor_{executor} {}
+
+    /// \param kept the error, or the distance
+    Projected<Isosurface<3>> draw(double kept) const {
+        const Projection& projection = criteria_.projection();
+        const bool collapses = projection.collapse && kept > 0;
+        const double part = projection.keeps_distance ? 0.5 : collapse_start;
+        const double first = collapses ? part * kept : kept;
+        const AnyCriterion criterion = criteria_.at(first);
+        Projected<Isosurface<3>> drawn;
+        if (!projection.keeps_distance) {
+            as_isosurface(drawn) = by(criterion, options_);
+            if (collapses && !drawn.cancelled) collapse_into(drawn, {.error = kept});
+            return drawn;
+        }
+        Isosurface<3> whole =
+            by(Exact{},
+               {.elements = false, .at_nodes = options_.at_nodes, .progress = options_.progress});
+        if (whole.cancelled) {
+            as_isosurface(drawn) = std::move(whole);
+            return drawn;
+        }
+        IsosurfaceWithin within = isosurface_within(hierarchy_, isovalue_, {whole.surface, first},
+                                                    criterion, bounds(), options_, executor_);
+        as_isosurface(drawn) = std::move(within.isosurface);
+        drawn.far_points = within.points;
+        if (collapses && !drawn.cancelled) {
+            CollapseOptions near;
+            near.nearness.emplace(Nearness{whole.surface, kept});
+            collapse_into(drawn, near);
+        }
+        return drawn;
+    }
+
+private:
+    static Isosurface<3>& as_isosurface(Projected<Isosurface<3>>& drawn) { return drawn; }
+    const Bounds& bounds() const { return criteria_.bounds(); }
+
+    Isosurface<3> by(const Criterion& criterion, const IsosurfaceOptions& options) const {
+        return isosurface<3>(hierarchy_, isovalue_, criterion, bounds(), options, executor_);
+    }
+    void collapse_into(Projected<Isosurface<3>>& drawn, const CollapseOptions& kept) const {
+        drawn.collapsed = collapse(drawn.surface, hierarchy_, isovalue_, bounds(), kept, executor_);
+        drawn.collapsed->hand_to(drawn, drawn.surface_error);
+    }
+
+    const Hierarchy<Real>& hierarchy_;
+    double isovalue_;
+    const Criteria& criteria_;
+    const IsosurfaceOptions& options_;
+    const Executor& executor_;
+};
+
+template <class Real>
+TriangleBudget find_isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
+                               const Criteria& criteria, const IsosurfaceOptions& options,
+                               const Executor& executor) {
+    const std::uint64_t most = criteria.projection().max_triangles;
+    if (hierarchy.facts().dimension == 2) {
+        return find_threshold<2>(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(),
+                                 most, options, executor);
+    }
+    if (criteria.projection().collapse) {
+        return find_collapse_error(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(),
+                                   most, options, executor);
+    }
+    return find_threshold<3>(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(), most,
+                             options, executor);
+}
+
+void check_isosurface(const Projection& projection, const IsosurfaceOptions& options,
+                      int dimension) {
+    if (dimension == 2) {
+        refuse_collapse(projection, "isolines");
+        refuse_distance(projection);
+    }
+    if (!projection.collapse) return;
+    if (options.cap) throw InvalidInput("edges of surfaces with caps are not collapsed");
+    if (options.at_nodes) {
+        throw InvalidInput("edges of surfaces with vertices at nodes are not collapsed");
+    }
+}
+
+/// Collapses edges while the colours of a surface keep an error.
+template <class Real, class Result>
+void collapse_colours_of(Projected<Result>& drawn, const Hierarchy<Real>& hierarchy,
+                         const Bounds& bounds, const ColourCollapseOptions& options,
+                         double& surface_error, const Executor& executor) {
+    drawn.collapsed = collapse_colours(drawn.surface, hierarchy, bounds, options, executor);
+    drawn.collapsed->hand_to(drawn, surface_error);
+}
+
+template <class Real>
+Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                            const Criteria& criteria, const IsosurfaceOptions& options,
+                            const Executor& executor) {
+    const Projection& projection = criteria.projection();
+    const Bounds& bounds = criteria.bounds();
+    Projected<Slice> drawn;
+    drawn.search = threshold_of(projection, [&] {
+        return find_threshold(hierarchy, function, criteria_at(criteria), bounds,
+                              projection.max_triangles, options, executor);
+    });
+    const double error = drawn.search.threshold;
+    const bool collapses = projection.collapse && error > 0;
+    const double first = collapses ? colour_start * error : error;
+    const AnyCriterion criterion = criteria.at(first);
+    static_cast<Slice&>(drawn) = slice(hierarchy, function, criterion, bounds, options, executor);
+    if (!collapses || drawn.cancelled) return drawn;
+    refine_colours(drawn.surface, hierarchy, first, criterion, bounds);
+    collapse_colours_of(drawn, hierarchy, bounds, {.errors = {error}}, drawn.surface_error,
+                        executor);
+    return drawn;
+}
+
+/// \param scale nothing: in the plane
+template <class Real>
+Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<double> scale,
+                                const Criteria& criteria, ShadingOptions options,
+                                const Executor& executor) {
+    const Projection& projection = criteria.projection();
+    const Bounds& bounds = criteria.bounds();
+    Projected<Shading> drawn;
+    drawn.search = threshold_of(projection, [&] {
+        return find_shading_threshold(hierarchy, criteria_at(criteria), bounds,
+                                      projection.max_triangles, options, executor);
+    });
+    const double error = drawn.search.threshold;
+    const bool collapses = projection.collapse && error > 0;
+    const double first = collapses ? colour_start * error : error;
+    if (collapses) options.flatness = std::min(options.flatness, first);
+    const AnyCriterion s = criteria.at(first);
+    static_cast<Shading&>(drawn) =
+        scale ? height_field(hierarchy, *scale, s, bounds, options, executor)
+              : shading(hierarchy, s, bounds, options, executor);
+    if (!collapses || drawn.cancelled) return drawn;
+    double no_surface_error = 0;
+    collapse_colours_of(drawn, hierarchy, bounds, {.errors = {error}, .scale = scale.value_or(0)},
+                        no_surface_error, executor);
+    return drawn;
+}
+
+Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
+                          const Projection& projection, const ShadingOptions& options,
+                          const Work& work) {
+    refuse_collapse_in_budget(projection);
+    refuse_distance(projection);
+    return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, projection, {}, work);
+        return draw_shading(hierarchy, scale, criteria, options, work.executor);
+    });
+}
+
+}  // namespace
+
+template <int dimension>
+Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
+                                            const Projection& projection,
+                                            const IsosurfaceOptions& options, const Work& work) {
+    check_isosurface(projection, options, dimension);
+    return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
+        const Executor& executor = work.executor;
+        const Criteria criteria(prerolls, projection, std::span(&isovalue, 1), work);
+        const TriangleBudget search = threshold_of(projection, [&] {
+            return find_isosurface(hierarchy, isovalue, criteria, options, executor);
+        });
+        Projected<Isosurface<dimension>> drawn;
+        if constexpr (dimension == 3) {
+            drawn = KeptIsosurface(hierarchy, isovalue, criteria, options, executor)
+                        .draw(search.threshold);
+        } else {
+            static_cast<Isosurface<2>&>(drawn) =
+                isosurface<2>(hierarchy, isovalue, criteria.at(search.threshold), criteria.bounds(),
+                              options, executor);
+        }
+        drawn.search = search;
+        return drawn;
+    });
+}
+template Projected<Isosurface<2>> isosurface<2>(Prerolls&, double, const Projection&,
+                                                const IsosurfaceOptions&, const Work&);
+template Projected<Isosurface<3>> isosurface<3>(Prerolls&, double, const Projection&,
+                                                const IsosurfaceOptions&, const Work&);
+
+Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
+                       const Projection& projection, const IsosurfaceOptions& options,
+                       const Work& work) {
+    refuse_collapse_in_budget(projection);
+    refuse_distance(projection);
+    return with_field(prerolls, work, 3, [&](const auto& hierarchy) {
+        if (projection.draws_everything()) {
+            IsosurfaceOptions everything = options;
+            everything.threshold = 0;
+            everything.max_triangles = 0;
+            return Projected<Slice>{slice(hierarchy, function, everything, work.executor)};
+        }
+        const Criteria criteria(prerolls, projection, {}, work);
+        return draw_slice(hierarchy, function, criteria, options, work.executor);
+    });
+}
+
+Projected<Slice> boundary_surface(Prerolls& prerolls, const Projection& projection,
+                                  const IsosurfaceOptions& options, const Work& work) {
+    refuse_collapse(projection, "the boundary");
+    return slice(prerolls, detail::Everywhere{}, projection, detail::capped(options), work);
+}
+
+template <int dimension>
+Projected<Isosurface<dimension>> isoband(Prerolls& prerolls, double low, double high,
+                                         const Projection& projection,
+                                         const IsosurfaceOptions& options, const Work& work) {
+    refuse_collapse(projection, "bands");
+    refuse_budget(projection, "bands");
+    refuse_distance(projection);
+    return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
+        const std::array<double, 2> isovalues{low, high};
+        const Criteria criteria(prerolls, projection, isovalues, work);
+        return Projected<Isosurface<dimension>>{
+            isoband<dimension>(hierarchy, low, high, criteria.criterion(), criteria.bounds(),
+                               options, work.executor),
+            {.threshold = projection.least_threshold()}};
+    });
+}
+template Projected<Isosurface<2>> isoband<2>(Prerolls&, double, double, const Projection&,
+                                             const IsosurfaceOptions&, const Work&);
+template Projected<Isosurface<3>> isoband<3>(Prerolls&, double, double, const Projection&,
+                                             const IsosurfaceOptions&, const Work&);
+
+Projected<Isolines> isolines(Prerolls& prerolls, std::span<const double> values,
+                             const Projection& projection, const IsosurfaceOptions& options,
+                             const Work& work) {
+    refuse_collapse(projection, "isolines");
+    refuse_budget(projection, "isolines");
+    refuse_distance(projection);
+    return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, projection, values, work);
+        return Projected<Isolines>{isolines(hierarchy, values, criteria.criterion(),
+                                            criteria.bounds(), options, work.executor),
+                                   {.threshold = projection.least_threshold()}};
+    });
+}
+
+Projected<Shading> shading(Prerolls& prerolls, const Projection& projection,
+                           const ShadingOptions& options, const Work& work) {
+    return shaded(prerolls, std::nullopt, projection, options, work);
+}
+
+Projected<Shading> height_field(Prerolls& prerolls, double scale, const Projection& projection,
+                                const ShadingOptions& options, const Work& work) {
+    return shaded(prerolls, scale, projection, options, work);
+}
+
+ProbeResult probe(Prerolls& prerolls, std::span<const Point> points, const Projection& projection,
+                  const Work& work) {
+    refuse_collapse(projection, "no surface");
+    refuse_budget(projection, "a probe, which draws none");
+    refuse_distance(projection);
+    const FieldOnGrid field = work.on(prerolls.field());
+    return field.visit([&](const auto& hierarchy) {
+        if (projection.draws_everything()) return probe(hierarchy, points);
+        const Criteria criteria(prerolls, projection, {}, work);
+        return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
+    });
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is drawn under a projection as a value has the bits of its parts, and keeps what the
+// projection asks for, on every family.
+#include <gtest/gtest.h>
+
+#include <nestgrid/adapters/bisection.hpp>
+#include <nestgrid/algorithms/boundary_surface.hpp>
+#include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
+#include <nestgrid/algorithms/probe.hpp>
+
+#include "families.hpp"
+#include "projection_judge.hpp"
+#include "refusal.hpp"
+#include "same_surface.hpp"
+#include "triangle_samples.hpp"
+
+using namespace nestgrid_test;
+
+namespace drawing_test {
+
+template <class Family>
+class Drawing : public testing::Test {};
+TYPED_TEST_SUITE(Drawing, Families);
+
+const std::vector<Projection> projections{
+    {},
+    {.threshold = 0.1},
+    {.threshold = 0.1, .indicator = "error"},
+    {.threshold = 0.2, .blend = 1.5},
+    {.lens = LensRequest{.distance = Ball{{0.3, 0.3, 0.3}, 0.2}, .finest = 0.1}},
+};
+
+/// Calls test(hierarchy, prerolls, dimension) for some fields of refined grids of a family.
+template <class Family, class Test>
+void for_each_drawn(unsigned seed, Test&& test) {
+    for_each_field_at_sphere<Family>(2, seed, [&](const auto& grid, const auto& samples) {
+        using Grid = typename Family::Grid;
+        const NodeField<Grid, double> field(grid, samples.values);
+        Prerolls prerolls(FieldOnGrid(grid, field));
+        test(erase(grid, field), prerolls, std::integral_constant<int, Grid::dimension>{});
+    });
+}
+
+TYPED_TEST(Drawing, HasTheBitsOfItsParts) {
+    for_each_drawn<TypeParam>(41, [](const auto& hierarchy, Prerolls& prerolls, auto dimension) {
+        for (const Projection& projection : projections) {
+            const double zero = 0;
+            const Criteria levels(prerolls, projection, std::span(&zero, 1), {});
+            const Criteria criteria(prerolls, projection, {}, {});
+            const AnyCriterion s = criteria.criterion();
+            expect_same(static_cast<const Isosurface<dimension>&>(
+                            isosurface<dimension>(prerolls, 0, projection)),
+                        isosurface<dimension>(hierarchy, 0, levels.criterion(), levels.bounds()));
+            const std::vector<Point> points{{0.4, 0.3, dimension == 3 ? 0.6 : 0}};
+            const bool everything = projection.draws_everything();
+            expect_same_bits(probe(prerolls, points, projection).values,
+                             everything ? probe(hierarchy, points).values
+                                        : probe(hierarchy, points, s, criteria.bounds()).values,
+                             "values at points");
+            if constexpr (dimension == 3) {
+                const Plane plane({0.4, 0.5, 0.5}, {1, 2, 3});
+                expect_same(slice(prerolls, plane, projection).surface,
+                            everything ? slice(hierarchy, plane).surface
+                                       : slice(hierarchy, plane, s, criteria.bounds()).surface);
+                expect_same(boundary_surface(prerolls, projection).surface,
+                            everything ? boundary_surface(hierarchy).surface
+                                       : boundary_surface(hierarchy, s, criteria.bounds()).surface);
+            } else {
+                const std::vector<double> values{0, 0.1};
+                const Criteria lines(prerolls, projection, values, {});
+                EXPECT_EQ(
+                    isolines(prerolls, values, projection).lines.vertices,
+                    isolines(hierarchy, values, lines.criterion(), lines.bounds()).lines.vertices);
+                expect_same(height_field(prerolls, 0.5, projection).surface,
+                            height_field(hierarchy, 0.5, s, criteria.bounds()).surface);
+                expect_same(shading(prerolls, projection).surface,
+                            shading(hierarchy, s, criteria.bounds()).surface);
+            }
+        }
+        expect_same(isoband<dimension>(prerolls, 0, 0.1, {.threshold = 0.1}).surface,
+                    isoband<dimension>(hierarchy, 0.0, 0.1,
+                                       Criteria(prerolls, {.threshold = 0.1}, {}, {}).criterion(),
+                                       *prerolls.bounds({}))
+                        .surface);
+    });
+}
+
+/// The greatest |U - C| at samples of the triangles.
+template <class Real>
+double error_of(const Surface<3>& s, const Hierarchy<Real>& hierarchy) {
+    std::vector<Point> points;
+    for (std::size_t t = 0; t < s.simplices.size(); ++t) {
+        const auto of = samples_of(corners_of(s, t), 3);
+        points.insert(points.end(), of.begin(), of.end());
+    }
+    const ProbeResult probed = probe<Real>(hierarchy, points);
+    double greatest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (probed.found(i)) greatest = std::max(greatest, std::abs(probed.values[i]));
+    }
+    return greatest;
+}
+
+TYPED_TEST(Drawing, KeepsTheErrorWithFewerTrianglesWhereEdgesAreCollapsed) {
+    if constexpr (TypeParam::Grid::dimension == 3) {
+        std::size_t collapses = 0;
+        for_each_drawn<TypeParam>(42, [&](const auto& hierarchy, Prerolls& prerolls, auto) {
+            const Projection projection{
+                .threshold = 0.2, .indicator = "deviation", .collapse = true};
+            const auto drawn = isosurface<3>(prerolls, 0, projection);
+            ASSERT_TRUE(drawn.collapsed);
+            collapses += drawn.collapsed->collapses;
+            expect_closed(drawn.surface);
+            // Cuts keep a fraction of 2^-20 of their edge away from its ends.
+            constexpr double cut = 1e-5;
+            EXPECT_LE(error_of(drawn.surface, hierarchy), drawn.error_bound * (1 + 1e-9) + cut);
+            EXPECT_LE(drawn.collapsed->error, 0.2);
+        });
+        EXPECT_GT(collapses, 0U);
+    }
+}
+
+TYPED_TEST(Drawing, KeepsWithinANumberOfTriangles) {
+    bool first = true;
+    for_each_drawn<TypeParam>(43, [&](const auto&, Prerolls& prerolls, auto dimension) {
+        const std::size_t full = isosurface<dimension>(prerolls, 0, {}).surface.simplices.size();
+        const std::uint64_t most = full / 2 + 1;
+        for (const bool collapse : {false, true}) {
+            if (collapse && (dimension == 2 || !std::exchange(first, false))) continue;
+            try {
+                const auto drawn = isosurface<dimension>(
+                    prerolls, 0,
+                    {.max_triangles = most, .indicator = "error", .collapse = collapse});
+                EXPECT_LE(drawn.surface.simplices.size(), most);
+                EXPECT_EQ(drawn.search.max_triangles, most);
+            } catch (const InvalidInput& refused) {
+                EXPECT_NE(std::string(refused.what()).find("coarsest"), std::string::npos);
+            }
+        }
+    });
+}
+
+TEST(Drawing, RefusesWhatMakesNoSense) {
+    const LatticeBisection<3> grid({.samples = {5, 5, 5}});
+    std::vector<float> values(125);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 7);
+    const LatticeField field(grid, std::span<const float>(values));
+    Prerolls prerolls(FieldOnGrid(grid, field));
+    const auto refused = [&](const Projection& projection, const std::string& part) {
+        expect_refused([&] { isosurface<3>(prerolls, 2, projection); }, part);
+    };
+    refused({.collapse = true}, "neither is given");
+    refused({.keeps_distance = true}, "no threshold that says which");
+    refused({.threshold = 1,
+             .lens = LensRequest{.distance = Ball{{}, 1}, .finest = 1},
+             .collapse = true},
+            "without a lens");
+    const Projection collapsed{.threshold = 1, .collapse = true};
+    expect_refused([&] { isosurface<3>(prerolls, 2, collapsed, {.cap = true}); }, "with caps");
+    expect_refused([&] { isosurface<3>(prerolls, 2, collapsed, {.at_nodes = true}); }, "at nodes");
+    const Plane plane({2, 2, 2}, {0, 0, 1});
+    expect_refused([&] { slice(prerolls, plane, {.max_triangles = 9, .collapse = true}); },
+                   "on isosurfaces only");
+    expect_refused([&] { slice(prerolls, plane, {.threshold = 1, .keeps_distance = true}); },
+                   "isosurfaces in space");
+    expect_refused([&] { boundary_surface(prerolls, collapsed); }, "the boundary");
+    expect_refused([&] { isoband<3>(prerolls, 1, 2, collapsed); }, "bands");
+    expect_refused([&] { isoband<3>(prerolls, 1, 2, {.max_triangles = 9}); }, "bands");
+    expect_refused([&] { isosurface<2>(prerolls, 2, {}); }, "dimension 3, not 2");
+    expect_refused([&] { height_field(prerolls, 1, {}); }, "dimension 3, not 2");
+    const std::vector<Point> points{{2, 2, 2}};
+    expect_refused([&] { probe(prerolls, points, {.max_triangles = 9}); }, "a probe");
+}
+
+}  // namespace drawing_test
