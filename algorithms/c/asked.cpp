@@ -12,6 +12,7 @@
 
 #include <threads/thread_executor.hpp>
 
+#include "calls.hpp"
 #include "prerolls.hpp"
 
 namespace nestgrid {
@@ -62,6 +63,32 @@ int thread_count(int threads) {
 
 bool is_simplex(int shape) { return shape == NESTGRID_TRIANGLE || shape == NESTGRID_TETRAHEDRON; }
 
+/// The lens that a C code describes.
+/// \throw InvalidInput where its table is too small, or a number is out of range
+LensRequest lens_of(const nestgrid_lens& given) {
+    if (given.size < sizeof(nestgrid_lens)) {
+        throw InvalidInput("the table of the lens is too small: its size says " +
+                           std::to_string(given.size) + " bytes");
+    }
+    if (given.distance == nullptr) {
+        throw InvalidInput("the table of the lens lacks the function 'distance'");
+    }
+    if (!(given.finest >= 0) || !(given.coarsest >= 0)) {
+        throw InvalidInput("a size of the lens is negative or not a number");
+    }
+    LensRequest lens{.distance =
+                         [given](const Point& x) {
+                             double distance = 0;
+                             require_success(given.distance(given.self, x.data(), &distance),
+                                             "the operation 'distance' of the lens");
+                             return distance;
+                         },
+                     .finest = given.finest};
+    if (given.coarsest > 0) lens.coarsest = given.coarsest;
+    if (given.slope != 0) lens.slope = given.slope;
+    return lens;
+}
+
 template <class Real>
 bool coarse_simplices(const Hierarchy<Real>& hierarchy) {
     const auto task = hierarchy.open();
@@ -87,6 +114,7 @@ Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid, const nes
     }
     require_range(options_);
     require_one_wish(options_);
+    if (options_.lens != nullptr) lens_ = lens_of(*options_.lens);
     const int threads = thread_count(options_.threads);
     if (threads == 1) {
         executor_ = std::make_unique<SequentialExecutor>();
@@ -113,16 +141,20 @@ std::string Asked::indicator_for(const FieldOnGrid& field, bool level_sets) cons
     return simplices ? "cut" : "deviation";
 }
 
-Criteria Asked::criteria(const FieldOnGrid& field, std::span<const double> isovalues) const {
-    const Projection projection{
-        .threshold = options_.error > 0 ? options_.error : options_.threshold,
-        .max_triangles = options_.max_triangles,
-        .indicator = indicator_for(field, !isovalues.empty())};
-    const Work work{.executor = executor(), .same_field = &field};
-    nestgrid_prerolls* const kept = options_.prerolls;
-    if (kept != nullptr) return {kept->of(*grid_, *field_, field), projection, isovalues, work};
-    Prerolls own(field);
-    return {own, projection, isovalues, work};
+Projection Asked::projection(const FieldOnGrid& field, bool level_sets) const {
+    std::optional<double> threshold = options_.error > 0 ? options_.error : options_.threshold;
+    if (*threshold == 0 && (options_.max_triangles > 0 || lens_)) threshold.reset();
+    return {.threshold = threshold,
+            .max_triangles = options_.max_triangles,
+            .indicator = indicator_for(field, level_sets),
+            .blend = options_.blend == 0 ? 1 : options_.blend,
+            .lens = lens_,
+            .collapse = options_.collapse != 0,
+            .keeps_distance = options_.keep_distance != 0};
+}
+
+Prerolls& Asked::kept_prerolls(const FieldOnGrid& field) const {
+    return options_.prerolls->of(*grid_, *field_, field);
 }
 
 IsosurfaceOptions Asked::how_to_draw() const {

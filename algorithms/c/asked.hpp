@@ -5,10 +5,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 #include <nestgrid/algorithms/options.h>
-#include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
 
@@ -27,24 +29,28 @@ public:
         return {options_.attributes, options_.attribute_count};
     }
     const Executor& executor() const { return *executor_; }
-    /// Whether all of the data are asked for.
-    bool everything() const {
-        return options_.threshold == 0 && options_.error == 0 && options_.max_triangles == 0;
+    /// How finely a field is drawn.
+    /// \param level_sets whether level sets are drawn of it
+    Projection projection(const FieldOnGrid& field, bool level_sets) const;
+    /// Calls draw(prerolls, work) with the prerolls that the caller keeps, or else with new ones.
+    /// \throw InvalidInput where the prerolls are of another grid or field
+    template <class Draw>
+    auto with_prerolls(const FieldOnGrid& field, const Draw& draw) const {
+        const Work work{.executor = executor(), .same_field = &field};
+        if (options_.prerolls != nullptr) return draw(kept_prerolls(field), work);
+        Prerolls own(field);
+        return draw(own, work);
     }
-    /// The criteria that are asked for, from the prerolls that the caller keeps, if any.
-    /// \param isovalues of the level sets; none for other drawings
-    /// \throw InvalidInput where the indicator is not for the drawing or for the grid, and where
-    /// the
-    ///        prerolls are of others
-    Criteria criteria(const FieldOnGrid& field, std::span<const double> isovalues) const;
     /// But for the threshold and the number of triangles.
     IsosurfaceOptions how_to_draw() const;
 
 private:
+    Prerolls& kept_prerolls(const FieldOnGrid& field) const;
     std::string indicator_for(const FieldOnGrid& field, bool level_sets) const;
     bool rules_of_simplices() const;
 
     nestgrid_options options_{};
+    std::optional<LensRequest> lens_;
     const nestgrid_grid* grid_;
     const nestgrid_field* field_;
     std::unique_ptr<const Executor> executor_;

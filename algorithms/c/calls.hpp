@@ -43,6 +43,12 @@ int without_exceptions(char* message, std::size_t size, const Function& function
     }
 }
 
+/// \throw GridError where a function that C code gave returned another code than 0
+inline void require_success(int code, const char* operation) {
+    if (code == 0) return;
+    throw GridError(std::string(operation) + " failed with code " + std::to_string(code));
+}
+
 /// Calls function(hierarchy) with what the tables describe.
 /// \param attributes fields behind the first one
 template <class Function>

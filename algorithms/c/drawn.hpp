@@ -8,25 +8,22 @@
 #include <string>
 
 #include <nestgrid/algorithms/isosurface.h>
-#include <nestgrid/algorithms/isosurface_options.hpp>
-#include <nestgrid/algorithms/least_threshold.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 
 namespace nestgrid {
 
 /// A surface that a C code owns, by the pointer `owner` of its nestgrid_surface.
 template <int dimension>
 struct Drawn {
-    Isosurface<dimension> result;
-    double threshold;
+    Projected<Isosurface<dimension>> result;
     std::string budget_text;
 };
 
 /// Hands a surface to a C code, which frees it.
-/// \param search of the threshold; its max_triangles is 0 where the threshold was given
 template <int dimension>
-void hand_over(Isosurface<dimension> result, const TriangleBudget& search, nestgrid_surface& out) {
-    auto drawn = std::make_unique<Drawn<dimension>>(Drawn<dimension>{
-        std::move(result), search.threshold, search.max_triangles > 0 ? search.reason() : ""});
+void hand_over(Projected<Isosurface<dimension>> result, nestgrid_surface& out) {
+    const std::string reason = result.budget_reason();
+    auto drawn = std::make_unique<Drawn<dimension>>(Drawn<dimension>{std::move(result), reason});
     const Isosurface<dimension>& kept = drawn->result;
     out.vertex_count = kept.surface.vertices.size();
     out.simplex_count = kept.surface.simplices.size();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/isolines.h>
 
-#include <nestgrid/algorithms/isolines.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 
 #include "asked.hpp"
 #include "calls.hpp"
@@ -45,13 +45,13 @@ int hand_over(Isolines result, nestgrid_lines* out) {
 template <class Real>
 Isolines draw(const Hierarchy<Real>& hierarchy, std::span<const double> values,
               const Asked& asked) {
-    hierarchy.facts().require_dimension(2);
     if (asked.options().max_triangles > 0) {
         throw InvalidInput("a limit of segments is for one isoline: take nestgrid_isosurface_with");
     }
-    const Criteria criteria = asked.criteria(hierarchy, values);
-    return isolines(hierarchy, values, criteria.criterion(), criteria.bounds(), asked.how_to_draw(),
-                    asked.executor());
+    const Projection projection = asked.projection(hierarchy, true);
+    return asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) -> Isolines {
+        return isolines(prerolls, values, projection, asked.how_to_draw(), work);
+    });
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/isosurface.h>
 
-#include <nestgrid/algorithms/height_field.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <type_traits>
+
+#include <nestgrid/algorithms/drawing.hpp>
 
 #include "asked.hpp"
 #include "calls.hpp"
@@ -15,54 +15,54 @@ namespace {
 
 using namespace nestgrid;
 
-template <int dimension, class Real>
-void draw(const Hierarchy<Real>& hierarchy, double isovalue, const Asked& asked,
-          nestgrid_surface& out) {
-    const Criteria criteria = asked.criteria(hierarchy, std::span(&isovalue, 1));
-    const IsosurfaceOptions how = asked.how_to_draw();
-    TriangleBudget search{.threshold = criteria.projection().least_threshold()};
-    if (asked.options().max_triangles > 0) {
-        search = find_threshold<dimension>(
-            hierarchy, isovalue, [&](double threshold) { return criteria.at(threshold); },
-            criteria.bounds(), asked.options().max_triangles, how, asked.executor());
+/// Draws on a grid of either dimension: calls
+/// of_dimension(std::integral_constant<int, dimension>, prerolls, projection, options, work).
+template <class Real, class Draw>
+int draw(const Hierarchy<Real>& hierarchy, const Asked& asked, nestgrid_surface& out,
+         const Draw& of_dimension) {
+    const Projection projection = asked.projection(hierarchy, true);
+    const auto in = [&](auto dimension) {
+        hand_over(asked.with_prerolls(hierarchy,
+                                      [&](Prerolls& prerolls, const Work& work) {
+                                          return of_dimension(dimension, prerolls, projection,
+                                                              asked.how_to_draw(), work);
+                                      }),
+                  out);
+    };
+    if (hierarchy.facts().dimension == 2) {
+        in(std::integral_constant<int, 2>{});
+    } else {
+        in(std::integral_constant<int, 3>{});
     }
-    hand_over(isosurface<dimension>(hierarchy, isovalue, criteria.at(search.threshold),
-                                    criteria.bounds(), how, asked.executor()),
-              search, out);
+    return 0;
 }
 
 template <class Real>
-int draw(const Hierarchy<Real>& hierarchy, double isovalue, const Asked& asked,
-         nestgrid_surface& out) {
-    if (hierarchy.facts().dimension == 2) {
-        draw<2>(hierarchy, isovalue, asked, out);
-    } else {
-        draw<3>(hierarchy, isovalue, asked, out);
-    }
-    return 0;
+int draw_isosurface(const Hierarchy<Real>& hierarchy, double isovalue, const Asked& asked,
+                    nestgrid_surface& out) {
+    return draw(hierarchy, asked, out, [&](auto dimension, Prerolls& prerolls, const auto&... how) {
+        return isosurface<dimension>(prerolls, isovalue, how...);
+    });
 }
 
 template <class Real>
 int draw_height_field(const Hierarchy<Real>& hierarchy, double scale, const Asked& asked,
                       nestgrid_surface& out) {
     hierarchy.facts().require_dimension(2);
-    const Criteria criteria = asked.criteria(hierarchy, {});
     const IsosurfaceOptions how = asked.how_to_draw();
     const ShadingOptions options{.elements = how.elements, .progress = how.progress};
-    TriangleBudget search{.threshold = criteria.projection().least_threshold()};
-    if (asked.options().max_triangles > 0) {
-        search = find_shading_threshold(
-            hierarchy, [&](double threshold) { return criteria.at(threshold); }, criteria.bounds(),
-            asked.options().max_triangles, options, asked.executor());
-    }
-    Shading graph = height_field(hierarchy, scale, criteria.at(search.threshold), criteria.bounds(),
-                                 options, asked.executor());
-    Isosurface<3> result;
+    const Projection projection = asked.projection(hierarchy, false);
+    Projected<Shading> graph =
+        asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
+            return height_field(prerolls, scale, projection, options, work);
+        });
+    Projected<Isosurface<3>> result;
     static_cast<ErrorBounds&>(result) = graph;
+    result.search = graph.search;
     result.surface = std::move(graph.surface);
     result.counts = graph.counts;
     result.cancelled = graph.cancelled;
-    hand_over(std::move(result), search, out);
+    hand_over(std::move(result), out);
     return 0;
 }
 
@@ -103,7 +103,7 @@ nestgrid_surface_details details(const Drawn<dimension>& drawn) {
     d.reference = data_or_null(s.reference);
     d.boundary_count = s.boundary.size();
     if (d.boundary_count > 0) d.boundary = s.boundary.front().data();
-    d.threshold = drawn.threshold;
+    d.threshold = drawn.result.search.threshold;
     d.surface_error = drawn.result.surface_error;
     d.cancelled = drawn.result.cancelled ? 1 : 0;
     d.budget_text = drawn.budget_text.c_str();
@@ -123,7 +123,7 @@ extern "C" int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_fie
         const Asked asked(&options, grid, field);
         return with_tables(grid, field, {}, [&](const auto& hierarchy) {
             require_one_component(hierarchy.facts());
-            return draw(hierarchy, isovalue, asked, *out);
+            return draw_isosurface(hierarchy, isovalue, asked, *out);
         });
     });
 }
@@ -135,7 +135,22 @@ extern "C" int nestgrid_isosurface_with(const nestgrid_grid* grid, const nestgri
     return without_exceptions(message, message_size, [&] {
         const Asked asked(options, grid, field);
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
-            return draw(hierarchy, isovalue, asked, *out);
+            return draw_isosurface(hierarchy, isovalue, asked, *out);
+        });
+    });
+}
+
+extern "C" int nestgrid_isoband(const nestgrid_grid* grid, const nestgrid_field* field, double low,
+                                double high, const nestgrid_options* options, nestgrid_surface* out,
+                                char* message, size_t message_size) {
+    *out = {};
+    return without_exceptions(message, message_size, [&] {
+        const Asked asked(options, grid, field);
+        return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
+            return draw(hierarchy, asked, *out,
+                        [&](auto dimension, Prerolls& prerolls, const auto&... how) {
+                            return isoband<dimension>(prerolls, low, high, how...);
+                        });
         });
     });
 }

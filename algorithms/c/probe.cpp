@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/probe.h>
 
-#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 
 #include "asked.hpp"
 #include "calls.hpp"
@@ -26,9 +26,10 @@ ProbeResult ask(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
     if (asked.options().max_triangles > 0) {
         throw InvalidInput("a number of triangles is asked for, but a probe draws none");
     }
-    if (asked.everything()) return probe(hierarchy, points);
-    const Criteria criteria = asked.criteria(hierarchy, {});
-    return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
+    const Projection projection = asked.projection(hierarchy, false);
+    return asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
+        return probe(prerolls, points, projection, work);
+    });
 }
 
 /// Hands values to a C code, which frees them.

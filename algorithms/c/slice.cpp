@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/slice.h>
 
-#include <nestgrid/algorithms/slice.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 
 #include "asked.hpp"
 #include "calls.hpp"
@@ -12,12 +11,6 @@
 namespace {
 
 using namespace nestgrid;
-
-void require_success(int code, const char* operation) {
-    if (code == 0) return;
-    throw GridError("the operation '" + std::string(operation) +
-                    "' of the level function failed with code " + std::to_string(code));
-}
 
 /// A function that a C code gives.
 class FunctionInC final : public LevelFunction {
@@ -36,13 +29,15 @@ public:
     }
     double value(const Point& x) const override {
         double result = 0;
-        require_success(table_.value(table_.self, x.data(), &result), "value");
+        require_success(table_.value(table_.self, x.data(), &result),
+                        "the operation 'value' of the level function");
         return result;
     }
     double variation(const Point& centre, double radius) const override {
         if (table_.variation == nullptr) return LevelFunction::variation(centre, radius);
         double result = 0;
-        require_success(table_.variation(table_.self, centre.data(), radius, &result), "variation");
+        require_success(table_.variation(table_.self, centre.data(), radius, &result),
+                        "the operation 'variation' of the level function");
         return result;
     }
     bool affine() const override { return table_.affine != 0; }
@@ -51,25 +46,21 @@ private:
     nestgrid_level_function table_{};
 };
 
-template <class Real>
-void draw(const Hierarchy<Real>& hierarchy, const LevelFunction& function, const Asked& asked,
-          nestgrid_surface& out) {
-    hierarchy.facts().require_dimension(3);
-    const IsosurfaceOptions how = asked.how_to_draw();
-    if (asked.everything()) {
-        hand_over(slice(hierarchy, function, how, asked.executor()), {}, out);
-        return;
-    }
-    const Criteria criteria = asked.criteria(hierarchy, {});
-    TriangleBudget search{.threshold = criteria.projection().least_threshold()};
-    if (asked.options().max_triangles > 0) {
-        search = find_threshold(
-            hierarchy, function, [&](double threshold) { return criteria.at(threshold); },
-            criteria.bounds(), asked.options().max_triangles, how, asked.executor());
-    }
-    hand_over(slice(hierarchy, function, criteria.at(search.threshold), criteria.bounds(), how,
-                    asked.executor()),
-              search, out);
+/// Draws on the grid of the tables what slice(prerolls, projection, options, work) gives.
+template <class Draw>
+int draw(const nestgrid_grid* grid, const nestgrid_field* field, const Asked& asked,
+         nestgrid_surface& out, const Draw& slice) {
+    return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
+        hierarchy.facts().require_dimension(3);
+        const Projection projection = asked.projection(hierarchy, false);
+        hand_over(asked.with_prerolls(hierarchy,
+                                      [&](Prerolls& prerolls, const Work& work) {
+                                          return slice(prerolls, projection, asked.how_to_draw(),
+                                                       work);
+                                      }),
+                  out);
+        return 0;
+    });
 }
 
 }  // namespace
@@ -85,9 +76,8 @@ extern "C" int nestgrid_slice(const nestgrid_grid* grid, const nestgrid_field* f
         }
         const Plane plane({through[0], through[1], through[2]}, {normal[0], normal[1], normal[2]});
         const Asked asked(options, grid, field);
-        return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
-            draw(hierarchy, plane, asked, *out);
-            return 0;
+        return draw(grid, field, asked, *out, [&](Prerolls& prerolls, const auto&... how) {
+            return slice(prerolls, plane, how...);
         });
     });
 }
@@ -100,9 +90,20 @@ extern "C" int nestgrid_slice_along(const nestgrid_grid* grid, const nestgrid_fi
     return without_exceptions(message, message_size, [&] {
         const FunctionInC in_c(function);
         const Asked asked(options, grid, field);
-        return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
-            draw(hierarchy, in_c, asked, *out);
-            return 0;
+        return draw(grid, field, asked, *out, [&](Prerolls& prerolls, const auto&... how) {
+            return slice(prerolls, in_c, how...);
+        });
+    });
+}
+
+extern "C" int nestgrid_boundary_surface(const nestgrid_grid* grid, const nestgrid_field* field,
+                                         const nestgrid_options* options, nestgrid_surface* out,
+                                         char* message, size_t message_size) {
+    *out = {};
+    return without_exceptions(message, message_size, [&] {
+        const Asked asked(options, grid, field);
+        return draw(grid, field, asked, *out, [&](Prerolls& prerolls, const auto&... how) {
+            return boundary_surface(prerolls, how...);
         });
     });
 }

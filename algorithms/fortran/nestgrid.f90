@@ -119,6 +119,15 @@ module nestgrid
         type(c_funptr) :: node_gradients = c_null_funptr
     end type nestgrid_field
 
+    type, bind(c) :: nestgrid_lens
+        integer(c_size_t) :: size = 0_c_size_t
+        type(c_ptr) :: self = c_null_ptr
+        type(c_funptr) :: distance = c_null_funptr
+        real(c_double) :: finest = 0.0_c_double
+        real(c_double) :: coarsest = 0.0_c_double
+        real(c_double) :: slope = 0.0_c_double
+    end type nestgrid_lens
+
     type, bind(c) :: nestgrid_options
         integer(c_size_t) :: size = 0_c_size_t
         real(c_double) :: threshold = 0.0_c_double
@@ -137,6 +146,10 @@ module nestgrid
         type(c_funptr) :: progress = c_null_funptr
         type(c_ptr) :: progress_data = c_null_ptr
         type(c_ptr) :: prerolls = c_null_ptr
+        integer(c_int) :: collapse = 0_c_int
+        integer(c_int) :: keep_distance = 0_c_int
+        real(c_double) :: blend = 0.0_c_double
+        type(c_ptr) :: lens = c_null_ptr
     end type nestgrid_options
 
     type, bind(c) :: nestgrid_surface
@@ -251,6 +264,19 @@ module nestgrid
             integer(c_size_t), value :: message_size
         end function nestgrid_isosurface_with
 
+        integer(c_int) function nestgrid_isoband(grid, field, low, high, options, &
+                out, message, message_size) bind(c, name="nestgrid_isoband")
+            import
+            type(nestgrid_grid), intent(in) :: grid
+            type(nestgrid_field), intent(in) :: field
+            real(c_double), value :: low
+            real(c_double), value :: high
+            type(nestgrid_options), intent(in), optional :: options
+            type(nestgrid_surface), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_isoband
+
         integer(c_int) function nestgrid_height_field(grid, field, scale, options, &
                 out, message, message_size) bind(c, name="nestgrid_height_field")
             import
@@ -310,6 +336,17 @@ module nestgrid
             character(kind=c_char), intent(inout) :: message(*)
             integer(c_size_t), value :: message_size
         end function nestgrid_slice_along
+
+        integer(c_int) function nestgrid_boundary_surface(grid, field, options, &
+                out, message, message_size) bind(c, name="nestgrid_boundary_surface")
+            import
+            type(nestgrid_grid), intent(in) :: grid
+            type(nestgrid_field), intent(in) :: field
+            type(nestgrid_options), intent(in), optional :: options
+            type(nestgrid_surface), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_boundary_surface
 
         integer(c_int) function nestgrid_isolines(grid, field, values, count, options, &
                 out, message, message_size) bind(c, name="nestgrid_isolines")

@@ -5,6 +5,8 @@
 #include <atomic>
 
 #include <nestgrid/algorithms/cut_indicator.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
@@ -111,6 +113,57 @@ TEST(IsosurfacesForC, KeepWithinABudget) {
         EXPECT_LE(surface.simplex_count, 60U);
         expect_same(surface, isosurface(scene.grid, scene.first, isovalue,
                                         {.max_triangles = 60, .elements = false}));
+    });
+}
+
+/// What a projection says beside its threshold.
+TEST(IsosurfacesForC, AreDrawnUnderEveryProjection) {
+    const auto distance = [](void*, const double* x, double* out) {
+        *out = Ball{{0.3, 0.3, 0.3}, 0.2}({x[0], x[1], x[2]});
+        return 0;
+    };
+    const nestgrid_lens in_c{sizeof(nestgrid_lens), nullptr, distance, 0.1, 0, 0.25};
+    const LensRequest lens{.distance = Ball{{0.3, 0.3, 0.3}, 0.2}, .finest = 0.1, .slope = 0.25};
+    for (const auto& forest : forests<3>()) {
+        Scene<3> scene(forest);
+        Prerolls prerolls(FieldOnGrid(scene.grid, scene.first));
+        const auto expect = [&](const Projection& projection) {
+            nestgrid_surface surface = draw(scene);
+            expect_same(surface,
+                        isosurface<3>(prerolls, isovalue, projection, {.elements = false}));
+            scene.options = {};
+            scene.options.size = sizeof(scene.options);
+        };
+        scene.options.threshold = 0.1;
+        scene.options.blend = 2;
+        expect({.threshold = 0.1, .blend = 2});
+        scene.options.threshold = 0.1;
+        scene.options.collapse = 1;
+        scene.options.indicator = NESTGRID_DEVIATION;
+        expect({.threshold = 0.1, .indicator = "deviation", .collapse = true});
+        scene.options.threshold = 0.1;
+        scene.options.indicator = NESTGRID_SLOPE;
+        scene.options.keep_distance = 1;
+        expect({.threshold = 0.1, .indicator = "slope", .keeps_distance = true});
+        scene.options.lens = &in_c;
+        expect({.lens = lens});
+        scene.options.threshold = 0.1;
+        scene.options.lens = &in_c;
+        expect({.threshold = 0.1, .lens = lens});
+    }
+}
+
+TEST(BandsForC, AreThoseOfTheLibrary) {
+    for_each_scene([](auto& scene) {
+        scene.options.threshold = 0.05;
+        nestgrid_surface surface{};
+        ASSERT_EQ(nestgrid_isoband(&scene.in_c.table, &scene.field, 0.1, 0.3, &scene.options,
+                                   &surface, scene.message.data(), scene.message.size()),
+                  0)
+            << scene.message.data();
+        const HierarchicalIndicator offsets(scene.grid, scene.first);
+        expect_same(surface, isoband(scene.grid, scene.first, 0.1, 0.3, Threshold(&offsets, 0.05),
+                                     offsets, {.elements = false}));
     });
 }
 

@@ -99,6 +99,48 @@ TEST_F(RefusalsForC, OfOptionsAreSentences) {
     EXPECT_EQ(isosurface_says(), "-2 threads are asked for, not -1 to 1024");
 }
 
+TEST_F(RefusalsForC, OfProjectionsAreSentences) {
+    options.blend = 0.5;
+    EXPECT_EQ(isosurface_says(), "blend is not a finite number of at least 1");
+    start_again();
+    nestgrid_lens lens{};
+    options.lens = &lens;
+    EXPECT_EQ(isosurface_says(), "the table of the lens is too small: its size says 0 bytes");
+    lens.size = sizeof(lens);
+    EXPECT_EQ(isosurface_says(), "the table of the lens lacks the function 'distance'");
+    lens.distance = [](void*, const double*, double*) { return 5; };
+    Scene<3> refined(forests<3>()[0]);
+    EXPECT_EQ(refusal([&](char* text, std::size_t size) {
+                  nestgrid_surface surface;
+                  return nestgrid_isosurface_with(&refined.in_c.table, &refined.field, isovalue,
+                                                  &options, &surface, text, size);
+              }),
+              "the operation 'distance' of the lens failed with code 5");
+    lens.finest = -1;
+    EXPECT_EQ(isosurface_says(), "a size of the lens is negative or not a number");
+    lens.finest = 0;
+    lens.slope = -1;
+    EXPECT_EQ(isosurface_says(), "the slope of the lens is not a finite number >= 0");
+    lens.slope = 0;
+    options.collapse = 1;
+    options.threshold = 0.1;
+    EXPECT_EQ(isosurface_says(), "edges are collapsed without a lens");
+    options.lens = nullptr;
+    options.cap = 1;
+    EXPECT_EQ(isosurface_says(), "edges of surfaces with caps are not collapsed");
+    options.cap = 0;
+    options.at_nodes = 1;
+    EXPECT_EQ(isosurface_says(), "edges of surfaces with vertices at nodes are not collapsed");
+    start_again();
+    options.keep_distance = 1;
+    const double value = 0.2;
+    EXPECT_EQ(lines_say(&value, 1), "distances are kept by isosurfaces in space only");
+    start_again();
+    options.collapse = 1;
+    options.threshold = 0.1;
+    EXPECT_EQ(lines_say(&value, 1), "edges of isolines are not collapsed");
+}
+
 TEST_F(RefusalsForC, OfAttributesAreSentences) {
     options.attribute_count = 1;
     EXPECT_EQ(isosurface_says(), "there are attributes, but the list of their tables is NULL");

@@ -3,6 +3,7 @@
 //
 // Slices and height fields of C codes have the bits that C++ codes get.
 #include <nestgrid/algorithms/slice.h>
+#include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 
@@ -80,6 +81,22 @@ TEST_F(SlicesForC, AreTheSameAlongPlanes) {
         surface = cut();
         expect_same(surface,
                     slice(scene.grid, scene.both, plane, Threshold(&deviations, 0.1), deviations));
+    }
+}
+
+TEST_F(SlicesForC, HaveTheBoundaryOfTheDomain) {
+    for (const auto& forest : forests<3>()) {
+        Scene<3> scene(forest);
+        for (const double threshold : {0.0, 0.1}) {
+            scene.options.threshold = threshold;
+            nestgrid_surface surface{};
+            ASSERT_EQ(nestgrid_boundary_surface(&scene.in_c.table, &scene.field, &scene.options,
+                                                &surface, scene.message.data(), 200),
+                      0)
+                << scene.message.data();
+            expect_same(surface, boundary_surface(scene.grid, scene.first,
+                                                  {.threshold = threshold, .elements = false}));
+        }
     }
 }
 

@@ -70,6 +70,13 @@ int nestgrid_isosurface_with(const nestgrid_grid* grid, const nestgrid_field* fi
                              double isovalue, const nestgrid_options* options,
                              nestgrid_surface* out, char* message, size_t message_size);
 
+/** The surface around low <= U < high inside the domain, for component 0 of a field: both
+ * level sets, oriented away from the band, open on the boundary of the domain. Neither caps nor a
+ * number of triangles go with it. */
+int nestgrid_isoband(const nestgrid_grid* grid, const nestgrid_field* field, double low,
+                     double high, const nestgrid_options* options, nestgrid_surface* out,
+                     char* message, size_t message_size);
+
 /** The graph of component 0 of a field on a grid of dimension 2, lifted along z by `scale` times
  * the component: triangles, whatever the dimension. `scale` 0 gives the plane itself. Vertices
  * carry all components. On the graph the data differ from what is drawn by error_bound at most. */

@@ -34,6 +34,18 @@ enum {
  * meanwhile. */
 typedef struct nestgrid_prerolls nestgrid_prerolls;
 
+/** A lens: elements have the size `finest` inside a domain at most, and may grow away from it. */
+typedef struct nestgrid_lens {
+    size_t size; /* sizeof the struct */
+    void* self;
+    /* Writes the distance of a point (3 numbers) from the domain, 0 inside it, and returns 0; or
+     * another number where it fails. Called by several threads where several are asked for. */
+    int (*distance)(void* self, const double* point, double* distance);
+    double finest;   /* in units of length; 0 draws all there is */
+    double coarsest; /* size far from the domain; 0: any */
+    double slope;    /* by which sizes may grow with the distance; 0: 0.5 */
+} nestgrid_lens;
+
 /** The options of all algorithms. A member that is 0 or NULL has its default, and so have all of
  * them where NULL is given in the place of the options. `size` is sizeof the struct as the caller
  * compiled it, so that it can grow. */
@@ -68,6 +80,17 @@ typedef struct nestgrid_options {
     int (*progress)(void* progress_data, uint64_t visited, uint64_t extracted);
     void* progress_data;
     nestgrid_prerolls* prerolls; /* that are used and added to; of isovalues the last are kept */
+    /* Not 0: edges are taken away as long as the error, or what the threshold says, is kept; or
+     * down to max_triangles with the least error. For isosurfaces in space, slices by planes and
+     * height fields. */
+    int collapse;
+    /* Not 0: the threshold, of NESTGRID_SLOPE, is a distance that an isosurface in space and that
+     * of all data keep there and back. */
+    int keep_distance;
+    /* At least 1; 0 stands for 1. Nodes move from their mean to their value between the threshold
+     * and this many times it, so that surfaces change without jumps. */
+    double blend;
+    const nestgrid_lens* lens;
 } nestgrid_options;
 
 /** Makes empty prerolls. Returns 0, or another number and a sentence, as isosurface.h says. Free

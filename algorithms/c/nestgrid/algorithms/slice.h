@@ -38,6 +38,11 @@ int nestgrid_slice_along(const nestgrid_grid* grid, const nestgrid_field* field,
                          const nestgrid_level_function* function, const nestgrid_options* options,
                          nestgrid_surface* out, char* message, size_t message_size);
 
+/** The boundary of a domain in space, oriented outwards: a closed surface, coloured as a slice. */
+int nestgrid_boundary_surface(const nestgrid_grid* grid, const nestgrid_field* field,
+                              const nestgrid_options* options, nestgrid_surface* out, char* message,
+                              size_t message_size);
+
 #ifdef __cplusplus
 }
 #endif
