@@ -7,10 +7,14 @@
 #include <vtkFeatureEdges.h>
 #include <vtkSphere.h>
 
+#include <nestgrid/adapters/vtk_boundary_source.hpp>
 #include <nestgrid/adapters/vtk_height_field_source.hpp>
+#include <nestgrid/adapters/vtk_isoband_source.hpp>
+#include <nestgrid/adapters/vtk_isolines_source.hpp>
 #include <nestgrid/adapters/vtk_isosurface_source.hpp>
 #include <nestgrid/adapters/vtk_slice_source.hpp>
 #include <nestgrid/adapters/vtk_surface.hpp>
+#include <nestgrid/algorithms/surface_measures.hpp>
 
 #include "cut_cube.hpp"
 #include "refusal_rows.hpp"
@@ -163,6 +167,15 @@ TEST(Refusals, OfVtkSources) {
     source->SetIsovalue(std::nan(""));
     rows.add("an isovalue that is no number", [&] { update(source); });
     source->SetIsovalue(0.5);
+    source->SetIndicator("colour");
+    rows.add("an indicator that does not exist", [&] { update(source); });
+    source->SetIndicator("offset");
+    source->SetCollapse(true);
+    rows.add("collapses without a threshold", [&] { update(source); });
+    source->SetCollapse(false);
+    const vtkNew<IsolinesSource> lines;
+    lines->SetGrid(grid, field);
+    rows.add("isolines in space", [&] { update(lines); });
     grid.refine_uniformly();
     rows.add("a field from before a refinement", [&] { update(source); });
 }
@@ -359,6 +372,91 @@ TEST(HeightFieldSource, IsTheGraph) {
         EXPECT_NEAR(x[2], 3 * height({x[0], x[1], 0}), 1e-12);
         EXPECT_NEAR(source->GetOutput()->GetPointData()->GetArray("height")->GetTuple1(v),
                     height({x[0], x[1], 0}), 1e-12);
+    }
+}
+
+/// Whatever a projection says, a source draws what the library draws of it.
+TEST(GridSource, DrawsAsFinelyAsAProjectionSays) {
+    const Cube cube;
+    const NodeField field(cube.grid, cube.second);
+    Prerolls prerolls(FieldOnGrid(cube.grid, field));
+    const auto expect_drawn = [&](IsosurfaceSource* source, const Projection& projection) {
+        source->Update();
+        const auto direct = isosurface<3>(prerolls, 2.5, projection);
+        EXPECT_GT(direct.surface.simplices.size(), 0U);
+        EXPECT_EQ(source->GetOutput()->GetNumberOfPolys(),
+                  static_cast<vtkIdType>(direct.surface.simplices.size()));
+        EXPECT_EQ(source->GetErrorBounds().error_bound, direct.error_bound);
+        EXPECT_EQ(source->GetDrawnThreshold(), direct.search.threshold);
+    };
+    const vtkNew<IsosurfaceSource> source;
+    source->SetGrid(cube.grid, field);
+    source->SetIsovalue(2.5);
+    source->SetError(0.05);
+    expect_drawn(source, {.threshold = 0.05, .indicator = "error"});
+    source->SetCollapse(true);
+    expect_drawn(source, {.threshold = 0.05, .indicator = "error", .collapse = true});
+    source->SetDistance(0.05);
+    expect_drawn(
+        source,
+        {.threshold = 0.05, .indicator = "slope", .collapse = true, .keeps_distance = true});
+    source->SetCollapse(false);
+    source->SetIndicator("visual");
+    source->SetBlend(2);
+    expect_drawn(source, {.threshold = 0.05, .indicator = "visual", .blend = 2});
+    const LensRequest lens{.distance = Ball{{0.5, 0.5, 0.5}, 0.1}, .finest = 0.1};
+    source->SetProjection({});
+    source->SetLens(lens);
+    expect_drawn(source, {.lens = lens});
+    source->RemoveLens();
+    source->SetMaxTriangles(40);
+    expect_drawn(source, {.max_triangles = 40});
+}
+
+TEST(IsobandSource, IsTheBand) {
+    const Cube cube;
+    const NodeField field(cube.grid, cube.first);
+    const vtkNew<IsobandSource> source;
+    source->SetGrid(cube.grid, field);
+    source->SetLow(0.5);
+    source->SetHigh(1);
+    source->Update();
+    Prerolls prerolls(FieldOnGrid(cube.grid, field));
+    const auto direct = isoband<3>(prerolls, 0.5, 1, {});
+    EXPECT_NEAR(area_of(source->GetOutput()), measure_surface(direct.surface).total.area, 1e-9);
+}
+
+TEST(BoundarySource, IsClosedAroundTheDomain) {
+    const Cube cube;
+    const NodeField field(cube.grid, cube.first);
+    const vtkNew<BoundarySource> source;
+    source->SetGrid(cube.grid, field, {"height"});
+    EXPECT_EQ(count_boundary_edges(source), 0);
+    EXPECT_NEAR(area_of(source->GetOutput()), 6, 1e-12);
+    EXPECT_NE(source->GetOutput()->GetPointData()->GetArray("height"), nullptr);
+}
+
+TEST(IsolinesSource, HaveTheirValues) {
+    OctreeGrid<2> grid(quadrilaterals(2));
+    refine_at_sphere(grid, 3);
+    const std::vector<double> values = sample_nodes(grid, height);
+    const NodeField field(grid, values);
+    const vtkNew<IsolinesSource> source;
+    source->SetGrid(grid, field);
+    source->SetValues({0.5, 1.5});
+    source->Update();
+    vtkPolyData* const lines = source->GetOutput();
+    ASSERT_EQ(lines->GetNumberOfLines(), 2);
+    for (vtkIdType line = 0; line < 2; ++line) {
+        vtkIdType count = 0;
+        const vtkIdType* points = nullptr;
+        lines->GetCellPoints(line, count, points);
+        const double value = lines->GetCellData()->GetArray("value")->GetTuple1(line);
+        for (vtkIdType i = 0; i < count; ++i) {
+            Point x;
+            lines->GetPoint(points[i], x.data());
+            EXPECT_NEAR(height(x), value, 1e-5);  // cuts keep away from the ends of edges
+        }
     }
 }
 

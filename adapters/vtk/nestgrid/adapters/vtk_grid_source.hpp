@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The base of all sources that draw a live grid at the head of a VTK pipeline: keeps the indicator,
-// and tells the pipeline when the grid has changed.
+// The base of all sources that draw a live grid at the head of a VTK pipeline: says how finely,
+// keeps the indicators, and tells the pipeline when the grid has changed.
 #pragma once
 
 #include <functional>
 #include <memory>
-#include <optional>
+#include <string>
+#include <vector>
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -15,26 +16,77 @@
 #include <vtkPolyDataAlgorithm.h>
 
 #include <nestgrid/adapters/vtk_surface.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/prerolls.hpp>
 
 namespace nestgrid {
 
 // Functions are called as those of VTK.
 // NOLINTBEGIN(readability-identifier-naming)
 
-/// A source without input. Its indicator is computed on the first update that needs one, and again
+/// A source without input. Its indicators are made on the first update that needs them, and again
 /// when the grid says by its epoch that it has changed; where values change on the same grid, call
 /// InvalidateField(). Failures are reported as errors of the algorithm, with an empty output.
 class GridSource : public vtkPolyDataAlgorithm {
 public:
     using Superclass = vtkPolyDataAlgorithm;
 
-    /// epsilon, in the units of the data.
-    void SetThreshold(double threshold) { set(threshold_, threshold); }
-    double GetThreshold() const { return threshold_; }
+    /// Both must outlive the source.
+    /// \param names of the components of the field that points carry
+    template <class Grid, class Field>
+    void SetGrid(const Grid& grid, const Field& field, std::vector<std::string> names = {}) {
+        names_ = std::move(names);
+        prerolls_.reset();
+        make_prerolls_ = [&grid, &field] {
+            return std::make_unique<Prerolls>(FieldOnGrid(grid, field));
+        };
+        epoch_ = [&grid] { return epoch(grid); };
+        Modified();
+    }
+
+    /// epsilon, in the units of the indicator. Not used beside a maximum number of triangles.
+    void SetThreshold(double threshold) { set(projection_.threshold, std::optional(threshold)); }
+    double GetThreshold() const { return projection_.least_threshold(); }
+    /// The least threshold that keeps within so many triangles is found; 0 asks for none.
+    void SetMaxTriangles(std::uint64_t count) { set(projection_.max_triangles, count); }
+    std::uint64_t GetMaxTriangles() const { return projection_.max_triangles; }
+    /// What the threshold is compared with: a name of indicators(), or "error", with which the
+    /// threshold is the error that is kept.
+    void SetIndicator(const std::string& name) {
+        set(projection_.keeps_distance, false);
+        set(projection_.indicator, name);
+    }
+    const std::string& GetIndicator() const { return projection_.indicator; }
+    /// All data differ from what is drawn by at most this, in their units.
+    void SetError(double error) {
+        SetIndicator("error");
+        SetThreshold(error);
+    }
+    /// Nodes move between the threshold and this many times it (blended.hpp), at least 1.
+    void SetBlend(double factor) { set(projection_.blend, factor); }
+    double GetBlend() const { return projection_.blend; }
+    /// Elements are small in a domain; without a threshold the lens decides alone.
+    void SetLens(const LensRequest& lens) {
+        projection_.lens = lens;
+        Modified();
+    }
+    void RemoveLens() {
+        projection_.lens.reset();
+        Modified();
+    }
+    /// Edges are taken away while the error, or the distance, is kept.
+    void SetCollapse(bool on) { set(projection_.collapse, on); }
+    bool GetCollapse() const { return projection_.collapse; }
+    /// Everything that says how finely is drawn, at once.
+    void SetProjection(const Projection& projection) {
+        projection_ = projection;
+        Modified();
+    }
+    const Projection& GetProjection() const { return projection_; }
+    /// Borrowed; null: the calling thread alone. The output does not depend on it.
+    void SetExecutor(const Executor* executor) { executor_ = executor; }
 
     void InvalidateField() {
-        if (invalidate_) invalidate_();
+        prerolls_.reset();
         Modified();
     }
 
@@ -42,6 +94,7 @@ public:
     vtkMTimeType GetMTime() override {
         if (epoch_ && epoch_() != drawn_epoch_) {
             drawn_epoch_ = epoch_();
+            prerolls_.reset();
             Modified();
         }
         return Superclass::GetMTime();
@@ -55,25 +108,11 @@ protected:
 
     const char* GetClassNameInternal() const override { return "GridSource"; }
 
-    /// Both must outlive the source.
-    /// \param draw a function of the hierarchy, and of one without arguments that returns its
-    ///        HierarchicalIndicator, which returns a smart pointer to vtkPolyData
-    template <class Grid, class Field, class Draw>
-    void set_grid(const Grid& grid, const Field& field, Draw draw) {
-        auto indicator = std::make_shared<std::optional<HierarchicalIndicator>>();
-        invalidate_ = [indicator] { indicator->reset(); };
-        epoch_ = [&grid] { return epoch(grid); };
-        draw_ = [&grid, &field, indicator, draw] {
-            const auto hierarchy = erase(grid, field);
-            return draw(hierarchy, [&]() -> const HierarchicalIndicator& {
-                if (!*indicator || (*indicator)->epoch() != hierarchy.epoch()) {
-                    indicator->emplace(hierarchy);
-                }
-                return **indicator;
-            });
-        };
-        Modified();
-    }
+    /// Draws the field of these prerolls as projection() says.
+    virtual vtkSmartPointer<vtkPolyData> draw(Prerolls& prerolls, const Work& work) = 0;
+
+    const Projection& projection() const { return projection_; }
+    const std::vector<std::string>& names() const { return names_; }
 
     /// Sets a parameter of the drawing.
     template <class Value>
@@ -84,12 +123,14 @@ protected:
     }
 
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* out) override {
-        if (!draw_) {
+        if (!make_prerolls_) {
             vtkErrorMacro("the source has no grid");
             return 0;
         }
         try {
-            vtkPolyData::GetData(out)->ShallowCopy(draw_());
+            if (prerolls_ == nullptr) prerolls_ = make_prerolls_();
+            const Work work = executor_ == nullptr ? Work{} : Work{.executor = *executor_};
+            vtkPolyData::GetData(out)->ShallowCopy(draw(*prerolls_, work));
         } catch (const std::exception& error) {
             vtkErrorMacro(<< error.what());
             return 0;
@@ -98,11 +139,13 @@ protected:
     }
 
 private:
-    std::function<vtkSmartPointer<vtkPolyData>()> draw_;
-    std::function<void()> invalidate_;
+    std::function<std::unique_ptr<Prerolls>()> make_prerolls_;
+    std::unique_ptr<Prerolls> prerolls_;  // of the grid as it was drawn last
     std::function<std::uint64_t()> epoch_;
     std::uint64_t drawn_epoch_ = 0;
-    double threshold_ = 0;
+    Projection projection_;
+    std::vector<std::string> names_;
+    const Executor* executor_ = nullptr;
 };
 
 // NOLINTEND(readability-identifier-naming)

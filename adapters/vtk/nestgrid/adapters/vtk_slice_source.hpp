@@ -10,7 +10,7 @@
 #include <vtkPlane.h>
 
 #include <nestgrid/adapters/vtk_grid_source.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 
 namespace nestgrid {
 
@@ -29,22 +29,12 @@ private:
 // NOLINTBEGIN(readability-identifier-naming)
 
 /// The slice along the plane through an origin across a normal, or where a function of VTK is 0;
-/// oriented towards where the function is negative. At threshold 0 it needs no indicator.
-/// The threshold is not used beside a maximum number of triangles.
+/// oriented towards where the function is negative. At threshold 0 it needs no indicator. The names
+/// of SetGrid() are those of components 0 ...
 class SliceSource : public GridSource {
 public:
     using Superclass = GridSource;
     static SliceSource* New() { VTK_STANDARD_NEW_BODY(SliceSource); }
-
-    /// Both must outlive the source.
-    /// \param names of components 0 ... of the field, as point data
-    template <class Grid, class Field>
-    void SetGrid(const Grid& grid, const Field& field, std::vector<std::string> names = {}) {
-        static_assert(Grid::dimension == 3, "slices need a grid of dimension 3");
-        set_grid(grid, field, [this, names](const auto& hierarchy, const auto& indicator) {
-            return make_poly_data(this->draw(hierarchy, indicator).surface, names);
-        });
-    }
 
     /// A point on the plane; not used beside a function.
     void SetOrigin(double x, double y, double z) { set(origin_, {x, y, z}); }
@@ -57,9 +47,6 @@ public:
         set(function_, vtkSmartPointer<vtkImplicitFunction>(function));
     }
     vtkImplicitFunction* GetCutFunction() const { return function_; }
-    /// The least threshold that keeps within so many triangles is found; 0 asks for none.
-    void SetMaxTriangles(std::uint64_t count) { set(options_.max_triangles, count); }
-    std::uint64_t GetMaxTriangles() const { return options_.max_triangles; }
     /// Closes the slice along the boundary of the domain, around where the function is positive.
     void SetCap(bool on) { set(options_.cap, on); }
     bool GetCap() const { return options_.cap; }
@@ -73,29 +60,24 @@ protected:
     SliceSource() = default;
     const char* GetClassNameInternal() const override { return "SliceSource"; }
 
-private:
-    template <class Hierarchy, class Indicator>
-    Slice draw(const Hierarchy& hierarchy, const Indicator& indicator) const {
-        if (function_ == nullptr) return draw(hierarchy, indicator, Plane(origin_, normal_));
+    vtkSmartPointer<vtkPolyData> draw(Prerolls& prerolls, const Work& work) override {
+        if (function_ == nullptr) return draw_along(Plane(origin_, normal_), prerolls, work);
         auto* const plane = vtkPlane::SafeDownCast(function_);
         if (plane == nullptr || plane->GetTransform() != nullptr) {
-            return draw(hierarchy, indicator, ImplicitLevelFunction(*function_));
+            return draw_along(ImplicitLevelFunction(*function_), prerolls, {});
         }
         Point origin;
         Point normal;
         plane->GetOrigin(origin.data());
         plane->GetNormal(normal.data());
-        return draw(hierarchy, indicator, Plane(origin, normal));
+        return draw_along(Plane(origin, normal), prerolls, work);
     }
-    template <class Hierarchy, class Indicator>
-    Slice draw(const Hierarchy& hierarchy, const Indicator& indicator,
-               const LevelFunction& function) const {
-        IsosurfaceOptions options = options_;
-        options.threshold = GetThreshold();
-        if (options.threshold == 0 && options.max_triangles == 0) {
-            return slice(hierarchy, function, options);
-        }
-        return slice(hierarchy, function, indicator(), options);
+
+private:
+    vtkSmartPointer<vtkPolyData> draw_along(const LevelFunction& function, Prerolls& prerolls,
+                                            const Work& work) const {
+        return make_poly_data(slice(prerolls, function, projection(), options_, work).surface,
+                              names());
     }
 
     Point origin_{0, 0, 0};
