@@ -5,8 +5,7 @@
 #include <cstdio>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/criteria.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 
 #include "bucky_ball.hpp"
 
@@ -20,15 +19,13 @@ int main() {
     // [choose]
     Prerolls prerolls(FieldOnGrid(grid, field));  // keeps what each choice needs
     const double level = 0.275;
-    const auto draw = [&](const Projection& wish) {
-        const Criteria criteria(prerolls, wish, std::span(&level, 1), {});
-        return isosurface(grid, field, level, criteria.criterion(), criteria.bounds());
-    };
     for (const char* indicator : {"offset", "error", "wavelet"}) {
-        const auto drawn = draw({.threshold = 0.02, .indicator = indicator});
+        const auto drawn =
+            isosurface<3>(prerolls, level, {.threshold = 0.02, .indicator = indicator});
         std::printf("%-7s %6zu triangles\n", indicator, drawn.surface.simplices.size());
     }
     // [choose]
-    const double kept = draw({.threshold = 0.02, .indicator = "error"}).surface_error;
+    const double kept =
+        isosurface<3>(prerolls, level, {.threshold = 0.02, .indicator = "error"}).surface_error;
     return kept > 0 && kept <= 0.02 ? 0 : 1;
 }

@@ -34,15 +34,16 @@ TABLE = {
         "NestgridIsosurface",
         "several in one walk": "isosurfaces a a a a a a",
         "a series of them": "IsosurfaceSeries a a a a a a",
-        "a band between two": "isoband a a a a a a",
+        "a band between two": "isoband nestgrid_isoband a a isoband IsobandSource a",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
         "by a sphere, a cylinder": "Sphere nestgrid_slice_along --sphere a sphere SetCutFunction a",
         "by any function": "LevelFunction nestgrid_slice_along --function a a SetCutFunction a",
-        "isolines in the plane": "isolines nestgrid_isolines isolines d isolines a a",
+        "isolines in the plane": "isolines nestgrid_isolines isolines d isolines IsolinesSource a",
         "isolines on a surface": "surface_isolines nestgrid_surface_isolines --on-surface a isolines b b",
         "a height field, a shading": "height_field nestgrid_height_field height d height_field "
         "HeightFieldSource a",
-        "the boundary of the domain": "boundary_surface a boundary a a a a",
+        "the boundary of the domain": "boundary_surface nestgrid_boundary_surface boundary a boundary BoundarySource "
+        "a",
         "data that jump": "DiscontinuousData a c c c a c",
         "values at points": "probe nestgrid_probe probe a probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines a a",
@@ -51,16 +52,17 @@ TABLE = {
     },
     "How finely": {
         "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
-        "an error that is kept": "error_indicator error --error error error a Error",
-        "a distance, estimated": "slope_deviations NESTGRID_SLOPE --distance distance distance a Distance",
-        "a distance that is kept": "isosurface_within a --distance-field a distance_field a "
+        "an error that is kept": "error_indicator error --error error error SetError Error",
+        "a distance, estimated": "slope_deviations NESTGRID_SLOPE --distance distance distance SetIndicator "
+        "Distance",
+        "a distance that is kept": "isosurface_within keep_distance --distance-field a distance_field SetDistance "
         "DistanceField",
         "a number of triangles": "max_triangles max_triangles --max-triangles triangles max_triangles "
         "SetMaxTriangles MaxTriangles",
-        "collapsed edges": "collapse a --collapse collapse collapse a Collapse",
-        "an indicator by name": "indicators indicator --indicator indicator indicator a Indicator",
-        "nodes that move": "Blended a --blend a blend a a",
-        "a lens": "Lens a --lens lens lens a a",
+        "collapsed edges": "collapse collapse --collapse collapse collapse SetCollapse Collapse",
+        "an indicator by name": "indicators indicator --indicator indicator indicator SetIndicator Indicator",
+        "nodes that move": "Blended blend --blend a blend SetBlend a",
+        "a lens": "Lens lens --lens lens lens SetLens a",
         "a region": "Region a --box a a a a",
         "a criterion of one's own": "Criterion g g g g g g",
         "times between frames": "Frames a --time time Frames a TimestepValues",
@@ -68,12 +70,12 @@ TABLE = {
     "How, and what is kept": {
         "normals": "normals normals --no-normals normals normals SetNormals Normals",
         "caps": "cap cap --cap a cap SetCap Cap",
-        "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes a a",
-        "cuts on finest data": "Cuts finest_cuts --cuts a cuts a a",
+        "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes SetAtNodes a",
+        "cuts on finest data": "Cuts finest_cuts --cuts a cuts SetFinestCuts a",
         "the element of a triangle": "elements elements --elements outlines elements a a",
         "places in elements": "reference reference a a a a a",
         "colours that follow the data": "refine_colours a --colour-tolerance a a a a",
-        "threads": "Executor threads --threads e threads a e",
+        "threads": "Executor threads --threads e threads SetExecutor e",
         "work that is ended": "Watch progress h h h a a",
     },
 }
@@ -82,7 +84,8 @@ OTHERS = {
     "page": {"axis", "at", "finest", "coarsest", "slope", "motion"},
     "Python": {"level", "self"},
     "C, Fortran": {"size", "attributes", "attribute_count", "progress_data", "prerolls"},
-    "VTK": {"SetGrid", "SetOrigin", "SetNormal", "SetIsovalue", "SetScale"},
+    "VTK": {"SetGrid", "SetOrigin", "SetNormal", "SetIsovalue", "SetScale", "SetValues", "SetLow", "SetHigh",
+            "SetProjection"},
 }
 MARKED_BEGIN = "<!-- made by tests/docs/front_ends.py -->\n"
 

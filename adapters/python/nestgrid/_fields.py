@@ -156,6 +156,55 @@ class Field:
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
         )
 
+    @takes(low=number, high=number, indicator=name_of(SurfaceIndicator))
+    def isoband(
+        self,
+        low: float,
+        high: float,
+        threshold: float | None = None,
+        *,
+        indicator: SurfaceIndicator = "offset",
+        blend: float = 1,
+        lens: LensLike | None = None,
+        error: float | None = None,
+        normals: bool = True,
+        elements: bool = False,
+        threads: int = 0,
+    ) -> Surface:
+        """The surface around low <= field < high: both level sets, oriented away from the band.
+
+        low   the lower value, in the units of the data
+        high  the upper value, above low
+
+        It is open on the boundary of the domain only. Raises InvalidInput also unless low < high,
+        and for a field of dimension 2.
+        """
+        projection = _projection(threshold, None, indicator, blend, lens, error)
+        options = (low, high, normals, elements)
+        return Surface._of(_nestgrid.isoband(self._source, *options, projection, threads), self)
+
+    @takes()
+    def boundary(
+        self,
+        threshold: float | None = None,
+        max_triangles: int | None = None,
+        *,
+        indicator: Indicator = "offset",
+        blend: float = 1,
+        lens: LensLike | None = None,
+        error: float | None = None,
+        elements: bool = False,
+        threads: int = 0,
+    ) -> Surface:
+        """The boundary of the domain, closed, with the field at its vertices as attributes[:, 0].
+
+        Hidden data are outside. Raises InvalidInput also for a field of dimension 2.
+        """
+        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
+        return Surface._of(
+            _nestgrid.boundary(self._source, elements, projection, threads), self
+        )
+
     @takes(
         plane=optional(shape(("the point", 3), ("the normal", 3))),
         sphere=optional(shape(("the centre", 3), ("the radius", 0))),

@@ -191,6 +191,18 @@ def isosurface(
     projection: Projection,
     threads: int,
 ) -> Surface: ...
+def isoband(
+    source: Source,
+    low: float,
+    high: float,
+    normals: bool,
+    elements: bool,
+    projection: Projection,
+    threads: int,
+) -> Surface: ...
+def boundary(
+    source: Source, elements: bool, projection: Projection, threads: int
+) -> Surface: ...
 def slice(
     source: Source,
     function: LevelFunction,

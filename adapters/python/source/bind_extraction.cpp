@@ -168,6 +168,26 @@ void bind_draws(py::module_& m) {
         py::arg("elements"), py::arg("at_nodes"), py::arg("finest_cuts"), py::arg("collapses"),
         py::arg("keeps_distance"), py::arg("projection"), py::arg("threads"));
     m.def(
+        "isoband",
+        [](const SourcePointer& source, double low, double high, bool normals, bool elements,
+           const Projection& projection, int threads) {
+            const SurfaceRequest request{.normals = normals, .elements = elements};
+            return drawn(threads, [source, low, high, request, projection](const Call& call) {
+                return draw_isoband(*source, low, high, request, projection, call);
+            });
+        },
+        py::arg("source"), py::arg("low"), py::arg("high"), py::arg("normals"), py::arg("elements"),
+        py::arg("projection"), py::arg("threads"));
+    m.def(
+        "boundary",
+        [](const SourcePointer& source, bool elements, const Projection& projection, int threads) {
+            const SurfaceRequest request{.normals = false, .elements = elements};
+            return drawn(threads, [source, request, projection](const Call& call) {
+                return draw_boundary(*source, request, projection, call);
+            });
+        },
+        py::arg("source"), py::arg("elements"), py::arg("projection"), py::arg("threads"));
+    m.def(
         "slice",
         [](const SourcePointer& source, const std::shared_ptr<LevelFunction>& function,
            bool normals, bool elements, bool collapses, const Projection& projection, int threads) {

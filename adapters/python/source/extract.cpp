@@ -4,14 +4,7 @@
 
 #include <limits>
 
-#include <nestgrid/algorithms/collapse_budget.hpp>
-#include <nestgrid/algorithms/collapse_colours.hpp>
-#include <nestgrid/algorithms/criteria.hpp>
-#include <nestgrid/algorithms/isosurface_within.hpp>
-#include <nestgrid/algorithms/refine_colours.hpp>
-#include <nestgrid/algorithms/slices.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
-#include <nestgrid/error.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 
 namespace nestgrid::python {
 
@@ -31,161 +24,75 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
             .progress = progress_of(call)};
 }
 
-/// Draws one isosurface. Where edges are collapsed, what is drawn first has a part of the
-/// threshold.
-template <class Real>
-Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue, const Criteria& criteria,
-                       double threshold, const SurfaceRequest& request, const Call& call) {
-    const Bounds& bounds = criteria.bounds();
-    const IsosurfaceOptions options = options_of(request, call);
-    const auto draw = [&](const Criterion& by, const IsosurfaceOptions& how) {
-        return isosurface<3>(hierarchy, isovalue, by, bounds, how, call.executor());
-    };
-    const double part = request.keeps_distance ? 0.5 : collapse_start;
-    const double first = request.collapses ? part * threshold : threshold;
-    const auto criterion = criteria.at(first);
-    CollapseOptions kept;
-    Isosurface<3> whole;
-    Isosurface<3> drawn;
-    if (request.keeps_distance) {
-        whole =
-            draw(Exact{},
-                 {.elements = false, .at_nodes = options.at_nodes, .progress = options.progress});
-        if (whole.cancelled) return whole;
-        drawn = isosurface_within(hierarchy, isovalue, {whole.surface, first}, criterion, bounds,
-                                  options, call.executor())
-                    .isosurface;
-        kept.nearness.emplace(Nearness{whole.surface, threshold});
-    } else {
-        drawn = draw(criterion, options);
-        kept.error = threshold;
-    }
-    if (!request.collapses || threshold == 0 || drawn.cancelled) return drawn;
-    const Collapsed done =
-        collapse(drawn.surface, hierarchy, isovalue, bounds, kept, call.executor());
-    done.hand_to(drawn, drawn.surface_error);
-    return drawn;
+Projection asked(Projection projection, const SurfaceRequest& request) {
+    projection.collapse = request.collapses;
+    projection.keeps_distance = request.keeps_distance;
+    return projection;
 }
 
-/// \param search of the threshold; its max_triangles is 0 where the threshold was given
-Drawn drawn_of(Isosurface<3> result, const TriangleBudget& search) {
+template <class Result>
+Drawn drawn_of(Projected<Result> result, double surface_error) {
     return {static_cast<const ErrorBounds&>(result),
             std::move(result.surface),
             result.counts,
-            search.threshold,
-            result.surface_error,
-            search.max_triangles > 0 ? search.reason() : std::string(),
+            result.search.threshold,
+            surface_error,
+            result.budget_reason(),
             result.cancelled};
 }
-
-/// The function that find_threshold() asks for criteria.
-auto criterion_at(const Criteria& criteria) {
-    return [&criteria](double threshold) { return criteria.at(threshold); };
+Drawn drawn_of(Projected<Isosurface<3>> result) {
+    const double surface_error = result.surface_error;
+    return drawn_of(std::move(result), surface_error);
 }
 
 }  // namespace
 
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
                       const Projection& projection, const Call& call) {
-    return call.with(source.field(), [&](const auto& hierarchy) {
-        hierarchy.facts().require_dimension(3);
-        const Criteria criteria(source.prerolls(), projection, std::span(&isovalue, 1),
-                                call.work());
-        TriangleBudget search{.threshold = projection.least_threshold()};
-        if (projection.max_triangles > 0) {
-            const auto find = [&](const auto& function) {
-                return function(hierarchy, isovalue, criterion_at(criteria), criteria.bounds(),
-                                projection.max_triangles, options_of(request, call),
-                                call.executor());
-            };
-            search = request.collapses
-                         ? find([](const auto&... a) { return find_collapse_error(a...); })
-                         : find([](const auto&... a) { return find_threshold<3>(a...); });
-        }
-        return drawn_of(draw_one(hierarchy, isovalue, criteria, search.threshold, request, call),
-                        search);
-    });
+    return drawn_of(isosurface<3>(source.prerolls(), isovalue, asked(projection, request),
+                                  options_of(request, call), call.work()));
+}
+
+Drawn draw_isoband(const Source& source, double low, double high, const SurfaceRequest& request,
+                   const Projection& projection, const Call& call) {
+    return drawn_of(isoband<3>(source.prerolls(), low, high, asked(projection, request),
+                               options_of(request, call), call.work()));
+}
+
+Drawn draw_boundary(const Source& source, const SurfaceRequest& request,
+                    const Projection& projection, const Call& call) {
+    return drawn_of(boundary_surface(source.prerolls(), asked(projection, request),
+                                     options_of(request, call), call.work()));
 }
 
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
                  const Projection& projection, const Call& call) {
-    return call.with(source.field(), [&](const auto& hierarchy) {
-        const IsosurfaceOptions options = options_of(request, call);
-        if (projection.draws_everything()) {
-            return drawn_of(slice(hierarchy, function, options, call.executor()), {});
-        }
-        const Criteria criteria(source.prerolls(), projection, {}, call.work());
-        TriangleBudget search{.threshold = projection.least_threshold()};
-        if (projection.max_triangles > 0) {
-            search = find_threshold(hierarchy, function, criterion_at(criteria), criteria.bounds(),
-                                    projection.max_triangles, options, call.executor());
-        }
-        const double error = search.threshold;
-        const AnyCriterion criterion = criteria.at(request.collapses ? error / 2 : error);
-        Slice drawn =
-            slice(hierarchy, function, criterion, criteria.bounds(), options, call.executor());
-        if (request.collapses && error > 0 && !drawn.cancelled) {
-            refine_colours(drawn.surface, hierarchy, error / 2, criterion, criteria.bounds());
-            collapse_colours(drawn.surface, hierarchy, criteria.bounds(), {.errors = {error}},
-                             call.executor())
-                .hand_to(drawn, drawn.surface_error);
-        }
-        return drawn_of(std::move(drawn), search);
-    });
+    return drawn_of(slice(source.prerolls(), function, asked(projection, request),
+                          options_of(request, call), call.work()));
 }
 
 DrawnLines draw_isolines(const Source& source, std::span<const double> values,
                          const Projection& projection, const Call& call) {
-    return call.with(source.field(), [&](const auto& hierarchy) {
-        hierarchy.facts().require_dimension(2);
-        const Criteria criteria(source.prerolls(), projection, values, call.work());
-        Isolines result =
-            isolines(hierarchy, values, criteria.criterion(), criteria.bounds(),
-                     IsosurfaceOptions{.progress = progress_of(call)}, call.executor());
-        return DrawnLines{static_cast<const ErrorBounds&>(result), std::move(result.lines),
-                          result.counts, projection.least_threshold(), result.cancelled};
-    });
+    Projected<Isolines> result = isolines(source.prerolls(), values, projection,
+                                          {.progress = progress_of(call)}, call.work());
+    return {static_cast<const ErrorBounds&>(result), std::move(result.lines), result.counts,
+            result.search.threshold, result.cancelled};
 }
 
 Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
                         const SurfaceRequest& request, const Projection& projection,
                         const Call& call) {
-    return call.with(source.field(), [&](const auto& hierarchy) {
-        hierarchy.facts().require_dimension(2);
-        const Criteria criteria(source.prerolls(), projection, {}, call.work());
-        const double error = projection.least_threshold();
-        const double first = request.collapses ? error / 2 : error;
-        const ShadingOptions options{
-            .flatness = request.collapses ? std::min(flatness, first) : flatness,
-            .elements = request.elements,
-            .progress = progress_of(call)};
-        const AnyCriterion s = criteria.at(first);
-        Shading result =
-            scale ? height_field(hierarchy, *scale, s, criteria.bounds(), options, call.executor())
-                  : shading(hierarchy, s, criteria.bounds(), options, call.executor());
-        if (request.collapses && error > 0 && !result.cancelled) {
-            double surface_error = 0;
-            collapse_colours(result.surface, hierarchy, criteria.bounds(),
-                             {.errors = {error}, .scale = scale.value_or(0)}, call.executor())
-                .hand_to(result, surface_error);
-        }
-        return Drawn{static_cast<const ErrorBounds&>(result),
-                     std::move(result.surface),
-                     result.counts,
-                     error,
-                     std::numeric_limits<double>::infinity(),
-                     {},
-                     result.cancelled};
-    });
+    const Projection finely = asked(projection, request);
+    const ShadingOptions options{
+        .flatness = flatness, .elements = request.elements, .progress = progress_of(call)};
+    return drawn_of(scale ? height_field(source.prerolls(), *scale, finely, options, call.work())
+                          : shading(source.prerolls(), finely, options, call.work()),
+                    std::numeric_limits<double>::infinity());
 }
 
 ProbeResult probe_points(const Source& source, std::span<const Point> points,
                          const Projection& projection, const Call& call) {
-    return call.with(source.field(), [&](const auto& hierarchy) {
-        if (projection.draws_everything()) return probe(hierarchy, points);
-        const Criteria criteria(source.prerolls(), projection, {}, call.work());
-        return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
-    });
+    return probe(source.prerolls(), points, projection, call.work());
 }
 
 }  // namespace nestgrid::python

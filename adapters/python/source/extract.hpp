@@ -48,6 +48,12 @@ struct SurfaceRequest {
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
                       const Projection& projection, const Call& call);
+/// \throw InvalidInput, GridError as isoband()
+Drawn draw_isoband(const Source& source, double low, double high, const SurfaceRequest& request,
+                   const Projection& projection, const Call& call);
+/// \throw InvalidInput, GridError as boundary_surface()
+Drawn draw_boundary(const Source& source, const SurfaceRequest& request,
+                    const Projection& projection, const Call& call);
 /// \throw InvalidInput, GridError as slices() and find_threshold()
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
                  const Projection& projection, const Call& call);

@@ -420,6 +420,35 @@ def test_surfaces_are_closed_and_bounded(gyroid):
         np.testing.assert_allclose(length, 1, atol=1e-12)
 
 
+def test_bands_lie_between_their_values(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    for options in {}, {"threshold": 0.1}, {"error": 0.1}, {"threshold": 0.1, "indicator": "cut"}:
+        band = volume.isoband(-0.2, 0.3, **options)
+        values = volume.probe(band.vertices)
+        off = np.minimum(np.abs(values + 0.2), np.abs(values - 0.3))
+        assert off.max() <= band.error_bound * (1 + 1e-6) + 1e-5
+        sides = [volume.isosurface(level, **options) for level in (-0.2, 0.3)]
+        if "error" not in options and "indicator" not in options:
+            assert len(band.triangles) == sum(len(side.triangles) for side in sides)
+    with refused("the lower isovalue is not below the upper one"):
+        volume.isoband(0.3, -0.2)
+    with refused("dimension 2, not 3"):
+        nestgrid.Volume(gyroid[0]).isoband(-0.2, 0.3)
+
+
+def test_the_boundary_is_closed_around_the_domain(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    for options in {}, {"threshold": 0.1}, {"error": 0.1}, {"max_triangles": 4000}:
+        boundary = volume.boundary(**options)
+        report = boundary.report()
+        assert report["closed"] and report["manifold"]
+        assert report["volume"] == pytest.approx(np.prod(np.array(gyroid.shape) - 1.0))
+        assert len(boundary.triangles) <= options.get("max_triangles", np.inf)
+        assert boundary.attributes.shape == (len(boundary.vertices), 1)
+    with refused("dimension 2, not 3"):
+        nestgrid.Volume(gyroid[0]).boundary()
+
+
 def test_lens_is_fine_inside_and_coarse_outside(gyroid):
     volume = nestgrid.Volume(gyroid)
     centre, radius = (32, 32, 32), 10

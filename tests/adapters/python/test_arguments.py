@@ -47,6 +47,7 @@ def callables():
     yield nestgrid.marching_cubes, {"volume": CUBE, "level": 3.5}
     right = {"isosurface": {"level": 3.5}, "slice": {"plane": ((1, 1, 1), one)}}
     right |= {"probe": {"points": one}, "isolines": {"values": [3.5]}, "height_field": {}}
+    right |= {"isoband": {"low": 1.5, "high": 3.5}}
     right |= {"at": {"t": 0.5}, "drawn": {"cost": 1}, "settle": {"fits": lambda t: True}}
     right |= {"save": {"path": "x.png"}}
     for thing in (volume, flat, frames, cut, cut.isolines([3.5]), cut.outlines(), budget, lens):
@@ -54,7 +55,7 @@ def callables():
             if not name.startswith("_") and name != "to_pyvista":
                 if name in ("isolines", "height_field") and thing is volume:
                     continue  # for two dimensions
-                if name in ("isosurface", "slice") and thing is flat:
+                if name in ("isosurface", "isoband", "slice", "boundary") and thing is flat:
                     continue
                 yield method, right.get(name, {})
 
