@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <nestgrid/algorithms/probe.hpp>
 
@@ -61,13 +62,31 @@ public:
     }
     /// Inner points of triangles that lie outside the domain, or in what is hidden.
     std::size_t outside() const { return outside_; }
-    /// Triangles that do not keep the errors.
-    std::size_t exceeding() const {
-        return static_cast<std::size_t>(
-            std::ranges::count_if(greatest_, [](double part) { return part > 1 + 1e-9; }));
+    /// Triangles that do not keep the errors, but for those that were drawn so.
+    std::size_t exceeding_beside(const Surface<3>& drawn) const {
+        std::set<Places> before;
+        for (std::size_t t = 0; t < drawn.simplices.size(); ++t) before.insert(places(drawn, t));
+        std::size_t count = 0;
+        for (std::size_t t = 0; t < greatest_.size(); ++t) {
+            const bool exceeds = greatest_[t] > 1 + 1e-9;
+            count += exceeds && !before.contains(places(surface_, t)) ? 1 : 0;
+        }
+        return count;
     }
 
 private:
+    using Places = std::set<std::array<long, 3>>;
+
+    /// The corners of a triangle, rounded.
+    static Places places(const Surface<3>& s, std::size_t t) {
+        Places all;
+        for (const Point& x : corners_of(s, t)) {
+            const auto round = [](double at) { return std::lround(1e6 * at + 0.123); };
+            all.insert({round(x[0]), round(x[1]), round(x[2])});
+        }
+        return all;
+    }
+
     const Surface<3>& surface_;
     const std::vector<double>& errors_;
     std::vector<double> greatest_;
