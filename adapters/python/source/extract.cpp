@@ -67,6 +67,32 @@ Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue, const 
     return drawn;
 }
 
+/// Draws a slice whose colours keep an error with few triangles. Where it may move, it begins with
+/// that of all data, as only this is as near to the function as the grid allows.
+template <class Real>
+Slice collapsed_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                      const Criteria& criteria, double error, const SurfaceRequest& request,
+                      const Call& call) {
+    const Bounds& bounds = criteria.bounds();
+    const bool moves = request.slice_distance > 0;
+    const AnyCriterion coarse = criteria.at(error / 2);
+    const Exact all;
+    const Criterion& criterion = moves ? static_cast<const Criterion&>(all) : coarse;
+    Slice drawn =
+        slice(hierarchy, function, criterion, bounds, options_of(request, call), call.executor());
+    if (drawn.cancelled) return drawn;
+    refine_colours(drawn.surface, hierarchy, error / 2, criterion, bounds);
+    ColourCollapseOptions options{.errors = {error}};
+    Surface<3> whole;
+    if (moves) {
+        whole = drawn.surface;
+        options.nearness.emplace(Nearness{whole, request.slice_distance});
+    }
+    collapse_colours(drawn.surface, hierarchy, bounds, options, call.executor())
+        .hand_to(drawn, drawn.surface_error);
+    return drawn;
+}
+
 /// \param search of the threshold; its max_triangles is 0 where the threshold was given
 Drawn drawn_of(Isosurface<3> result, const TriangleBudget& search) {
     return {static_cast<const ErrorBounds&>(result),
@@ -120,17 +146,14 @@ Drawn draw_slice(const Source& source, const LevelFunction& function, const Surf
             search = find_threshold(hierarchy, function, criterion_at(criteria), criteria.bounds(),
                                     projection.max_triangles, options, call.executor());
         }
-        const double error = search.threshold;
-        const AnyCriterion criterion = criteria.at(request.collapses ? error / 2 : error);
-        Slice drawn =
-            slice(hierarchy, function, criterion, criteria.bounds(), options, call.executor());
-        if (request.collapses && error > 0 && !drawn.cancelled) {
-            refine_colours(drawn.surface, hierarchy, error / 2, criterion, criteria.bounds());
-            collapse_colours(drawn.surface, hierarchy, criteria.bounds(), {.errors = {error}},
-                             call.executor())
-                .hand_to(drawn, drawn.surface_error);
+        if (request.collapses && search.threshold > 0) {
+            return drawn_of(
+                collapsed_slice(hierarchy, function, criteria, search.threshold, request, call),
+                search);
         }
-        return drawn_of(std::move(drawn), search);
+        return drawn_of(slice(hierarchy, function, criteria.at(search.threshold), criteria.bounds(),
+                              options, call.executor()),
+                        search);
     });
 }
 
