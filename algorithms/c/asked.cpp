@@ -150,7 +150,8 @@ Projection Asked::projection(const FieldOnGrid& field, bool level_sets) const {
             .blend = options_.blend == 0 ? 1 : options_.blend,
             .lens = lens_,
             .collapse = options_.collapse != 0,
-            .keeps_distance = options_.keep_distance != 0};
+            .keeps_distance = options_.keep_distance != 0,
+            .slice_distance = options_.slice_distance};
 }
 
 Prerolls& Asked::kept_prerolls(const FieldOnGrid& field) const {

@@ -11,6 +11,7 @@
 #include <nestgrid/error.hpp>
 
 #include <collapses/collapse_rounds.hpp>
+#include <collapses/judge_triangles.hpp>
 #include <surfaces/probed_colours.hpp>
 #include <surfaces/require_simplices.hpp>
 
@@ -30,12 +31,7 @@ void require(const CollapseOptions& options, double isovalue) {
         options.nearness->require();
         engine::require_simplices(options.nearness->whole);
     }
-    if (!(options.turn > 0 && options.turn < 90)) {
-        throw InvalidInput("the greatest turn of a triangle is not between 0 and 90 degrees");
-    }
-    if (!(options.shape >= 0 && options.shape < 1)) {
-        throw InvalidInput("the least quality of a triangle is not between 0 and 1");
-    }
+    engine::require_limits(options.turn, options.shape);
 }
 
 /// The checks that are asked for.
@@ -76,33 +72,18 @@ private:
 template <class Take>
 double judge(const Surface<3>& surface, const Checks& checks, const Executor& executor,
              const Take& take) {
-    constexpr std::size_t chunk = 4096;
-    const std::size_t count = surface.simplices.size();
-    const std::size_t tasks = (count + chunk - 1) / chunk;
     const engine::FieldCheck* const field = checks.field();
     const engine::DistanceCheck* const distance = checks.distance();
-    std::vector<std::uint8_t> keeps(count);
-    std::vector<double> greatest(tasks,
-                                 field != nullptr ? 0 : std::numeric_limits<double>::infinity());
-    executor.run(
-        tasks,
-        [&](std::size_t i) {
-            auto search = distance != nullptr ? std::optional(distance->search()) : std::nullopt;
-            for (std::size_t t = i * chunk; t < std::min(count, (i + 1) * chunk); ++t) {
-                const auto& [a, b, c] = surface.simplices[t];
-                const engine::Triangle x{surface.vertices[a], surface.vertices[b],
-                                         surface.vertices[c]};
-                const bool near = !search || !search->far_point(x);
-                const bool kept =
-                    field == nullptr || field->keeps(engine::FlatTriangle(x), greatest[i]);
-                keeps[t] = near && kept ? 1 : 0;
-            }
-        },
-        [](std::size_t) {});
-    for (std::size_t t = 0; t < count; ++t) take(t, keeps[t] != 0);
-    double most = 0;
-    for (const double part : greatest) most = std::max(most, part);
-    return most;
+    const auto make = [&] {
+        auto search = distance != nullptr ? std::optional(distance->search()) : std::nullopt;
+        return [&, search](std::size_t t, double& greatest) mutable {
+            const engine::Triangle x = engine::triangle_of(surface, t);
+            const bool near = !search || !search->far_point(x);
+            return near && (field == nullptr || field->keeps(engine::FlatTriangle(x), greatest));
+        };
+    };
+    const double most = engine::judge_triangles(surface.simplices.size(), executor, make, take);
+    return field != nullptr ? most : std::numeric_limits<double>::infinity();
 }
 
 /// Gives a surface that has changed what it had by vertex.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <collapses/separated.hpp>
+#include <nestgrid/error.hpp>
 
 namespace nestgrid::engine {
 
@@ -21,10 +22,19 @@ double shape_of(const Triangle& x) {
 
 }  // namespace
 
+void require_limits(double turn, double shape) {
+    if (!(turn > 0 && turn < 90)) {
+        throw InvalidInput("the greatest turn of a triangle is not between 0 and 90 degrees");
+    }
+    if (!(shape >= 0 && shape < 1)) {
+        throw InvalidInput("the least quality of a triangle is not between 0 and 1");
+    }
+}
+
 CollapseChecks::CollapseChecks(const BlockMesh& mesh, const CollapseRules& rules, const Box& region)
     : mesh_{&mesh}, rules_{&rules}, region_{region}, in_star_(mesh.triangles.size(), 0) {
     if (rules.distance != nullptr) distance_.emplace(*rules.distance);
-    if (!rules.coloured) sort_into_cells();
+    if (!rules.in_place()) sort_into_cells();
 }
 
 /// Makes cells as large as the triangles are now, and forgets where they were.
@@ -49,7 +59,7 @@ void CollapseChecks::note_done(const BlockMesh::Star& star, std::uint32_t vertex
                 parts.swap(*given++);
         }
     }
-    if (rules_->coloured) return;
+    if (rules_->in_place()) return;
     for (const std::uint32_t t : mesh_->around(vertex)) {
         cells_.add({t, Box::around(mesh_->corners(t))});
     }
@@ -59,17 +69,15 @@ void CollapseChecks::note_done(const BlockMesh::Star& star, std::uint32_t vertex
 Refusal CollapseChecks::refuse(std::uint32_t u, std::uint32_t v, const BlockMesh::Star& star,
                                const CollapsePlace& place) {
     const Point& w = place.x;
-    if (rules_->coloured) {
-        if (!region_.contains(w) || !keeps_shape(star, w)) return &Collapsed::refused_by_shape;
-        return keeps_colours(star, place) ? nullptr : &Collapsed::refused_by_field;
-    }
+    if (!region_.contains(w) || !keeps_shape(star, w)) return &Collapsed::refused_by_shape;
     const Freedom& of_u = mesh_->vertices[u].freedom;
     const Freedom& of_v = mesh_->vertices[v].freedom;
-    const bool off_boundary = keeps_off_boundary(of_u.count() < of_v.count() ? of_v : of_u, star);
-    if (!off_boundary || !region_.contains(w) || !keeps_shape(star, w)) {
+    if (!rules_->in_place() &&
+        !keeps_off_boundary(of_u.count() < of_v.count() ? of_v : of_u, star)) {
         return &Collapsed::refused_by_shape;
     }
-    if (rules_->field != nullptr && !keeps_field(star, w)) return &Collapsed::refused_by_field;
+    if (!keeps_error(star, place)) return &Collapsed::refused_by_field;
+    if (rules_->in_place()) return nullptr;
     if (rules_->strong != nullptr && !keeps_sides(star, w)) return &Collapsed::refused_by_sides;
     if (distance_ && !(keeps_distance(star, w) && keeps_domain(star, w))) {
         return &Collapsed::refused_by_distance;
@@ -101,6 +109,11 @@ bool CollapseChecks::keeps_shape(const BlockMesh::Star& star, const Point& w) co
         after = std::min(after, shape_of(x));
     }
     return after >= rules_->least_shape || after >= before;
+}
+
+bool CollapseChecks::keeps_error(const BlockMesh::Star& star, const CollapsePlace& place) const {
+    if (rules_->coloured) return keeps_colours(star, place);
+    return rules_->field == nullptr || keeps_field(star, place.x);
 }
 
 bool CollapseChecks::keeps_field(const BlockMesh::Star& star, const Point& w) const {

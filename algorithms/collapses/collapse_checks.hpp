@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Judges collapses: each must keep the shape, what is asked for, be it the error and the sides or a
-// distance, and must not let the surface cross itself. Or it must keep the error of colours, on a
-// surface that consists of the same points as before. BlockMesh judges whether the surface stays a
-// manifold.
+// Judges collapses: each must keep the shape, what is asked for, be it the error and the sides, a
+// distance, or the errors of colours, and must not let the surface cross itself. Where only colours
+// are kept, the surface consists of the same points as before. BlockMesh judges whether the surface
+// stays a manifold.
 #pragma once
 
 #include <nestgrid/algorithms/collapse.hpp>
@@ -20,18 +20,24 @@ namespace nestgrid::engine {
 /// The checks and limits that hold in all blocks. Borrows the checks.
 struct CollapseRules {
     const FieldCheck* field;        ///< null where no error is kept
-    const StrongNodes* strong;      ///< likewise
+    const StrongNodes* strong;      ///< null where no sides are kept
     const DistanceCheck* distance;  ///< null where none is kept
-    /// Vertices have colours, which the field check judges, and keep on planes of the surface.
-    bool coloured;
-    Point middle;  ///< of the surface, from which positions in blocks are taken
+    bool coloured;                  ///< vertices have colours, which the field check judges
+    Point middle;                   ///< of the surface, from which positions in blocks are taken
     double least_cosine;
     double least_shape;
 
+    /// Whether vertices keep on planes of the surface: nothing new can cross then.
+    bool in_place() const { return coloured && distance == nullptr; }
     Triangle in_space(const Triangle& x) const {
         return {x[0] + middle, x[1] + middle, x[2] + middle};
     }
 };
+
+/// \param turn the greatest one of a triangle, in degrees
+/// \param shape the least quality of one
+/// \throw InvalidInput where one of them is out of range
+void require_limits(double turn, double shape);
 
 /// Why a collapse was refused; null where it was not.
 using Refusal = std::size_t Collapsed::*;
@@ -54,6 +60,7 @@ private:
 
     bool keeps_off_boundary(const Freedom& freedom, const BlockMesh::Star& star) const;
     bool keeps_shape(const BlockMesh::Star& star, const Point& w) const;
+    bool keeps_error(const BlockMesh::Star& star, const CollapsePlace& place) const;
     bool keeps_field(const BlockMesh::Star& star, const Point& w) const;
     bool keeps_colours(const BlockMesh::Star& star, const CollapsePlace& place) const;
     bool keeps_sides(const BlockMesh::Star& star, const Point& w) const;

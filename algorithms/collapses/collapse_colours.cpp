@@ -3,12 +3,15 @@
 #include <nestgrid/algorithms/collapse_colours.hpp>
 
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <string>
 
 #include <nestgrid/algorithms/normals.hpp>
 #include <nestgrid/error.hpp>
 
 #include <collapses/collapse_rounds.hpp>
+#include <collapses/judge_triangles.hpp>
 #include <levels/draw.hpp>
 #include <surfaces/require_simplices.hpp>
 
@@ -17,6 +20,15 @@ namespace nestgrid {
 namespace {
 
 constexpr double same_plane = 0.999;  // the least cosine of a turn: rounding of flat triangles
+
+void require_nearness(const ColourCollapseOptions& options) {
+    options.nearness->require();
+    engine::require_simplices(options.nearness->whole);
+    if (options.scale != 0) {
+        throw InvalidInput(
+            "a height field keeps its place: a distance and a scale exclude each other");
+    }
+}
 
 /// \param components of the field
 void require_colours(const Surface<3>& surface, std::size_t components,
@@ -28,9 +40,8 @@ void require_colours(const Surface<3>& surface, std::size_t components,
         }
     }
     if (!std::isfinite(options.scale)) throw InvalidInput("the scale is not a finite number");
-    if (!(options.shape >= 0 && options.shape < 1)) {
-        throw InvalidInput("the least quality of a triangle is not between 0 and 1");
-    }
+    if (options.nearness) require_nearness(options);
+    engine::require_limits(options.turn, options.shape);
     engine::require_simplices(surface);
     if (surface.vertices.empty()) return;
     const std::size_t count = surface.attributes.size() / surface.vertices.size();
@@ -57,15 +68,42 @@ void lift(Surface<3>& surface, double factor) {
     }
 }
 
-/// The triangles of a surface in order, each judged by its colours.
-/// \param take take(triangle, whether they keep their errors) is called in order
+/// The checks of colours, and of a distance where one is kept.
+class ColourChecks {
+public:
+    template <class Real>
+    ColourChecks(const Surface<3>& surface, const Hierarchy<Real>& hierarchy,
+                 std::span<const double> errors, const Bounds& bounds,
+                 const std::optional<Nearness>& nearness)
+        : nearness_{nearness} {
+        using Drawn = engine::FieldCheck::Drawn;
+        const Surface<3>& along = nearness_ ? nearness_->whole : surface;
+        leaves_ = engine::NearLeaves::find_along(hierarchy, along, errors,
+                                                 nearness_ ? nearness_->distance : 0, bounds);
+        field_.emplace(leaves_, nearness_ ? Drawn::moving_colours : Drawn::colours);
+        if (!nearness_) return;
+        to_whole_.emplace(nearness_->whole);
+        distance_.emplace(*nearness_, *to_whole_, leaves_);
+    }
+
+    const engine::NearLeaves& leaves() const { return leaves_; }
+    const engine::FieldCheck& field() const { return *field_; }
+    const engine::DistanceCheck* distance() const { return distance_ ? &*distance_ : nullptr; }
+
+private:
+    std::optional<Nearness> nearness_;
+    engine::NearLeaves leaves_;
+    std::optional<engine::FieldCheck> field_;
+    std::optional<engine::ClosestPoints> to_whole_;
+    std::optional<engine::DistanceCheck> distance_;
+};
+
+/// The triangles of a surface in order, each judged by its colours and by the distance there.
+/// \param take take(triangle, whether they keep what is asked for) is called in order
 /// \return the greatest part of an error of those that do
 template <class Take>
 double judge_colours(const Surface<3>& surface, std::span<const double> errors,
-                     const engine::FieldCheck& check, const Executor& executor, const Take& take) {
-    constexpr std::size_t chunk = 4096;
-    const std::size_t count = surface.simplices.size();
-    const std::size_t tasks = (count + chunk - 1) / chunk;
+                     const ColourChecks& checks, const Executor& executor, const Take& take) {
     std::vector<double> colours(surface.attributes.size());
     for (std::size_t i = 0; i < colours.size(); ++i) {
         colours[i] = surface.attributes[i] / errors[i % errors.size()];
@@ -73,23 +111,31 @@ double judge_colours(const Surface<3>& surface, std::span<const double> errors,
     const auto of = [&](std::uint32_t v) {
         return std::span<const double>(colours).subspan(v * errors.size(), errors.size());
     };
-    std::vector<std::uint8_t> keeps(count);
-    std::vector<double> greatest(tasks, 0);
-    executor.run(
-        tasks,
-        [&](std::size_t i) {
-            for (std::size_t t = i * chunk; t < std::min(count, (i + 1) * chunk); ++t) {
-                const auto& [a, b, c] = surface.simplices[t];
-                const engine::FlatTriangle x(
-                    {surface.vertices[a], surface.vertices[b], surface.vertices[c]});
-                keeps[t] = check.keeps_colours(x, {of(a), of(b), of(c)}, greatest[i]) ? 1 : 0;
-            }
-        },
-        [](std::size_t) {});
-    for (std::size_t t = 0; t < count; ++t) take(t, keeps[t] != 0);
-    double most = 0;
-    for (const double part : greatest) most = std::max(most, part);
-    return most;
+    const engine::DistanceCheck* const distance = checks.distance();
+    const auto make = [&] {
+        auto search = distance != nullptr ? std::optional(distance->search()) : std::nullopt;
+        return [&, search](std::size_t t, double& greatest) mutable {
+            const engine::Triangle x = engine::triangle_of(surface, t);
+            if (search && search->far_point(x)) return false;
+            const auto& [a, b, c] = surface.simplices[t];
+            return checks.field().keeps_colours(engine::FlatTriangle(x), {of(a), of(b), of(c)},
+                                                greatest);
+        };
+    };
+    return engine::judge_triangles(surface.simplices.size(), executor, make, take);
+}
+
+/// Says how vertices may move: within a distance, or on the planes of the surface.
+/// \return how many triangles of the surface of all data are farther from the beginning
+std::size_t prepare(engine::CollapseRounds& rounds, const Surface<3>& surface,
+                    const ColourChecks& checks, const ColourCollapseOptions& options,
+                    const Executor& executor) {
+    if (!options.nearness) {
+        rounds.keep_support();
+        return 0;
+    }
+    rounds.keep_borders(checks.leaves(), options.nearness->distance);
+    return engine::give_parts(checks.distance()->whole(), surface, rounds.parts(), executor);
 }
 
 }  // namespace
@@ -100,31 +146,37 @@ Collapsed collapse_colours(Surface<3>& surface, const Hierarchy<Real>& hierarchy
                            const Executor& executor) {
     engine::require_same_epoch(hierarchy, bounds);
     require_colours(surface, static_cast<std::size_t>(hierarchy.facts().components), options);
-    if (surface.simplices.empty()) return {};
+    if (options.nearness) hierarchy.facts().require_dimension(3);
+    if (surface.simplices.empty()) {
+        return {.missed = options.nearness ? options.nearness->whole.simplices.size() : 0};
+    }
     std::vector<double> errors = options.errors;
     errors.resize(surface.attributes.size() / surface.vertices.size(), errors[0]);
     lift(surface, -options.scale);
-    const auto leaves = engine::NearLeaves::find_along(hierarchy, surface, errors, bounds);
-    const engine::FieldCheck check(leaves, engine::FieldCheck::Drawn::colours);
+    const ColourChecks checks(surface, hierarchy, errors, bounds, options.nearness);
     const auto box = engine::Box::around(surface.vertices);
-    const engine::CollapseRules rules{.field = &check,
-                                      .strong = nullptr,
-                                      .distance = nullptr,
-                                      .coloured = true,
-                                      .middle = 0.5 * (box.low + box.high),
-                                      .least_cosine = same_plane,
-                                      .least_shape = options.shape};
+    const engine::CollapseRules rules{
+        .field = &checks.field(),
+        .strong = nullptr,
+        .distance = checks.distance(),
+        .coloured = true,
+        .middle = 0.5 * (box.low + box.high),
+        .least_cosine =
+            options.nearness ? std::cos(options.turn * std::numbers::pi / 180) : same_plane,
+        .least_shape = options.shape};
     const bool normals = !surface.normals.empty();
     engine::CollapseRounds rounds(surface, rules, executor);
-    rounds.keep_support(errors);
-    judge_colours(surface, errors, check, executor, [&](std::size_t t, bool keeps) {
+    rounds.keep_colours(errors);
+    const std::size_t missed = prepare(rounds, surface, checks, options, executor);
+    judge_colours(surface, errors, checks, executor, [&](std::size_t t, bool keeps) {
         if (!keeps) rounds.fasten(t);
     });
     Collapsed result = rounds.run();
     rounds.finish();
     const double most =
-        judge_colours(surface, errors, check, executor,
+        judge_colours(surface, errors, checks, executor,
                       [&](std::size_t, bool keeps) { result.exceeding += keeps ? 0U : 1U; });
+    result.missed = missed;
     result.error = most * errors[0];
     lift(surface, options.scale);
     engine::forget_elements(surface);

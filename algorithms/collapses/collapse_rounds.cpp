@@ -123,21 +123,24 @@ CollapseRounds::CollapseRounds(Surface<3>& surface, const CollapseRules& rules,
     }
 }
 
-void CollapseRounds::keep_borders(const NearLeaves& leaves) {
+void CollapseRounds::keep_borders(const NearLeaves& leaves, double unit) {
     find_borders(leaves);
-    add_quadrics();
+    add_quadrics(unit);
 }
 
-void CollapseRounds::keep_support(std::span<const double> errors) {
-    errors_.assign(errors.begin(), errors.end());
+void CollapseRounds::keep_support() {
     const auto freedom = support_freedom(*surface_);
+    for (std::size_t v = 0; v < vertices_.size(); ++v) vertices_[v].freedom = freedom[v];
+}
+
+void CollapseRounds::keep_colours(std::span<const double> errors) {
+    errors_.assign(errors.begin(), errors.end());
     std::vector<double> values(errors_.size());
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         for (std::size_t c = 0; c < errors_.size(); ++c) {
             values[c] = surface_->attributes[v * errors_.size() + c] / errors_[c];
         }
         vertices_[v].colours = Colours(values);
-        vertices_[v].freedom = freedom[v];
     }
     add_colours();
 }
@@ -156,7 +159,8 @@ void CollapseRounds::find_borders(const NearLeaves& leaves) {
 
 /// The quadric of a vertex is that of the planes of its triangles, by area, and of planes at right
 /// angles to these through edges of the border.
-void CollapseRounds::add_quadrics() {
+void CollapseRounds::add_quadrics(double unit) {
+    const double weight = 1 / (unit * unit);
     const auto& x = vertices_;
     for (const Corners& c : triangles_) {
         const Point direction = cross(x[c[1]].x - x[c[0]].x, x[c[2]].x - x[c[0]].x);
@@ -164,7 +168,7 @@ void CollapseRounds::add_quadrics() {
         if (!(area > 0)) continue;
         const Point normal = (1 / area) * direction;
         Quadric quadric;
-        quadric.add_plane(normal, dot(normal, x[c[0]].x), 0.5 * area);
+        quadric.add_plane(normal, dot(normal, x[c[0]].x), 0.5 * weight * area);
         for (const std::uint32_t v : c) vertices_[v].quadric.add(quadric);
     }
     for (const OrientedSide& side : open_sides(triangles_)) {
@@ -175,7 +179,7 @@ void CollapseRounds::add_quadrics() {
         if (!(length > 0)) continue;
         const Point normal = (1 / length) * direction;
         Quadric quadric;
-        quadric.add_plane(normal, dot(normal, x[side.low].x), dot(along, along));
+        quadric.add_plane(normal, dot(normal, x[side.low].x), weight * dot(along, along));
         for (const std::uint32_t v : c) vertices_[v].quadric.add(quadric);
     }
 }

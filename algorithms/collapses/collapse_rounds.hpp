@@ -23,10 +23,12 @@ public:
     CollapseRounds(Surface<3>& surface, const CollapseRules& rules, const Executor& executor);
 
     /// Lets vertices move anywhere but on borders, where they keep on the domain's boundary.
-    void keep_borders(const NearLeaves& leaves);
-    /// Lets vertices move on the planes of the surface, with the attributes for colours.
-    /// \param errors by attribute, which are the units of colours
-    void keep_support(std::span<const double> errors);
+    /// \param unit of lengths, beside which colours count in units of their errors
+    void keep_borders(const NearLeaves& leaves, double unit = 1);
+    /// Lets vertices move on the planes of the surface.
+    void keep_support();
+    /// Lets attributes be colours. \param errors by attribute, which are the units of colours
+    void keep_colours(std::span<const double> errors);
     /// The parts of another surface that are near to each triangle; none at first.
     std::vector<std::vector<NearPart>>& parts() { return parts_; }
     /// Fastens the vertices of a triangle for good.
@@ -42,7 +44,7 @@ private:
     using Corners = BlockMesh::Corners;
 
     void find_borders(const NearLeaves& leaves);
-    void add_quadrics();
+    void add_quadrics(double unit);
     void add_colours();
     void put_attributes();
     std::vector<Point> positions() const;

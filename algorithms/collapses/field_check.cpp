@@ -96,7 +96,8 @@ public:
     bool keeps(double& greatest) {
         const bool kept = leaves_.for_each([&](const Box& box) { return triangle_.may_meet(box); },
                                            [&](const NearLeaf& leaf) { return keeps_in(leaf); });
-        if (!kept || (!deformed_ && covered_ < least_covered)) return false;
+        const bool decides = !deformed_ || check_.may_enter_hidden_;
+        if (!kept || (decides && covered_ < least_covered)) return false;
         greatest = std::max(greatest, greatest_);
         return true;
     }
@@ -196,9 +197,10 @@ private:
 
 FieldCheck::FieldCheck(const NearLeaves& leaves, Drawn drawn)
     : leaves_{&leaves},
+      may_enter_hidden_{drawn == Drawn::moving_colours && leaves.may_hide()},
       lattice_{drawn == Drawn::isovalue ? KuhnLattice::find(leaves) : std::nullopt} {
     if (lattice_) return;
-    if (drawn == Drawn::colours) ranges_.emplace(leaves);
+    if (drawn != Drawn::isovalue) ranges_.emplace(leaves);
     maps_.reserve(leaves.leaves().size());
     std::array<Point, max_corners> room;
     for (const NearLeaf& leaf : leaves.leaves()) {
@@ -222,7 +224,9 @@ bool FieldCheck::keeps_colours(const FlatTriangle& triangle, const CornerColours
 }
 
 bool FieldCheck::keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const {
-    return Judge(*this, triangle, &colours).keeps_without_bound();
+    Judge judge(*this, triangle, &colours);
+    double greatest = 0;
+    return may_enter_hidden_ ? judge.keeps(greatest) : judge.keeps_without_bound();
 }
 
 bool FieldCheck::keeps(const FlatTriangle& triangle, double& greatest) const {

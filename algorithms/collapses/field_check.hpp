@@ -24,7 +24,8 @@ using CornerColours = std::array<std::span<const double>, 3>;
 /// the triangle is refused. A colour is affine on the triangle and changes nothing of this.
 class FieldCheck {
 public:
-    enum class Drawn { isovalue, colours };
+    /// What is drawn: an isosurface, colours that keep their place, or colours that may move.
+    enum class Drawn { isovalue, colours, moving_colours };
 
     explicit FieldCheck(const NearLeaves& leaves, Drawn drawn = Drawn::isovalue);
 
@@ -39,7 +40,8 @@ public:
     /// \param greatest raised to an upper bound of what they differ by in these units, if they do
     bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours,
                        double& greatest) const;
-    /// Likewise without the bound, which is faster: for triangles that replace checked ones.
+    /// Likewise without the bound, which is faster: for triangles that replace checked ones. Those
+    /// that moved may have entered what is hidden, and are refused there.
     bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const;
 
 private:
@@ -47,6 +49,7 @@ private:
     AffineLeaf map(const NearLeaf& leaf) const;
 
     const NearLeaves* leaves_;
+    bool may_enter_hidden_;
     std::vector<AffineLeaf> maps_;        // by leaf, without a lattice; of bent ones meaningless
     std::optional<LeafRanges> ranges_;    // of colours
     std::optional<KuhnLattice> lattice_;  // where the leaves are of that kind: faster

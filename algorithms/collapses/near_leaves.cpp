@@ -140,7 +140,8 @@ NearLeaves NearLeaves::find_at_boundary(const Hierarchy<Real>& hierarchy,
 
 template <class Real>
 NearLeaves NearLeaves::find_along(const Hierarchy<Real>& hierarchy, const Surface<3>& surface,
-                                  std::span<const double> errors, const Bounds& bounds) {
+                                  std::span<const double> errors, double reach,
+                                  const Bounds& bounds) {
     const auto components = static_cast<std::size_t>(hierarchy.facts().components);
     const std::size_t first = components - errors.size();
     std::vector<FlatTriangle> triangles;
@@ -160,7 +161,7 @@ NearLeaves NearLeaves::find_along(const Hierarchy<Real>& hierarchy, const Surfac
         std::array<Point, max_corners> x;
         walk.corners(view, key.data(), x.data());
         Box box = Box::around(std::span(x).first(view.corner_count()));
-        box.widen(touching * box.diameter());
+        box.widen(reach + touching * box.diameter());
         return !tree.for_each([&](const Box& other) { return other.meets(box); },
                               [&](std::size_t t) { return !triangles[t].may_meet(box); });
     };
@@ -189,8 +190,8 @@ template NearLeaves NearLeaves::find_at_boundary(const Hierarchy<float>&, const 
 template NearLeaves NearLeaves::find_at_boundary(const Hierarchy<double>&, const ClosestPoints&,
                                                  double, const Bounds&);
 template NearLeaves NearLeaves::find_along(const Hierarchy<float>&, const Surface<3>&,
-                                           std::span<const double>, const Bounds&);
+                                           std::span<const double>, double, const Bounds&);
 template NearLeaves NearLeaves::find_along(const Hierarchy<double>&, const Surface<3>&,
-                                           std::span<const double>, const Bounds&);
+                                           std::span<const double>, double, const Bounds&);
 
 }  // namespace nestgrid::engine

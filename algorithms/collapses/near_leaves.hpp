@@ -45,10 +45,12 @@ public:
     /// Walks to the leaves that a surface passes through or touches, in a hierarchy of dimension 2
     /// or 3. Values are those of the last components, in units of their errors; error() is 1.
     /// \param errors no more than the field has components
+    /// \param reach how far from the surface leaves are wanted, too
     /// \param bounds of the same grid
     template <class Real>
     static NearLeaves find_along(const Hierarchy<Real>& hierarchy, const Surface<3>& surface,
-                                 std::span<const double> errors, const Bounds& bounds);
+                                 std::span<const double> errors, double reach,
+                                 const Bounds& bounds);
 
     double error() const { return error_; }
     std::size_t components() const { return components_; }

@@ -150,6 +150,7 @@ module nestgrid
         integer(c_int) :: keep_distance = 0_c_int
         real(c_double) :: blend = 0.0_c_double
         type(c_ptr) :: lens = c_null_ptr
+        real(c_double) :: slice_distance = 0.0_c_double
     end type nestgrid_options
 
     type, bind(c) :: nestgrid_surface

@@ -45,6 +45,11 @@ void refuse_distance(const Projection& projection) {
         throw InvalidInput("distances are kept by isosurfaces in space only");
     }
 }
+void refuse_slice_distance(const Projection& projection) {
+    if (projection.slice_distance > 0) {
+        throw InvalidInput("the distance of a slice is asked for, but none is drawn");
+    }
+}
 
 /// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
 template <class Function>
@@ -147,6 +152,7 @@ TriangleBudget find_isosurface(const Hierarchy<Real>& hierarchy, double isovalue
 
 void check_isosurface(const Projection& projection, const IsosurfaceOptions& options,
                       int dimension) {
+    refuse_slice_distance(projection);
     if (dimension == 2) {
         refuse_collapse(projection, "isolines");
         refuse_distance(projection);
@@ -181,12 +187,19 @@ Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunctio
     const double error = drawn.search.threshold;
     const bool collapses = projection.collapse && error > 0;
     const double first = collapses ? colour_start * error : error;
-    const AnyCriterion criterion = criteria.at(first);
+    // Only a slice of all data is as near to its function as the grid allows.
+    const bool moves = collapses && projection.slice_distance > 0;
+    const AnyCriterion criterion = moves ? AnyCriterion(Exact{}) : criteria.at(first);
     static_cast<Slice&>(drawn) = slice(hierarchy, function, criterion, bounds, options, executor);
     if (!collapses || drawn.cancelled) return drawn;
     refine_colours(drawn.surface, hierarchy, first, criterion, bounds);
-    collapse_colours_of(drawn, hierarchy, bounds, {.errors = {error}}, drawn.surface_error,
-                        executor);
+    ColourCollapseOptions kept{.errors = {error}};
+    Surface<3> whole;
+    if (moves) {
+        whole = drawn.surface;
+        kept.nearness.emplace(Nearness{whole, projection.slice_distance});
+    }
+    collapse_colours_of(drawn, hierarchy, bounds, kept, drawn.surface_error, executor);
     return drawn;
 }
 
@@ -222,6 +235,7 @@ Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
                           const Work& work) {
     refuse_collapse_in_budget(projection);
     refuse_distance(projection);
+    refuse_slice_distance(projection);
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, projection, {}, work);
         return draw_shading(hierarchy, scale, criteria, options, work.executor);

@@ -21,6 +21,12 @@ void Projection::check() const {
     if (keeps_distance && !threshold) {
         throw InvalidInput("a distance is to be kept, but there is no threshold that says which");
     }
+    if (!(slice_distance >= 0) || !std::isfinite(slice_distance)) {
+        throw InvalidInput("the distance of a slice is not a finite number >= 0");
+    }
+    if (slice_distance > 0 && !collapse) {
+        throw InvalidInput("the distance of a slice is for one whose edges are collapsed");
+    }
     if (lens && (!(lens->slope >= 0) || !std::isfinite(lens->slope))) {
         throw InvalidInput("the slope of the lens is not a finite number >= 0");
     }

@@ -45,6 +45,15 @@ int main() {
     // [colours]
     std::printf("a slice of %zu triangles, then %zu, colours within %.3f\n", in_slice,
                 coloured.simplices.size(), kept.error);
+    // [curved]
+    const Sphere sphere({16, 16, 16}, 9);
+    const Surface<3> all = slice(grid, field, sphere).surface;
+    Surface<3> curved = all;
+    const Collapsed moved = collapse_colours(curved, grid, field, deviations,
+                                             {.errors = {error}, .nearness = Nearness{all, 0.5}});
+    // [curved]
+    std::printf("a sphere of %zu triangles, then %zu, colours within %.3f\n", all.simplices.size(),
+                curved.simplices.size(), moved.error);
     // [measure]
     const auto whole = isosurface(grid, field, isovalue).surface;
     const MeasuredError measured = measure_error(surface, whole, grid, field, isovalue);

@@ -60,6 +60,7 @@ TABLE = {
         "a number of triangles": "max_triangles max_triangles --max-triangles triangles max_triangles "
         "SetMaxTriangles MaxTriangles",
         "collapsed edges": "collapse collapse --collapse collapse collapse SetCollapse Collapse",
+        "curved slices, collapsed": "slice_distance slice_distance --distance a distance SetProjection a",
         "an indicator by name": "indicators indicator --indicator indicator indicator SetIndicator Indicator",
         "nodes that move": "Blended blend --blend a blend SetBlend a",
         "a lens": "Lens lens --lens lens lens SetLens a",

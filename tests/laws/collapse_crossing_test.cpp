@@ -11,7 +11,9 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/collapse_colours.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/slice.hpp>
 
 #include "closedness.hpp"
 #include "sample_fields.hpp"
@@ -65,6 +67,36 @@ void expect_no_new_crossing() {
         EXPECT_LT(surface.simplices.size(), drawn.simplices.size());
         EXPECT_EQ(crossing_pairs(surface), 0U);
     }
+}
+
+/// Two spheres around each other, nearer than the distance.
+class Shell final : public LevelFunction {
+public:
+    double value(const Point& x) const override {
+        return std::abs(norm(x - Point{8, 8, 8}) - 6) - 0.6;
+    }
+};
+
+template <class Grid>
+void expect_no_crossing_of_shells() {
+    const Samples n{17, 17, 17};
+    const Grid grid({.samples = n});
+    const SampledField data = sampled_fields(n)[0];
+    const LatticeField field(grid, std::span<const float>(data.values));
+    const HierarchicalIndicator indicator(grid, field);
+    const auto whole = slice(grid, field, Shell()).surface;
+    ASSERT_EQ(crossing_pairs(whole), 0U);
+    Surface<3> surface = whole;
+    const Collapsed result = collapse_colours(
+        surface, grid, field, indicator, {.errors = {data.range}, .nearness = Nearness{whole, 2}});
+    EXPECT_GT(result.refused_by_crossing, 0U);
+    EXPECT_LT(10 * surface.simplices.size(), whole.simplices.size());
+    EXPECT_EQ(crossing_pairs(surface), 0U);
+}
+
+TEST(CollapsedSlices, DoNotCrossThemselves) {
+    expect_no_crossing_of_shells<LatticeBisection<3>>();
+    expect_no_crossing_of_shells<LatticeOctree<3>>();
 }
 
 TEST(CollapsedSurfaces, DoNotCrossThemselvesInTetrahedra) {

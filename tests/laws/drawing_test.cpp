@@ -155,6 +155,7 @@ TEST(Drawing, RefusesWhatMakesNoSense) {
         expect_refused([&] { isosurface<3>(prerolls, 2, projection); }, part);
     };
     refused({.collapse = true}, "neither is given");
+    refused({.threshold = 1, .collapse = true, .slice_distance = 1}, "none is drawn");
     refused({.keeps_distance = true}, "no threshold that says which");
     refused({.threshold = 1,
              .lens = LensRequest{.distance = Ball{{}, 1}, .finest = 1},
@@ -164,6 +165,8 @@ TEST(Drawing, RefusesWhatMakesNoSense) {
     expect_refused([&] { isosurface<3>(prerolls, 2, collapsed, {.cap = true}); }, "with caps");
     expect_refused([&] { isosurface<3>(prerolls, 2, collapsed, {.at_nodes = true}); }, "at nodes");
     const Plane plane({2, 2, 2}, {0, 0, 1});
+    expect_refused([&] { slice(prerolls, plane, {.threshold = 1, .slice_distance = 1}); },
+                   "whose edges are collapsed");
     expect_refused([&] { slice(prerolls, plane, {.max_triangles = 9, .collapse = true}); },
                    "on isosurfaces only");
     expect_refused([&] { slice(prerolls, plane, {.threshold = 1, .keeps_distance = true}); },

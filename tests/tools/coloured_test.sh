@@ -194,6 +194,20 @@ for what in "slice v.vti --axis z --at 9.3" "boundary v.vti" "surface ramp.pgm" 
         fail "$what --collapse: $(value error_bound)"
     case $what in height*) ;; *) expect area "$area" ;; esac
 done
+# A curved slice may move: fewer triangles, within a distance.
+run slice v.vti --sphere 5,12,17,4 --error 5% --collapse
+drawn=$(value triangles)
+run slice v.vti --sphere 5,12,17,4 --error 5% --collapse --distance 0.8 -o ball.vtp
+[ "$((4 * $(value triangles)))" -le "$drawn" ] || fail "--distance: $(value triangles) triangles, not $drawn"
+expect exceeding 0
+expect open_edges 0
+grep -q 'no point of the slice is farther than 0.8' out || fail "--distance says nothing: $(cat out)"
+refused 1 'a plane keeps its place' slice v.vti --axis z --at 9.3 --error 5% --collapse --distance 1 -o x.vtp
+refused 2 'distance requires --collapse' slice v.vti --sphere 5,12,17,4 --error 5% --distance 1 -o x.vtp
+refused 2 'excludes' slice v.vti --sphere 5,12,17,4 --error 5% --collapse --distance 1 --cap -o x.vtp
+for number in 0 -1 nan inf x; do
+    refused 2 'distance: .* no positive finite number' slice v.vti --sphere 5,12,17,4 --error 5% --collapse --distance $number
+done
 refused 1 'collapse needs an --error' slice v.vti --axis z --at 9.3 --collapse -o x.vtp
 refused 2 '--collapse' boundary v.vti --error 5% --collapse --outlines -o x.vtp
 

@@ -215,6 +215,7 @@ for option in '--threshold 1' '--max-triangles 900 --indicator visual'; do
 done
 effect isosurface "$raw --value 130 --distance 6" --collapse
 effect isosurface "$raw --value 130 --max-triangles 300" --collapse
+effect slice "$raw --sphere 9,9,9,4 --error 30 --collapse" --distance 1
 effect isosurface "$raw --value 130 --error 20" --measure
 refused 2 'measure excludes|excludes --measure' isosurface $raw --value 130 --measure --cap
 for option in --collapse --measure; do

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <nestgrid/error.hpp>
 
@@ -15,12 +18,26 @@ struct SliceArguments : DrawingOptions {
     SliceOptions slice;
     bool cap = false;
     std::optional<double> isovalue;
+    double distance = 0;
 };
+
+void say_how_near(double distance, const std::string& unit, Report& report) {
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "no point of the slice is farther than %.4g from that of all data, and none of "
+                  "that from the slice, in ",
+                  distance);
+    report.say(text.data() + (unit.empty() ? "the unit of the grid, which is not known" : unit));
+}
 
 void run_slice(SliceArguments& o, Report& report) {
     const SliceFunction f = slice_function(o.slice);
     if (o.isovalue && !std::isfinite(*o.isovalue)) {
         throw nestgrid::InvalidInput("--with-isosurface is not a finite number");
+    }
+    if (o.distance > 0 && f.flat) {
+        throw nestgrid::InvalidInput(
+            "--distance is for curved slices: a plane keeps its place, leave it out");
     }
     DrawingRequest request = o.request();
     request.function = f.function.get();
@@ -28,6 +45,12 @@ void run_slice(SliceArguments& o, Report& report) {
     request.cap = o.cap;
     request.flat = f.flat;
     request.normal = f.normal;
+    request.slice_distance = o.distance;
+    if (o.distance > 0) {
+        request.add = [&](const InputField& field, Report& to) {
+            say_how_near(o.distance, field.length_unit, to);
+        };
+    }
     request.empty = "the slice does not meet the domain";
     draw(o, request, report);
 }
@@ -62,6 +85,14 @@ Command add_slice(CLI::App& program) {
     add_time_options(*slice, o->time);
     add_lens_options(*slice, o->lens);
     add_collapse_option(*slice, *o);
+    slice
+        ->add_option("--distance", o->distance,
+                     "with --collapse, let a curved slice be this far from that of all data at "
+                     "most, there and back, in the unit of the grid [it keeps its place]")
+        ->type_name("LENGTH")
+        ->check(positive_number)
+        ->needs(slice->get_option("--collapse"))
+        ->excludes(slice->get_option("--cap"));
     add_read_options(*slice, o->input);
     return {slice, [o](Report& report) { run_slice(*o, report); }};
 }

@@ -208,8 +208,14 @@ private:
         const bool of_error = request_.isovalue && !request_.keeps_distances;
         const double part = of_error ? nestgrid::collapse_start : 0.5;
         const double first = collapses ? part * d.threshold : d.threshold;
-        d = draw(std::move(d),
-                 [&](Drawn& to) { draw_with(criterion_at(first), first, whole, to); });
+        d = draw(std::move(d), [&](Drawn& to) {
+            if (!collapses || request_.slice_distance == 0) {
+                return draw_with(criterion_at(first), first, whole, to);
+            }
+            // Only a slice of all data is as near to its function as the grid allows.
+            draw_exactly(to);
+            refine(to.result.surface, first);
+        });
         if (collapses) collapse_one(whole, d);
         if (request_.measures) measure_one(whole, d);
         return reported(std::move(d));
@@ -320,9 +326,15 @@ private:
             d.collapsed = nestgrid::collapse(surface, hierarchy_, *request_.isovalue, bounds(),
                                              options, executor_);
         } else {
-            d.collapsed = nestgrid::collapse_colours(
-                surface, hierarchy_, bounds(), {.errors = {d.threshold}, .scale = request_.scale},
-                executor_);
+            nestgrid::ColourCollapseOptions options{.errors = {d.threshold},
+                                                    .scale = request_.scale};
+            nestgrid::Surface<3> slice;
+            if (request_.slice_distance > 0) {
+                slice = surface;
+                options.nearness.emplace(nestgrid::Nearness{slice, request_.slice_distance});
+            }
+            d.collapsed =
+                nestgrid::collapse_colours(surface, hierarchy_, bounds(), options, executor_);
         }
         d.collapse_seconds = meter.seconds();
         d.collapsed->hand_to(d.result, d.result.surface_error);

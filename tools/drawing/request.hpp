@@ -56,6 +56,9 @@ struct DrawingRequest {
     /// Whether edges are collapsed while the errors, or where distances are kept these, keep within
     /// the thresholds. What is drawn first has a part of them.
     bool collapses = false;
+    /// How far a slice may be from that of all data, there and back, where edges are collapsed; 0
+    /// keeps its place.
+    double slice_distance = 0;
     bool keeps_distances = false;  ///< thresholds are distances that are kept there and back
     bool measures = false;         ///< the isosurface against that of all data
 

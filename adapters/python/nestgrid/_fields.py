@@ -209,6 +209,7 @@ class Field:
         plane=optional(shape(("the point", 3), ("the normal", 3))),
         sphere=optional(shape(("the centre", 3), ("the radius", 0))),
         cylinder=optional(shape(("the point", 3), ("the axis", 3), ("the radius", 0))),
+        distance=optional(number),
         collapse=flag,
     )
     def slice(
@@ -223,6 +224,7 @@ class Field:
         blend: float = 1,
         lens: LensLike | None = None,
         error: float | None = None,
+        distance: float | None = None,
         collapse: bool = False,
         normals: bool = False,
         elements: bool = False,
@@ -233,7 +235,10 @@ class Field:
         plane     (point, normal), 3 numbers each; the normal of any length
         sphere    (centre, radius), 3 numbers and one, in units of length
         cylinder  (point on the axis, axis, radius), 3 numbers, 3 of any length, and one
-        collapse  whether to take edges away while error, which must be given, is kept in place
+        distance  of a sphere or a cylinder with collapse: no point of what is left is farther from
+                  the slice of all data, and none of that from what is left, in units of length.
+                  None: the slice keeps its place
+        collapse  whether to take edges away while error, which must be given, is kept
 
         Raises InvalidInput unless there is one of plane, sphere and cylinder, and as isosurface().
         """
@@ -244,8 +249,13 @@ class Field:
         ((name, parts),) = shapes
         function = getattr(_nestgrid, name)(*parts)
         _require_error(collapse, error, lens)
+        if distance is not None:
+            if not collapse or plane is not None:
+                raise InvalidInput("distance needs collapse, and a sphere or a cylinder")
+            if not distance > 0:
+                raise InvalidInput("distance is not a number > 0: leave it out to keep the place")
         projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
-        options = (normals, elements, collapse)
+        options = (normals, elements, collapse, distance or 0)
         return Surface._of(
             _nestgrid.slice(self._source, function, *options, projection, threads), self
         )

@@ -209,6 +209,7 @@ def slice(
     normals: bool,
     elements: bool,
     collapses: bool,
+    distance: float,
     projection: Projection,
     threads: int,
 ) -> Surface: ...

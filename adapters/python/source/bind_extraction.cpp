@@ -190,15 +190,18 @@ void bind_draws(py::module_& m) {
     m.def(
         "slice",
         [](const SourcePointer& source, const std::shared_ptr<LevelFunction>& function,
-           bool normals, bool elements, bool collapses, const Projection& projection, int threads) {
-            const SurfaceRequest request{
-                .normals = normals, .elements = elements, .collapses = collapses};
+           bool normals, bool elements, bool collapses, double distance,
+           const Projection& projection, int threads) {
+            const SurfaceRequest request{.normals = normals,
+                                         .elements = elements,
+                                         .collapses = collapses,
+                                         .slice_distance = distance};
             return drawn(threads, [source, function, request, projection](const Call& call) {
                 return draw_slice(*source, *function, request, projection, call);
             });
         },
         py::arg("source"), py::arg("function"), py::arg("normals"), py::arg("elements"),
-        py::arg("collapses"), py::arg("projection"), py::arg("threads"));
+        py::arg("collapses"), py::arg("distance"), py::arg("projection"), py::arg("threads"));
     m.def(
         "isolines",
         [](const SourcePointer& source, const std::vector<double>& values,

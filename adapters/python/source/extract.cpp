@@ -27,6 +27,7 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
 Projection asked(Projection projection, const SurfaceRequest& request) {
     projection.collapse = request.collapses;
     projection.keeps_distance = request.keeps_distance;
+    projection.slice_distance = request.slice_distance;
     return projection;
 }
 

@@ -43,6 +43,8 @@ struct SurfaceRequest {
     /// Needs the indicator "error", or a distance that is kept; but for isosurfaces "deviation".
     bool collapses = false;
     bool keeps_distance = false;  ///< needs the indicator "slope"
+    /// How far a collapsed slice may be from that of all data; 0 keeps its place.
+    double slice_distance = 0;
 };
 
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1

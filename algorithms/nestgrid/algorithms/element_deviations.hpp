@@ -7,6 +7,10 @@
 // corners, the value of the leaf below it in that corner, and interpolates between them. It stops
 // where the leaves below it deviate from that by the threshold at most: one number decides for each
 // element, none for a node.
+//
+// The number is exact, not a sum over levels: on leaves that divide the element as its
+// interpolation does, and on which data are linear in every direction, the difference is greatest
+// at a corner of a leaf. So a threshold is an error that is kept, and reached somewhere.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +24,7 @@ namespace nestgrid {
 
 /// How far component 0 at the corners of leaves deviates, below each split element, from the values
 /// interpolated between the corners of that element.
-/// Memory: 8 bytes for each split element.
+/// Memory: 8 bytes for each split element, and 64 more while they are measured.
 class ElementDeviations {
 public:
     /// A split element, in the order of a depth-first traversal. Those that are hidden wholly are
@@ -30,7 +34,7 @@ public:
         std::uint32_t subtree;  ///< how many entries are those of the element and of all below it
     };
 
-    /// Walks the whole hierarchy, and asks once for the values of every leaf.
+    /// Walks the whole hierarchy twice, and asks twice for the values of every leaf.
     /// \throw InvalidInput where a value is not a finite number
     explicit ElementDeviations(const DiscontinuousData& data);
 

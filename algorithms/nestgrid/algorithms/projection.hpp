@@ -42,6 +42,9 @@ struct Projection {
     /// Whether the threshold is a distance, which an isosurface and that of all data keep there and
     /// back (isosurface_within.hpp), in units of length.
     bool keeps_distance = false;
+    /// How far a slice along a curved function whose edges are collapsed may be from that of all
+    /// data, there and back, in units of length; 0 keeps its place (collapse_colours.hpp).
+    double slice_distance = 0;
 
     /// The threshold where none is searched for.
     double least_threshold() const {

@@ -309,6 +309,21 @@ def test_collapsed_colours_keep_their_place_and_error() -> None:
     assert np.abs(off).max() <= 0.05 + 1e-9
     assert np.abs((few.vertices - 16) @ np.array((1, 2, 3))).max() < 1e-9
 
+    ball = {"sphere": ((16, 15, 17), 11), "error": 0.05, "collapse": True}
+    still = volume.slice(**ball)
+    moved = volume.slice(**ball, distance=0.5)
+    assert len(moved.triangles) < len(still.triangles) / 10
+    for middle in moved.vertices[moved.triangles].mean(axis=1), moved.vertices:
+        assert np.abs(np.linalg.norm(middle - (16, 15, 17), axis=1) - 11).max() <= 0.6
+    off = volume.probe(moved.vertices) - moved.attributes[:, 0]
+    assert np.abs(off).max() <= 0.05 + 1e-9 and moved.error_bound <= 0.05
+    for wrong in ({"sphere": ((16, 15, 17), 11)}, {"plane": ((1, 1, 1), (1, 0, 0))}):
+        with refused("distance needs collapse"):
+            volume.slice(**wrong, error=0.05, distance=1, collapse="plane" in wrong)
+    for wrong in (0, -1, float("nan")):
+        with refused("distance is not a number"):
+            volume.slice(**ball, distance=wrong)
+
     picture = nestgrid.Volume(np.ascontiguousarray(samples[:, :, 16]))
     for scale in (None, 2.5):
         graph = picture.height_field(scale, error=0.05, collapse=True)

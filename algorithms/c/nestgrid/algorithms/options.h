@@ -91,6 +91,9 @@ typedef struct nestgrid_options {
      * and this many times it, so that surfaces change without jumps. */
     double blend;
     const nestgrid_lens* lens;
+    /* How far a slice along a curved function that is collapsed may be from that of all data, in
+     * units of length; 0: it keeps its place. */
+    double slice_distance;
 } nestgrid_options;
 
 /** Makes empty prerolls. Returns 0, or another number and a sentence, as isosurface.h says. Free
