@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <levels/draw.hpp>
 #include <nestgrid/error.hpp>
+#include <ranks/agreement.hpp>
+#include <ranks/made_for_ranks.hpp>
 
 namespace nestgrid {
 
@@ -25,7 +27,15 @@ TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& c
 template <int dimension, class Real>
 Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator& indicator,
                         const IsosurfaceOptions& options, const Executor& executor) {
-    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
+    const SharedNodes* const shared = levels.hierarchy->facts().shared;
+    together(shared, [&] {
+        if (!(options.threshold >= 0)) {
+            throw InvalidInput("the threshold is negative or not a number");
+        }
+        if (shared != nullptr && options.max_triangles != 0) {
+            refuse_on_ranks("a number of triangles");
+        }
+    });
     if (options.max_triangles == 0) return {&indicator, options.threshold};
     const MakeCriterion everywhere = [&](double threshold) {
         return std::make_unique<const Threshold>(&indicator, threshold);

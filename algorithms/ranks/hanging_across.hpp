@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ranks/shared_nodes.hpp>
+#include <walk/walk.hpp>
+
+namespace nestgrid::engine {
+
+/// The nodes of this rank that hang, on leaves of any rank: those inside an edge or a face that
+/// some leaf has. Collective, and one exchange.
+///
+/// \throw GridError on all ranks, as derive_hanging_nodes() of the whole grid
+HangingNodes hanging_across(const Hierarchy<float>& grid, const SharedNodes& shared);
+
+}  // namespace nestgrid::engine

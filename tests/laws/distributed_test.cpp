@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Surfaces of distributed grids: the pieces of all ranks are the surface of one rank.
+#include <cstdio>
+#include <cstdlib>
+
+#include "distributed_judge.hpp"
+#include "sample_grids.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+constexpr std::array six_thresholds{0.0, 0.05, 0.1, 0.3, 0.7, 1.5};
+
+bool is_long() { return std::getenv("NESTGRID_LONG_TESTS") != nullptr; }
+
+enum class Data { noise, gyroid, integers, plateaus };
+constexpr std::array all_data{Data::noise, Data::gyroid, Data::integers, Data::plateaus};
+
+double value_at(Data data, const Point& x, std::mt19937& random) {
+    const double noise = static_cast<double>(random()) / 0x1p32 - 0.5;
+    switch (data) {
+        case Data::noise:
+            return noise;
+        case Data::gyroid:
+            return std::sin(9 * x[0]) * std::cos(9 * x[1]) +
+                   std::sin(9 * x[1]) * std::cos(9 * x[2]) +
+                   std::sin(9 * x[2]) * std::cos(9 * x[0]) + 1e-3;
+        case Data::integers:
+            return std::floor(3 * (noise + 0.5)) - 1;
+        case Data::plateaus:
+            return std::clamp(std::floor(8 * (x[0] + x[1] * x[2] - 0.8)) / 4, -0.5, 0.5);
+    }
+    return 0;
+}
+
+template <class Real>
+std::vector<Real> values_of(const Whole& whole, Data data, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<Real> values;
+    for (const Point& x : whole.positions) {
+        values.push_back(static_cast<Real>(value_at(data, x, random)));
+        values.push_back(static_cast<Real>(x[0] + 2 * x[1] - x[2]));
+    }
+    return values;
+}
+
+constexpr std::array counts_of_ranks{1, 2, 3, 4, 5, 7, 8, 11, 13, 17};
+
+/// Random cuttings, with every count of ranks, way to cut and limit of sharers in turn.
+Cutting cutting(unsigned i, std::mt19937& random) {
+    constexpr std::array sharers{std::size_t{24}, std::size_t{1}, std::size_t{2}};
+    return {counts_of_ranks[i % counts_of_ranks.size()], static_cast<Whole::Cut>(random() % 4),
+            sharers[i % 3], random() % 2 == 0, random() % 8 == 0 ? std::size_t{2} : std::size_t{1}};
+}
+
+template <int dim, class Real>
+void compare(const Whole& whole, Data data, unsigned seed, unsigned cuttings, Runs& runs) {
+    std::mt19937 random(seed);
+    // Three thresholds a field, all six in turn.
+    std::vector<double> epsilons;
+    for (unsigned i = 0; i < 3; ++i) epsilons.push_back(six_thresholds[2 * i + seed % 2]);
+    const DistributedJudge<dim, Real> judge(whole, values_of<Real>(whole, data, seed), epsilons);
+    for (unsigned i = 0; i < cuttings; ++i) {
+        const Cutting cut = cutting(i + seed, random);
+        judge.compare(cut, whole.partition(cut.ranks, cut.how, random), runs);
+    }
+}
+
+/// Random refinement that neighbours share in parts.
+template <class Family, class Mark_>
+void refine(typename Family::Grid& grid, std::mt19937& random, std::size_t enough,
+            const Mark_& mark) {
+    for (int i = 0; i < 8 && grid.leaf_count() < enough; ++i) {
+        try {
+            grid.adapt(
+                [&](const Leaf& leaf) { return random() % 5 < 2 ? mark(leaf) : Mark::keep; });
+        } catch (const InvalidInput&) {  // prisms refuse some mixtures of directions
+        }
+    }
+}
+
+Mark in_all_directions(const Leaf&) { return Mark::refine; }
+Mark in_two_directions(const Leaf& leaf) {
+    return leaf.centre()[0] < 0.5 ? Mark::refine_horizontally : Mark::refine_vertically;
+}
+
+template <class Family, class Mark_>
+void on_family(const char* name, const Mark_& mark, Runs& all) {
+    constexpr int dim = Family::Grid::dimension;
+    const unsigned cuttings = is_long() ? 60 : 9;
+    Runs runs;
+    unsigned seed = 1;
+    std::size_t leaves = 0;
+    for (auto& grid : Family::grids()) {
+        std::mt19937 random(++seed);
+        refine<Family>(grid, random, dim == 3 ? 120 : 60, mark);
+        const Whole whole(grid);
+        leaves += whole.leaves;
+        for (const Data data : all_data) {
+            ++seed;
+            if (seed % 3 == 0) {
+                compare<dim, float>(whole, data, seed, cuttings, runs);
+            } else {
+                compare<dim, double>(whole, data, seed, cuttings, runs);
+            }
+        }
+    }
+    EXPECT_EQ(runs.mistakes(), 0U) << name << ": " << runs.first;
+    std::printf(
+        "%-32s %6zu leaves, %5llu surfaces (%llu other), %4llu prerolls (%llu other), %llu "
+        "ended, %llu simplices, %llu common nodes\n",
+        name, leaves, static_cast<unsigned long long>(runs.surfaces),
+        static_cast<unsigned long long>(runs.other), static_cast<unsigned long long>(runs.prerolls),
+        static_cast<unsigned long long>(runs.other_nodes),
+        static_cast<unsigned long long>(runs.ended),
+        static_cast<unsigned long long>(runs.triangles),
+        static_cast<unsigned long long>(runs.common));
+    std::fflush(stdout);
+    all.surfaces += runs.surfaces;
+}
+
+TEST(Distributed, PiecesAreTheSurfaceOfOneRank) {
+    Runs all;
+    on_family<BalancedOctree>("balanced octrees", in_all_directions, all);
+    on_family<UnbalancedOctree>("unbalanced octrees", in_all_directions, all);
+    on_family<Prisms>("prisms", in_all_directions, all);
+    on_family<Prisms>("prisms in two directions", in_two_directions, all);
+    on_family<RedGreenTetrahedra>("red-green tetrahedra", in_all_directions, all);
+    on_family<RedGreenMixed3>("red-green mixed, 3-D", in_all_directions, all);
+    on_family<BisectionTetrahedra>("bisected tetrahedra", in_all_directions, all);
+    on_family<BalancedQuadtree>("balanced quadtrees", in_all_directions, all);
+    on_family<UnbalancedQuadtree>("unbalanced quadtrees", in_all_directions, all);
+    on_family<RedGreenTriangles>("red-green triangles", in_all_directions, all);
+    on_family<RedGreenMixed2>("red-green mixed, 2-D", in_all_directions, all);
+    on_family<BisectionTriangles>("bisected triangles", in_all_directions, all);
+    std::printf("surfaces drawn by ranks and compared: %llu\n",
+                static_cast<unsigned long long>(all.surfaces));
+    EXPECT_GE(all.surfaces, is_long() ? 20000U : 3000U);
+}
+
+}  // namespace
