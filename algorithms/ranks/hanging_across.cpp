@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// Invariant: an edge or face is covered where some leaf has it, or where it lies in a covered one
-// of the father. New nodes of covered edges and faces hang.
 #include <ranks/hanging_across.hpp>
 
-#include <algorithm>
-#include <bit>
+#include <map>
 #include <optional>
 #include <string>
 
+#include <nestgrid/detail/hanging_probe.hpp>
 #include <nestgrid/error.hpp>
 #include <ranks/agreement.hpp>
 #include <walk/for_each_element.hpp>
@@ -18,86 +15,20 @@ namespace nestgrid::engine {
 
 namespace {
 
-NodeKey part_key(std::span<const NodeKey> corners) {
-    FaceKey key;
-    for (const NodeKey corner : corners) key.add_corner(corner);
-    return key.key() + corners.size();
-}
+/// The corners of an edge or a face, in tensor order.
+struct Part {
+    std::array<NodeKey, 4> key{};
+    std::uint8_t corners = 0;
+    bool of_leaf = true;  ///< else an element divides it between the middles of 01 and 23 first
 
-/// Calls function(is face, number, keys of the corners) for the edges and faces of an element.
-template <class Function>
-void for_each_part(const Topology& t, std::span<const NodeKey> keys, Function&& function) {
-    std::array<NodeKey, 4> part;
-    for (std::size_t e = 0; e < t.edges; ++e) {
-        for (std::size_t i = 0; i < 2; ++i) part[i] = keys[t.edge[e][i]];
-        function(false, e, std::span<const NodeKey>(part).first(2));
+    template <class Corners>
+    Part(std::span<const NodeKey> keys, const Corners& of, std::size_t count, bool leaf)
+        : corners{static_cast<std::uint8_t>(count)}, of_leaf{leaf} {
+        for (std::size_t i = 0; i < count; ++i) key[i] = keys[of[i]];
     }
-    for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
-        const FaceTopology& face = t.face[f];
-        for (std::size_t i = 0; i < face.corners; ++i) part[i] = keys[face.corner[i]];
-        function(true, f, std::span<const NodeKey>(part).first(face.corners));
-    }
-}
-
-/// Edges and faces of an element, one bit each.
-struct Parts {
-    std::uint32_t edges = 0;
-    std::uint32_t faces = 0;
+    Part() = default;
+    std::span<const NodeKey> all() const { return std::span(key).first(corners); }
 };
-
-/// Whether both ends of an edge of a child lie in a part of its father.
-/// \param corners of the part
-/// \param inner new nodes inside the part, one bit each
-bool lies_in(const Rule& rule, std::span<const std::uint8_t> ends,
-             std::span<const std::uint8_t> corners, NodeMask inner) {
-    const auto count = static_cast<std::size_t>(rule.corner_count());
-    return std::all_of(ends.begin(), ends.end(), [&](std::uint8_t node) {
-        if (node >= count) return (inner >> (node - count) & 1U) != 0;
-        return std::find(corners.begin(), corners.end(), node) != corners.end();
-    });
-}
-
-bool edge_lies_in(const Parts& covered, const Rule& rule, std::span<const std::uint8_t> ends) {
-    const Topology& father = topology(rule.parent);
-    for (std::uint32_t left = covered.edges; left != 0; left &= left - 1) {
-        const RuleEdge& edge = rule.edges[static_cast<std::size_t>(std::countr_zero(left))];
-        if (lies_in(rule, ends, edge.end, edge.inner)) return true;
-    }
-    for (std::uint32_t left = father.dimension == 3 ? covered.faces : 0; left != 0;
-         left &= left - 1) {
-        const RuleFace& face = rule.faces[static_cast<std::size_t>(std::countr_zero(left))];
-        if (lies_in(rule, ends, std::span(face.corner).first(face.corners), face.inner))
-            return true;
-    }
-    return false;
-}
-
-/// The edges and faces of a child that lie in covered ones of its father.
-Parts handed_down(const Parts& covered, const Rule& rule, const Child& child, const Topology& t) {
-    Parts parts;
-    if ((covered.edges | covered.faces) == 0) return parts;
-    for (std::size_t e = 0; e < t.edges; ++e) {
-        const std::array<std::uint8_t, 2> ends{child.corner[t.edge[e][0]],
-                                               child.corner[t.edge[e][1]]};
-        parts.edges |= std::uint32_t{edge_lies_in(covered, rule, ends)} << e;
-    }
-    for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
-        const std::uint8_t g = child.parent_face[f];
-        if (g != no_face && (covered.faces >> g & 1U) != 0) parts.faces |= 1U << f;
-    }
-    return parts;
-}
-
-NodeMask nodes_inside(const Parts& covered, const Rule& rule) {
-    NodeMask nodes = 0;
-    for (std::uint32_t left = covered.edges; left != 0; left &= left - 1) {
-        nodes |= rule.edges[static_cast<std::size_t>(std::countr_zero(left))].inner;
-    }
-    for (std::uint32_t left = rule.faces.empty() ? 0 : covered.faces; left != 0; left &= left - 1) {
-        nodes |= rule.faces[static_cast<std::size_t>(std::countr_zero(left))].inner;
-    }
-    return nodes;
-}
 
 class HangingAcross {
 public:
@@ -106,67 +37,79 @@ public:
           shared_{&shared},
           box_(shared.ranks().size()) {}
 
-    /// Collects the edges and faces of own leaves, and notes those that others may have, too.
+    /// Collects the nodes of this rank, and tells the parts of leaves that others may have, too.
     void collect() {
         for_each_element(walk_, false, [&](const ElementView<float>& view, const Split& split) {
-            if (split.rule != nullptr) return;
-            walk_.corners(view, keys_.data(), nullptr);
-            for_each_part(view.topology(), keys_,
-                          [&](bool, std::size_t, std::span<const NodeKey> corners) {
-                              const NodeKey key = part_key(corners);
-                              if (!of_leaves_.insert(key, {}).second) return;
-                              shared_->route(corners, box_, [&](Bytes& out) { put(out, key); });
-                          });
+            if (split.rule == nullptr) return tell_leaf(view);
+            const std::span<const NodeKey> keys = walk_.split_keys(view, split, keys_);
+            probe_.add_nodes(*split.rule, keys, split.keys);
+            for (const auto& face : faces_of(*split.rule)) tell({keys, face.corner, 4, false});
         });
+        probe_.finish();
     }
     void exchange() {
         shared_->send(box_, [&](int, Reader& in) {
-            while (in.more()) of_leaves_.insert(in.get<NodeKey>(), {});
+            while (in.more()) told_.push_back(in.get<Part>());
         });
     }
     HangingNodes find() {
-        for_each_element(walk_, true, [&](const ElementView<float>& view, const Split& split) {
-            if (split.rule != nullptr) add_split(view, split);
+        for (const Part& part : told_) {
+            if (part.of_leaf) probe_.probe_part(part.all());
+            if (!part.of_leaf && probe_.crosses(part.key)) refuse_crossed("elements of two ranks");
+        }
+        for_each_element(walk_, false, [&](const ElementView<float>& view, const Split& split) {
+            if (split.rule != nullptr) return check(view, split);
+            walk_.corners(view, keys_.data(), nullptr);
+            probe_.probe_leaf(view.shape, keys_);
         });
-        return std::move(hanging_);
+        if (!probe_.hangs_at_weights()) return probe_.take();
+        throw GridError(
+            "a node hangs that is not in the middle of an edge, as where a neighbour is divided by "
+            "three or graded: this is not made for distributed grids yet");
     }
 
 private:
-    struct Present {};
-
-    void add_split(const ElementView<float>& view, const Split& split) {
-        Parts parts;
-        if (view.father != nullptr) {
-            const auto above = static_cast<std::size_t>(view.level) - 1;
-            parts = handed_down(covered_[above], *view.made_by, *view.as, view.topology());
-        }
-        walk_.corners(view, keys_.data(), nullptr);
-        for_each_part(view.topology(), keys_,
-                      [&](bool is_face, std::size_t i, std::span<const NodeKey> corners) {
-                          if (of_leaves_.find(part_key(corners)) == nullptr) return;
-                          (is_face ? parts.faces : parts.edges) |= 1U << i;
-                      });
-        covered_.resize(static_cast<std::size_t>(view.level) + 1);
-        covered_.back() = parts;
-        for (NodeMask left = nodes_inside(parts, *split.rule); left != 0; left &= left - 1) {
-            const auto n = static_cast<std::size_t>(std::countr_zero(left));
-            if (split.rule->new_nodes[n].mean == Mean::weighted) refuse_weights(view);
-            hanging_.insert(split.keys[n]);
+    using OneWayFaces = std::vector<nestgrid::detail::OneWayFace>;
+    const OneWayFaces& faces_of(const Rule& rule) {
+        const auto at = faces_.find(&rule);
+        if (at != faces_.end()) return at->second;
+        return faces_.emplace(&rule, nestgrid::detail::one_way_faces(rule, false)).first->second;
+    }
+    void tell_leaf(const ElementView<float>& leaf) {
+        const Topology& t = leaf.topology();
+        walk_.corners(leaf, keys_.data(), nullptr);
+        for (std::size_t e = 0; e < t.edges; ++e) tell({keys_, t.edge[e], 2, true});
+        for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
+            std::array<std::uint8_t, 4> corner{};
+            for (int i = 0; i < t.face[f].corners; ++i) {
+                corner[static_cast<std::size_t>(i)] = t.face[f].tensor_corner(i);
+            }
+            tell({keys_, corner, t.face[f].corners, true});
         }
     }
-    [[noreturn]] static void refuse_weights(const ElementView<float>& view) {
-        throw GridError("below coarse element " + std::to_string(view.coarse) +
-                        " a node hangs that is not in the middle of its parents, which is not made "
-                        "for distributed grids yet");
+    void tell(const Part& part) {
+        shared_->route(part.all(), box_, [&](Bytes& out) { put(out, part); });
+    }
+    void check(const ElementView<float>& view, const Split& split) {
+        if (!probe_.divides_one_way()) return;
+        if (!probe_.crossed_face(*split.rule, walk_.split_keys(view, split, keys_))) return;
+        refuse_crossed("elements below coarse element " + std::to_string(view.coarse) +
+                       " and their neighbours");
+    }
+    [[noreturn]] static void refuse_crossed(const std::string& who) {
+        throw GridError(who +
+                        " divide a face in different directions first and one of them then across, "
+                        "so that a node there hangs on others than its parents: refine both in the "
+                        "same order, or each in its own direction only");
     }
 
     Walk<float> walk_;
     const SharedNodes* shared_;
+    nestgrid::detail::HangingProbe probe_;
     Outbox box_;
-    KeyTable<NodeKey, Present> of_leaves_;
-    std::vector<Parts> covered_;  // of the elements above, by level
-    std::array<NodeKey, max_corners> keys_{};
-    HangingNodes hanging_;
+    std::vector<Part> told_;
+    std::map<const Rule*, OneWayFaces> faces_;
+    SplitKeys keys_{};
 };
 
 }  // namespace

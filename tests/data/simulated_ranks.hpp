@@ -169,4 +169,54 @@ private:
     };
 };
 
+/// Ranks that forget what others send in one step of a program: mutants of the library.
+class ForgetfulRanks final : public Ranks {
+public:
+    enum class Step : std::uint8_t { none, share, values, preroll, draw };
+    struct Omission {
+        const char* what;
+        Step step;
+        int from;      ///< the first exchange, or gathering, of the step that is forgotten
+        bool gathers;  ///< gatherings are forgotten, and no exchanges
+    };
+
+    ForgetfulRanks(Ranks& inner, const Omission& omission) : inner_{&inner}, omission_{omission} {}
+
+    /// To be called before each step of the program.
+    void begin(Step step) {
+        step_ = step;
+        exchanges_ = gathers_ = 0;
+    }
+    int rank() const override { return inner_->rank(); }
+    int size() const override { return inner_->size(); }
+    std::vector<Message> exchange(std::vector<Message> to) override {
+        auto from = inner_->exchange(std::move(to));
+        if (forgets(false, exchanges_++)) {
+            std::erase_if(from, [&](const Message& m) { return m.rank != rank(); });
+        }
+        return from;
+    }
+    std::vector<Bytes> gather(Bytes own) override {
+        auto all = inner_->gather(std::move(own));
+        if (forgets(true, gathers_++)) {
+            for (Bytes& bytes : all) bytes.clear();
+        }
+        return all;
+    }
+    void reduce(std::span<std::uint64_t> numbers, Reduction how) override {
+        inner_->reduce(numbers, how);
+    }
+
+private:
+    bool forgets(bool gathers, int number) const {
+        return step_ == omission_.step && gathers == omission_.gathers && number >= omission_.from;
+    }
+
+    Ranks* inner_;
+    Omission omission_;
+    Step step_ = Step::none;
+    int exchanges_ = 0;
+    int gathers_ = 0;
+};
+
 }  // namespace nestgrid_test

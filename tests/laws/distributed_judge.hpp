@@ -77,6 +77,9 @@ struct Cutting {
     std::size_t most_sharers;
     bool own_keys;
     std::size_t threads;
+    /// What ranks forget, in mutants.
+    ForgetfulRanks::Omission omission{"nothing", ForgetfulRanks::Step::none, 0, false};
+    bool all_draw = false;  ///< in a mutant: each rank draws the elements of which it has a part
 };
 
 /// A field on a whole grid, what one rank draws of it, and comparisons with that.
@@ -97,16 +100,25 @@ public:
         std::atomic<std::uint64_t> wrong_nodes{0};
         std::atomic<std::uint64_t> common{0};
         std::mutex mutex;
-        const auto ended = SimulatedRanks::run(cut.ranks, [&](Ranks& ranks) {
-            const Part part(*whole_, owner, ranks.rank());
+        const auto ended = SimulatedRanks::run(cut.ranks, [&](Ranks& all) {
+            using Step = ForgetfulRanks::Step;
+            ForgetfulRanks ranks(all, cut.omission);
+            Part part(*whole_, owner, ranks.rank());
+            for (Presence& presence : part.presence) {
+                if (cut.all_draw && presence == Presence::partly) presence = Presence::partly_first;
+            }
+            ranks.begin(Step::share);
             const CutGrid<dim> mine(*whole_, &part, cut.own_keys);
             const Distributed grid(mine, ranks, cut.most_sharers);
+            ranks.begin(Step::values);
             const DistributedField field(grid, CutField<dim, Real>{&mine, &values_});
             const ThreadExecutor threads(cut.threads);
+            ranks.begin(Step::preroll);
             const HierarchicalIndicator indicator(grid, field, threads);
             wrong_nodes += wrong(expected, part, mine, *grid.shared_nodes(), indicator);
             common = grid.shared_nodes()->common().size();
             std::size_t i = 0;
+            ranks.begin(Step::draw);
             draw(grid, field, indicator, threads, [&](const Isosurface<dim>& result) {
                 const std::scoped_lock lock(mutex);
                 drawn[i++].add(result);

@@ -141,4 +141,58 @@ TEST(Distributed, PiecesAreTheSurfaceOfOneRank) {
     EXPECT_GE(all.surfaces, is_long() ? 20000U : 3000U);
 }
 
+struct Mutant {
+    ForgetfulRanks::Omission omission;
+    std::size_t most_sharers;
+    bool all_draw;
+};
+
+using Step = ForgetfulRanks::Step;
+constexpr std::array mutants{
+    Mutant{{"hanging nodes not told", Step::share, 2, false}, 24, false},
+    Mutant{{"common nodes not told", Step::share, 0, true}, 1, false},
+    Mutant{{"values not told", Step::values, 0, false}, 24, false},
+    Mutant{{"maxima not told", Step::preroll, 0, false}, 24, false},
+    Mutant{{"maxima told once", Step::preroll, 1, false}, 24, false},
+    Mutant{{"contours not told", Step::draw, 0, false}, 24, false},
+    Mutant{{"contours on common faces not told", Step::draw, 0, true}, 1, false},
+    Mutant{{"elements in part drawn by all", Step::none, 0, false}, 24, true},
+};
+
+/// A library without a step, on octrees and on prisms in two directions.
+class Mutants : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(Mutants, FailTheLaws) {
+    const Mutant& mutant = mutants[GetParam()];
+    const auto grids = [](auto&& test) {
+        for (auto& grid : UnbalancedOctree::grids())
+            test.template operator()<UnbalancedOctree>(grid, in_all_directions);
+        for (auto& grid : Prisms::grids())
+            test.template operator()<Prisms>(grid, in_two_directions);
+    };
+    Runs runs;
+    unsigned seed = 40;
+    grids([&]<class Family>(typename Family::Grid& grid, const auto& mark) {
+        std::mt19937 random(++seed);
+        refine<Family>(grid, random, 120, mark);
+        const Whole whole(grid);
+        const DistributedJudge<3, double> judge(whole, values_of<double>(whole, Data::noise, seed),
+                                                std::array{0.1, 0.3});
+        for (int ranks = 2; ranks <= 5; ++ranks) {
+            const Cutting cut{ranks, Whole::Cut::in_runs, mutant.most_sharers, false,
+                              1,     mutant.omission,     mutant.all_draw};
+            judge.compare(cut, whole.partition(ranks, cut.how, random), runs);
+        }
+    });
+    std::printf(
+        "%-36s of %llu surfaces %llu differ, of %llu prerolls %llu, and of 16 programs %llu end\n",
+        mutant.omission.what, static_cast<unsigned long long>(runs.surfaces),
+        static_cast<unsigned long long>(runs.other), static_cast<unsigned long long>(runs.prerolls),
+        static_cast<unsigned long long>(runs.other_nodes),
+        static_cast<unsigned long long>(runs.ended));
+    EXPECT_GT(runs.mistakes(), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryStep, Mutants, testing::Range(std::size_t{0}, mutants.size()));
+
 }  // namespace
