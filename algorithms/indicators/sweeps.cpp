@@ -81,10 +81,12 @@ inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> o
         return changed;
     };
     Below greatest;
-    const bool changed = raise_parents(rule, of, of_node, hand, raise, greatest);
+    bool changed = raise_parents(rule, of, of_node, hand, raise, greatest);
     if (rule.inside != no_new_node) {
         Entry& within =
             nodes_[of[static_cast<std::size_t>(rule.corner_count()) + rule.inside]].entry;
+        // It may have parents in the same split, to which it hands the greatest number on.
+        changed |= rule.steps > 1 && within.stop < greatest.stop;
         within.stop = std::max(within.stop, greatest.stop);
         within.bound = std::max(within.bound, greatest.bound);
     }

@@ -101,24 +101,23 @@ public:
         std::atomic<std::uint64_t> common{0};
         std::mutex mutex;
         const auto ended = SimulatedRanks::run(cut.ranks, [&](Ranks& all) {
-            using Step = ForgetfulRanks::Step;
             ForgetfulRanks ranks(all, cut.omission);
             Part part(*whole_, owner, ranks.rank());
             for (Presence& presence : part.presence) {
                 if (cut.all_draw && presence == Presence::partly) presence = Presence::partly_first;
             }
-            ranks.begin(Step::share);
+            ranks.begin(ForgetfulRanks::Step::share);
             const CutGrid<dim> mine(*whole_, &part, cut.own_keys);
             const Distributed grid(mine, ranks, cut.most_sharers);
-            ranks.begin(Step::values);
+            ranks.begin(ForgetfulRanks::Step::values);
             const DistributedField field(grid, CutField<dim, Real>{&mine, &values_});
             const ThreadExecutor threads(cut.threads);
-            ranks.begin(Step::preroll);
+            ranks.begin(ForgetfulRanks::Step::preroll);
             const HierarchicalIndicator indicator(grid, field, threads);
             wrong_nodes += wrong(expected, part, mine, *grid.shared_nodes(), indicator);
             common = grid.shared_nodes()->common().size();
             std::size_t i = 0;
-            ranks.begin(Step::draw);
+            ranks.begin(ForgetfulRanks::Step::draw);
             draw(grid, field, indicator, threads, [&](const Isosurface<dim>& result) {
                 const std::scoped_lock lock(mutex);
                 drawn[i++].add(result);

@@ -4,8 +4,11 @@
 // Surfaces of distributed grids: the pieces of all ranks are the surface of one rank.
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
+#include "anisotropic_grids.hpp"
 #include "distributed_judge.hpp"
+#include "refusal.hpp"
 #include "sample_grids.hpp"
 
 using namespace nestgrid_test;
@@ -141,22 +144,71 @@ TEST(Distributed, PiecesAreTheSurfaceOfOneRank) {
     EXPECT_GE(all.surfaces, is_long() ? 20000U : 3000U);
 }
 
+/// What each rank of a cutting says when it finds out which nodes it shares; empty where nothing.
+template <int dim>
+std::vector<std::string> refused(const Whole& whole, const Cutting& cut,
+                                 const std::vector<int>& owner) {
+    return SimulatedRanks::run(cut.ranks, [&](Ranks& ranks) {
+        const Part part(whole, owner, ranks.rank());
+        const CutGrid<dim> mine(whole, &part, cut.own_keys);
+        const Distributed grid(mine, ranks, cut.most_sharers);
+    });
+}
+
+TEST(Distributed, AnisotropicGridsAreDrawnOrRefusedAsOnOneRank) {
+    Runs runs;
+    unsigned refused_grids = 0;
+    unsigned refused_runs = 0;
+    unsigned drawn_grids = 0;
+    for (unsigned seed = 0; seed < (is_long() ? 2000U : 250U); ++seed) {
+        std::mt19937 random(seed);
+        const Forest<3> forest = random_anisotropic_grid(random);
+        const Whole whole(forest);
+        if (whole.leaves > 400) continue;
+        std::optional<DistributedJudge<3, double>> judge;
+        const std::string sentence = refusal<GridError>([&] {
+            judge.emplace(whole, values_of<double>(whole, Data::noise, seed), std::array{0.0, 0.3});
+        });
+        ++(judge ? drawn_grids : refused_grids);
+        for (unsigned i = 0; i < 3; ++i) {
+            Cutting cut = cutting(i + seed, random);
+            cut.ranks = 2 + cut.ranks % 7;
+            const std::vector<int> owner = whole.partition(cut.ranks, cut.how, random);
+            if (judge) {
+                judge->compare(cut, owner, runs);
+                continue;
+            }
+            ++refused_runs;
+            for (const std::string& each : refused<3>(whole, cut, owner)) {
+                EXPECT_NE(each.find("in different directions first"), std::string::npos)
+                    << seed << ": '" << each << "', not '" << sentence << "'";
+            }
+        }
+    }
+    EXPECT_EQ(runs.mistakes(), 0U) << runs.first;
+    EXPECT_GT(refused_grids, 20U);
+    EXPECT_GT(drawn_grids, 20U);
+    std::printf("anisotropic: %u grids refused in %u runs, %u drawn, %llu surfaces\n",
+                refused_grids, refused_runs, drawn_grids,
+                static_cast<unsigned long long>(runs.surfaces));
+}
+
 struct Mutant {
     ForgetfulRanks::Omission omission;
     std::size_t most_sharers;
     bool all_draw;
 };
 
-using Step = ForgetfulRanks::Step;
+using Omit = ForgetfulRanks::Step;
 constexpr std::array mutants{
-    Mutant{{"hanging nodes not told", Step::share, 2, false}, 24, false},
-    Mutant{{"common nodes not told", Step::share, 0, true}, 1, false},
-    Mutant{{"values not told", Step::values, 0, false}, 24, false},
-    Mutant{{"maxima not told", Step::preroll, 0, false}, 24, false},
-    Mutant{{"maxima told once", Step::preroll, 1, false}, 24, false},
-    Mutant{{"contours not told", Step::draw, 0, false}, 24, false},
-    Mutant{{"contours on common faces not told", Step::draw, 0, true}, 1, false},
-    Mutant{{"elements in part drawn by all", Step::none, 0, false}, 24, true},
+    Mutant{{"hanging nodes not told", Omit::share, 2, false}, 24, false},
+    Mutant{{"common nodes not told", Omit::share, 0, true}, 1, false},
+    Mutant{{"values not told", Omit::values, 0, false}, 24, false},
+    Mutant{{"maxima not told", Omit::preroll, 0, false}, 24, false},
+    Mutant{{"maxima told once", Omit::preroll, 1, false}, 24, false},
+    Mutant{{"contours not told", Omit::draw, 0, false}, 24, false},
+    Mutant{{"contours on common faces not told", Omit::draw, 0, true}, 1, false},
+    Mutant{{"elements in part drawn by all", Omit::none, 0, false}, 24, true},
 };
 
 /// A library without a step, on octrees and on prisms in two directions.
