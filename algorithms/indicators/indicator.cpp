@@ -13,8 +13,8 @@
 #include <indicators/stars.hpp>
 #include <indicators/update.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
 #include <ranks/agreement.hpp>
-#include <ranks/made_for_ranks.hpp>
 #include <walk/crossing_nodes.hpp>
 #include <walk/hanging_nodes.hpp>
 #include <walk/unusable_values.hpp>
@@ -119,14 +119,13 @@ template <class Real>
 void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
                                     const Executor& executor) {
     const engine::SharedNodes* const shared = hierarchy.facts().shared;
-    engine::together(shared, [&] {
+    engine::together(shared, "a preroll of offsets", [&] {
         engine::require_spread(spread_);
         if (shared != nullptr) {
             engine::require_same_state(hierarchy);
             engine::require_preroll_on_ranks(static_cast<bool>(leaf_errors), error_, spread_);
         }
     });
-    if (shared != nullptr) engine::agree_on(shared->ranks(), "a preroll of offsets");
     epoch_ = hierarchy.epoch();
     roundoff_ = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
     own_errors_ = static_cast<bool>(leaf_errors);
@@ -157,7 +156,8 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
         facts_ =
             engine::walk_preroll(walk, {&leaf_errors, measures, deviations}, *sweeps, executor);
     };
-    engine::together(shared, [&] { engine::with_places(hierarchy, walk_all); });
+    engine::together(shared, "a preroll of offsets",
+                     [&] { engine::with_places(hierarchy, walk_all); });
     if (!sweeps) return;
     sweeps->saturate(shared);
     // No element above a crossing node stops, whatever its level.

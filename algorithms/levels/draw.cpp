@@ -9,8 +9,8 @@
 
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
 #include <ranks/agreement.hpp>
-#include <ranks/made_for_ranks.hpp>
 
 namespace nestgrid {
 
@@ -173,7 +173,8 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     const std::size_t count = levels.levels.size();
     const SharedNodes* const shared = levels.hierarchy->facts().shared;
     std::optional<Walk<Real>> walk_here;
-    together(shared, [&] {
+    const auto asked = [&] { return asked_for<Real>(levels.levels, criterion, options); };
+    together(shared, asked, [&] {
         if (shared != nullptr) {
             require_same_state(*levels.hierarchy);
             require_drawn_on_ranks(criterion, bounds, options, levels.functions != nullptr);
@@ -186,16 +187,14 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
         walk_here.emplace(*levels.hierarchy, needs, bounds.hanging(), levels.functions);
     });
     const Walk<Real>& walk = *walk_here;
-    if (shared != nullptr) {
-        agree_on(shared->ranks(), asked_for<Real>(levels.levels, criterion, options));
-    }
     std::vector<Surface<dimension>> chunks(count);
     for (Surface<dimension>& chunk : chunks) chunk.elements = levels.hierarchy->make_elements();
     const auto builders = make_builders(targets, chunks, options);
     const LevelSearch<Real> search(walk, levels.levels, criterion, bounds);
     Drawing drawing(walk, search, builders, options, levels.first_attribute);
     const bool cancelled = run_until_cancelled(drawing, executor);
-    drawing.flush();
+    // Of a walk that went to its end, nothing is left to flush.
+    together(cancelled ? shared : nullptr, "isosurfaces", [&] { drawing.flush(); });
     if (shared != nullptr) drawing.agree(shared->ranks());
     std::vector<Isosurface<dimension>> results(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -222,7 +221,7 @@ std::vector<Isosurface<dimension>> draw_isosurfaces(
     const SurfaceTargets<dimension>& targets, const Criterion& criterion, const Bounds& bounds,
     const IsosurfaceOptions& options, const Executor& executor) {
     engine::Levels<Real> levels{&hierarchy, {}};
-    engine::together(hierarchy.facts().shared,
+    engine::together(hierarchy.facts().shared, "isosurfaces",
                      [&] { levels = engine::isosurface_levels(hierarchy, isovalues); });
     return engine::draw_levels<dimension>(levels, targets, criterion, bounds, options, executor);
 }

@@ -138,7 +138,8 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::run(const Executor& executor) {
     const SharedNodes* const shared = walk_->hierarchy().facts().shared;
     const auto alone = [&](const auto& part) {
-        together(shared, [&] { with_places(walk_->hierarchy(), part, walk_->function_count()); });
+        together(shared, "isosurfaces",
+                 [&] { with_places(walk_->hierarchy(), part, walk_->function_count()); });
     };
     const bool records = walks_.is_recording();
     alone([&] {

@@ -9,6 +9,7 @@
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <pieces/corner_values.hpp>
+#include <projection/made_for_ranks.hpp>
 
 namespace nestgrid {
 
@@ -22,7 +23,9 @@ public:
     using Entries = std::vector<ElementDeviations::Entry>;
 
     Measuring(const DiscontinuousData& data, Entries& entries)
-        : grid_{&data.grid()}, values_(data), task_{grid_->open()}, entries_{&entries} {}
+        : grid_{&data.grid()}, values_(data), task_{grid_->open()}, entries_{&entries} {
+        engine::require_whole_grid(*grid_);
+    }
 
     void run() {
         Coarse coarse;

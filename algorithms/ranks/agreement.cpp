@@ -42,6 +42,14 @@ std::uint64_t hash_of(const std::string& text) {
     return sum;
 }
 
+/// \param asked what each rank is asked for, not all the same
+[[noreturn]] void refuse_different(const std::vector<Bytes>& asked) {
+    std::size_t other = 1;
+    while (other + 1 < asked.size() && asked[other] == asked[0]) ++other;
+    throw InvalidInput("all ranks must ask for the same, but rank 0 asks for " + as_text(asked[0]) +
+                       ", and rank " + std::to_string(other) + " for " + as_text(asked[other]));
+}
+
 /// A number whose order is that of doubles.
 std::uint64_t in_order(double x) {
     const auto bits = std::bit_cast<std::uint64_t>(x);
@@ -72,12 +80,13 @@ Outcome Outcome::of_exception() {
     }
 }
 
-void settle(Ranks& ranks, const Outcome& own) {
+void settle(Ranks& ranks, const std::string& asked, const Outcome& own) {
     const auto none = static_cast<std::uint64_t>(ranks.size());
     const auto here = static_cast<std::uint64_t>(ranks.rank());
     const bool cancelled = own.kind == Outcome::Kind::cancelled;
     const bool failed = own.kind != Outcome::Kind::done && !cancelled;
-    std::array<std::uint64_t, 2> least{failed ? here : none, cancelled ? here : none};
+    const std::uint64_t hash = hash_of(asked);
+    std::array<std::uint64_t, 4> least{failed ? here : none, cancelled ? here : none, hash, ~hash};
     ranks.reduce(least, Ranks::Reduction::min);
     if (least[0] < none) {
         Bytes told;
@@ -91,20 +100,7 @@ void settle(Ranks& ranks, const Outcome& own) {
         fail(kind, "rank " + std::to_string(least[0]) + ": " + as_text(failure));
     }
     if (least[1] < none) throw Cancelled{};
-}
-
-void agree_on(Ranks& ranks, const std::string& asked) {
-    const std::uint64_t own = hash_of(asked);
-    std::array<std::uint64_t, 2> greatest{own, ~own};
-    ranks.reduce(greatest, Ranks::Reduction::max);
-    if (greatest[0] == ~greatest[1]) return;
-    const std::vector<Bytes> all = ranks.gather(as_bytes(asked));
-    for (std::size_t r = 1; r < all.size(); ++r) {
-        if (all[r] == all[0]) continue;
-        throw InvalidInput("all ranks must ask for the same, but rank 0 asks for " +
-                           as_text(all[0]) + ", and rank " + std::to_string(r) + " for " +
-                           as_text(all[r]));
-    }
+    if (least[2] != ~least[3]) refuse_different(ranks.gather(as_bytes(asked)));
 }
 
 std::string all_digits(double number) {

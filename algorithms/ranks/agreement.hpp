@@ -6,7 +6,7 @@
 // Invariants:
 //   - whatever a rank does alone between two exchanges, together() does; so what one rank throws
 //     there, all throw, and none waits for a message that never comes;
-//   - before the first exchange of an algorithm, agree_on() compares what the ranks ask for.
+//   - together() compares what the ranks are at, and comes before each exchange.
 // Consequence: ranks that call different algorithms, or one with different arguments, get a
 // sentence with both.
 #pragma once
@@ -28,29 +28,36 @@ struct Outcome {
 };
 
 /// Throws, on all ranks, what the least rank that failed throws, with its number before the
-/// sentence; or Cancelled where some rank was cancelled. Collective.
-void settle(Ranks& ranks, const Outcome& own);
+/// sentence; or that ranks ask for different things; or Cancelled where some rank was cancelled.
+/// Collective, one reduction.
+/// \param asked what this rank is asked for, without an end: "an isosurface of 0.5"
+///
+/// \throw InvalidInput where ranks are asked for different things, with two of these
+void settle(Ranks& ranks, const std::string& asked, const Outcome& own);
 
 /// Calls a function that does not talk to other ranks; all ranks end alike. Collective.
 /// \param shared null where the grid is not distributed: nothing is done but the call
-template <class Function>
-void together(const SharedNodes* shared, Function&& function) {
+/// \param asked asked() is as that of settle(), called after the function
+template <class Asked, class Function>
+void together(const SharedNodes* shared, const Asked& asked, Function&& function) {
     if (shared == nullptr) return function();
     Outcome own;
+    std::string what = "what it refuses";
     try {
         function();
+        what = asked();
     } catch (...) {
         own = Outcome::of_exception();
     }
-    settle(shared->ranks(), own);
+    settle(shared->ranks(), what, own);
+}
+template <class Function>
+void together(const SharedNodes* shared, const char* asked, Function&& function) {
+    together(
+        shared, [asked] { return std::string(asked); }, std::forward<Function>(function));
 }
 
-/// Compares what the ranks ask for. Collective.
-/// \param asked a sentence without an end: "an isosurface of 0.5"
-/// \throw InvalidInput on all ranks, with the sentences of two that differ
-void agree_on(Ranks& ranks, const std::string& asked);
-
-/// A number as agree_on() needs it: with all digits.
+/// A number as it is compared: with all digits.
 std::string all_digits(double number);
 
 /// Numbers that become the greatest of all ranks. They may be infinite, and must be numbers.

@@ -6,9 +6,9 @@
 #include <string>
 
 #include <nestgrid/detail/forwarding_hierarchy.hpp>
+#include <projection/made_for_ranks.hpp>
 #include <ranks/agreement.hpp>
 #include <ranks/hanging_across.hpp>
-#include <ranks/made_for_ranks.hpp>
 #include <walk/for_each_element.hpp>
 
 namespace nestgrid {
@@ -75,13 +75,13 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
                                                                Ranks& ranks,
                                                                std::size_t most_sharers) {
     const auto shared = std::make_shared<engine::SharedNodes>(ranks, grid.epoch());
-    engine::agree_on(ranks, "a distributed grid of dimension " +
-                                std::to_string(grid.facts().dimension) +
-                                " with nodes of more than " + std::to_string(most_sharers) +
-                                " ranks told to all");
     const engine::BeforeSharing before(grid, *shared);
     std::vector<engine::SharedNodes::Candidate> nodes;
-    engine::together(shared.get(), [&] {
+    const auto asked = [&] {
+        return "a distributed grid of dimension " + std::to_string(grid.facts().dimension) +
+               " with nodes of more than " + std::to_string(most_sharers) + " ranks told to all";
+    };
+    engine::together(shared.get(), asked, [&] {
         engine::require_drawn_on_ranks(grid);
         nodes = engine::nodes_of(before);
     });

@@ -7,8 +7,8 @@
 #include <string>
 
 #include <nestgrid/algorithms/distributed.hpp>
+#include <projection/made_for_ranks.hpp>
 #include <ranks/agreement.hpp>
-#include <ranks/made_for_ranks.hpp>
 #include <walk/for_each_element.hpp>
 
 namespace nestgrid::engine {
@@ -141,7 +141,7 @@ private:
                                " such copies, which differ by up to " + all_digits(farthest_) +
                                ": were the values beside other ranks (ghost values) updated?";
         }
-        settle(ranks, outcome);
+        settle(ranks, "values at shared nodes", outcome);
     }
 
     const SharedNodes* shared_;
@@ -184,13 +184,15 @@ std::shared_ptr<const FarValues> share_values(const Hierarchy<Real>& field) {
     const SharedNodes* const shared = field.facts().shared;
     const auto components = static_cast<std::size_t>(field.facts().components);
     SharedValues values(*shared, components);
-    together(shared, [&] {
+    const auto asked = [&] {
+        return "values of a field of " + std::to_string(components) + " components of " +
+               std::to_string(sizeof(Real)) + " bytes";
+    };
+    together(shared, asked, [&] {
         require_same_state(field);
         if (field.facts().decodes) refuse_on_ranks("a compressed field");
+        collect(field, values);
     });
-    agree_on(shared->ranks(), "values of a field of " + std::to_string(components) +
-                                  " components of " + std::to_string(sizeof(Real)) + " bytes");
-    together(shared, [&] { collect(field, values); });
     values.agree();
     const auto far = std::make_shared<FarValues>(components);
     values.put_missed(*far);

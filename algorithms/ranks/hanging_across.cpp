@@ -116,13 +116,13 @@ private:
 
 HangingNodes hanging_across(const Hierarchy<float>& grid, const SharedNodes& shared) {
     std::optional<HangingAcross> search;
-    together(&shared, [&] {
+    together(&shared, "hanging nodes", [&] {
         search.emplace(grid, shared);
         search->collect();
     });
     search->exchange();
     HangingNodes hanging;
-    together(&shared, [&] { hanging = search->find(); });
+    together(&shared, "hanging nodes", [&] { hanging = search->find(); });
     return hanging;
 }
 

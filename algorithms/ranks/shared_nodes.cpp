@@ -72,7 +72,7 @@ void SharedNodes::find(std::span<const Candidate> candidates, std::size_t most_s
     question.send(*ranks_, [&](int rank, Reader& in) {
         while (in.more()) home.add(rank, in.get<Candidate>());
     });
-    together(this, [&] { home.check(); });
+    together(this, "shared nodes", [&] { home.check(); });
     Outbox answer(size);
     home.answer(answer, most_sharers);
     for (const Bytes& announced : ranks_->gather(std::move(answer.to_all()))) {

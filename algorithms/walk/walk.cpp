@@ -10,8 +10,8 @@
 #include <nestgrid/detail/coarse_boundary.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
 #include <ranks/far_values.hpp>
-#include <ranks/made_for_ranks.hpp>
 #include <walk/crossing_nodes.hpp>
 
 namespace nestgrid::engine {

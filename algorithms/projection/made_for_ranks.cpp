@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ranks/made_for_ranks.hpp>
+#include <projection/made_for_ranks.hpp>
 
 #include <algorithm>
 #include <array>

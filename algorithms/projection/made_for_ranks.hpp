@@ -53,7 +53,7 @@ void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& s
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
                             const IsosurfaceOptions& options, bool of_functions);
 
-/// What a surface is asked for with, as agree_on() needs it.
+/// What a surface is asked for with, as settle() compares it.
 template <class Real>
 std::string asked_for(std::span<const Level<Real>> levels, const Criterion& criterion,
                       const IsosurfaceOptions& options);
