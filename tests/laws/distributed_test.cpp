@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include <nestgrid/check_grid.hpp>
+
 #include "anisotropic_grids.hpp"
 #include "distributed_judge.hpp"
 #include "refusal.hpp"
@@ -191,6 +193,56 @@ TEST(Distributed, AnisotropicGridsAreDrawnOrRefusedAsOnOneRank) {
     std::printf("anisotropic: %u grids refused in %u runs, %u drawn, %llu surfaces\n",
                 refused_grids, refused_runs, drawn_grids,
                 static_cast<unsigned long long>(runs.surfaces));
+}
+
+/// The law that check_grid finds violated on a rank of a random cut, where `change` was done to
+/// what it has.
+template <class Change>
+std::optional<GridViolation> check_part(unsigned seed, const Change& change) {
+    std::mt19937 random(seed);
+    OctreeGrid<3> grid = UnbalancedOctree::grids()[0];
+    refine<UnbalancedOctree>(grid, random, 60, in_all_directions);
+    const Whole whole(grid);
+    Part part(whole, whole.partition(3, Whole::Cut::in_runs, random), 1);
+    if (!change(whole, part)) return std::nullopt;
+    const CutGrid<3> mine(whole, &part, seed % 2 == 0);
+    const std::vector<double> values(2 * whole.positions.size(), 0.5);
+    return check_grid(mine, CutField<3, double>{&mine, &values});
+}
+
+TEST(Distributed, CheckGridLooksAtPresence) {
+    for (unsigned seed = 0; seed < 10; ++seed) {
+        EXPECT_FALSE(check_part(seed, [](const Whole&, Part&) { return true; })) << seed;
+    }
+    const auto becomes = [](Presence from, Presence to, bool leaf) {
+        return [=](const Whole& whole, Part& part) {
+            for (std::size_t e = 0; e < part.presence.size(); ++e) {
+                if (part.presence[e] != from || leaf != (whole.elements[e].rule == nullptr))
+                    continue;
+                part.presence[e] = to;
+                return true;
+            }
+            return false;
+        };
+    };
+    const auto expect_found = [](const auto& change, const std::string& sentence) {
+        unsigned changed = 0;
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            bool does = false;
+            const auto found = check_part(
+                seed, [&](const Whole& whole, Part& part) { return does = change(whole, part); });
+            if (!does) continue;
+            ++changed;
+            ASSERT_TRUE(found) << sentence;
+            EXPECT_EQ(found->law, Law::presence) << found->sentence;
+            EXPECT_NE(found->sentence.find(sentence), std::string::npos) << found->sentence;
+        }
+        EXPECT_GT(changed, 5U) << sentence;
+    };
+    expect_found(becomes(Presence::here, Presence::partly, true), "");
+    expect_found(becomes(Presence::partly, Presence::here, false), "");
+    expect_found(becomes(Presence::partly, Presence::partly_first, false), "first");
+    expect_found(becomes(Presence::partly_first, Presence::partly, false), "first");
 }
 
 struct Mutant {
