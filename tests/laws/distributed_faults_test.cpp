@@ -8,7 +8,9 @@
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "distributed_judge.hpp"
+#include "refusal.hpp"
 #include "sample_grids.hpp"
+#include "table_in_c.hpp"
 
 using namespace nestgrid_test;
 
@@ -249,6 +251,19 @@ TEST(DistributedFaults, GridWithoutRanks) {
             "DistributedField field(grid, values);' (nestgrid/algorithms/distributed.hpp) and "
             "draw these");
     }
+    // The same of a table in C, which asks for the operation.
+    const CutField<3, double> field{&mine, &values};
+    TableInC table(mine);
+    const auto behind = open_table<double>(table.table, field_in_c(mine, field));
+    EXPECT_EQ(refusal<GridError>([&] { isosurface<3>(*behind, 0.5); }),
+              refusal<GridError>([&] { isosurface(mine, field, 0.5); }));
+    table.table.presence = [](const void*, void*, const nestgrid_element*, int* which) {
+        *which = 4;
+        return 0;
+    };
+    const auto wrong = open_table<double>(table.table, field_in_c(mine, field));
+    EXPECT_EQ(refusal<GridError>([&] { isosurface<3>(*wrong, 0.5); }),
+              "presence gave 4, not 0, 1, 2 or 3");
     // All of it on one process needs no ranks.
     const Part all(whole, std::vector<int>(owner.size(), 0), 0);
     const CutGrid<3> here(whole, &all, false);
