@@ -11,8 +11,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -23,6 +23,8 @@
 #include <walk/closed_parts.hpp>
 
 namespace nestgrid::engine {
+
+class SharedNodes;
 
 class TransitionContours {
 public:
@@ -42,6 +44,12 @@ public:
         owners_ = std::move(elements);
     }
 
+    /// To be called before the first record() where ranks share nodes; null where they do not.
+    void share(const SharedNodes* shared) { shared_ = shared; }
+    /// Tells other ranks what was recorded on faces and edges that they may have, too, and records
+    /// what they tell (ranks/contour_exchange.cpp). Collective, after the last record().
+    void exchange();
+
     /// A polygon in a face that its two sides divide in different directions.
     struct Gap {
         std::vector<Index> loop;
@@ -55,11 +63,17 @@ public:
         for (const ClosedFace* face = innermost; face != nullptr; face = face->outer) {
             const NodeKey key = face->key();
             record(key, from, to);
+            if (shared_ != nullptr) note_shared(key, *face);
             const NodeKey divided_by = face->divided_by();
             if (divided_by != 0) note_split(key, divided_by, element, shape, level);
         }
     }
     void record(NodeKey face, Index from, Index to) { segments_.push_back({face, from, to}); }
+    /// Records a node on the closed edge between two nodes.
+    void record_on_edge(NodeKey edge, const std::array<NodeKey, 2>& ends, Index node) {
+        record(edge, node, node);
+        if (shared_ != nullptr) note_shared(edge, ends);
+    }
 
     /// The number of the vertex with a name; make() returns its SurfaceCut where it is new.
     template <class Make>
@@ -74,35 +88,10 @@ public:
     void expect(const KeyPair& name) const { vertex_of_.prefetch(name); }
 
     /// Adds the record of another task, as if this task had visited that task's elements.
-    void append(const TransitionContours& other) {
-        std::vector<KeyPair> names(other.cuts_.size());
-        other.vertex_of_.for_each([&](const KeyPair& name, Index v) { names[v] = name; });
-        std::vector<Index> number(names.size());
-        for (std::size_t v = 0; v < names.size(); ++v) {
-            number[v] = vertex(names[v], [&] { return other.cut(static_cast<Index>(v)); });
-        }
-        for (const Segment& s : other.segments_) {
-            segments_.push_back({s.face, number[s.from], number[s.to]});
-        }
-        other.split_of_.for_each([&](NodeKey face, const Split& s) {
-            note_split(face, s.by, other.element(s.owner), s.owner.shape, s.owner.level);
-        });
-        other.conflicts_.for_each([&](NodeKey face, const Owner&) {
-            conflicts_.insert(face, split_of_.find(face)->owner);
-        });
-    }
+    void append(const TransitionContours& other);
 
     /// Must be called once, after the last record() and before the first lookup.
-    void finish() {
-        group_segments();
-        conflicts_.for_each([&](NodeKey face, const Owner& owner) { find_gaps(face, owner); });
-        std::sort(gaps_.begin(), gaps_.end(),
-                  [](const Gap& a, const Gap& b) { return a.loop < b.loop; });
-        conflicts_ = {};
-        split_of_ = {};
-        faces_.reset(face_number_.size());
-        face_number_.for_each([&](NodeKey face, Index) { faces_.add(hash(face)); });
-    }
+    void finish();
 
     const std::vector<Gap>& gaps() const { return gaps_; }
 
@@ -152,6 +141,7 @@ public:
         gaps_.clear();
         split_of_.clear();
         conflicts_.clear();
+        shared_parts_.clear();
         cuts_.clear();
         attributes_.clear();
         owners_.clear();
@@ -179,7 +169,23 @@ private:
     struct Split {
         NodeKey by;
         Owner owner;
+        bool fills = true;  ///< whether this rank fills the gaps in the face
     };
+    /// The corners of a face, or the ends of an edge, that other ranks have, too.
+    struct Corners {
+        std::array<NodeKey, 4> key;
+        std::uint8_t count;  ///< 0: not all of them are shared
+        std::span<const NodeKey> all() const { return std::span(key).first(count); }
+    };
+    void note_shared(NodeKey part, std::span<const NodeKey> corners);
+    void note_shared(NodeKey key, const ClosedFace& face) {
+        std::array<NodeKey, 4> corners;
+        for (std::size_t i = 0; i < face.face->corners; ++i) {
+            corners[i] = face.nodes->key[face.face->corner[i]];
+        }
+        note_shared(key, std::span<const NodeKey>(corners).first(face.face->corners));
+    }
+    class Exchange;
     void note_split(NodeKey face, NodeKey by, const Handle& element, Shape shape, int level) {
         const auto next = static_cast<std::uint32_t>(owners_.size());
         const auto [first, is_new] = split_of_.insert(face, {by, {next, shape, level}});
@@ -219,25 +225,7 @@ private:
     }
 
     /// Groups the segments by face, and sorts those of faces that have many.
-    void group_segments() {
-        face_of_.resize(segments_.size());
-        for (std::size_t i = 0; i < segments_.size(); ++i) {
-            const auto next = static_cast<Index>(face_number_.size());
-            face_of_[i] = *face_number_.insert(segments_[i].face, next).first;
-        }
-        first_on_.assign(face_number_.size() + 1, 0);
-        for (const Index f : face_of_) ++first_on_[f + 1U];
-        std::partial_sum(first_on_.begin(), first_on_.end(), first_on_.begin());
-        place_.assign(first_on_.begin(), first_on_.end());
-        grouped_.resize(segments_.size());
-        for (std::size_t i = 0; i < segments_.size(); ++i) {
-            grouped_[place_[face_of_[i]]++] = segments_[i];
-        }
-        segments_.swap(grouped_);
-        for (std::size_t f = 0; f + 1 < first_on_.size(); ++f) {
-            if (first_on_[f + 1] - first_on_[f] > few) sort_segments(f);
-        }
-    }
+    void group_segments();
     void sort_segments(std::size_t face) {
         std::sort(segments_.data() + first_on_[face], segments_.data() + first_on_[face + 1],
                   before);
@@ -250,30 +238,7 @@ private:
 
     /// Links the segments on a face that only one side draws to loops. At each vertex as many of
     /// these segments begin as end.
-    void find_gaps(NodeKey face, const Owner& owner) {
-        std::vector<Segment> left;
-        const Index number = *face_number_.find(face);
-        sort_segments(number);
-        const std::span<const Segment> all = segments_on(number);
-        for (const Segment& s : all) {
-            if (!std::binary_search(all.begin(), all.end(), Segment{face, s.to, s.from}, before)) {
-                if (left.empty() || !(left.back() == s)) left.push_back(s);
-            }
-        }
-        while (!left.empty()) {
-            Gap gap{{}, owner};
-            const Index start = left.back().from;
-            for (Index at = start; gap.loop.empty() || at != start;) {
-                const auto next = std::find_if(left.begin(), left.end(),
-                                               [&](const Segment& s) { return s.from == at; });
-                if (next == left.end()) break;
-                gap.loop.push_back(at);
-                at = next->to;
-                left.erase(next);
-            }
-            if (gap.loop.size() > 2) gaps_.push_back(std::move(gap));
-        }
-    }
+    void find_gaps(NodeKey face, const Owner& owner);
 
     std::vector<Segment> segments_;
     std::vector<Gap> gaps_;
@@ -290,6 +255,8 @@ private:
     std::vector<Index> place_;
     std::vector<Segment> grouped_;
     KeyFilter faces_;  // hashes of the faces in face_number_
+    const SharedNodes* shared_ = nullptr;
+    KeyTable<NodeKey, Corners> shared_parts_;  // by the key of a face or edge
 };
 
 }  // namespace nestgrid::engine

@@ -104,6 +104,7 @@ module nestgrid
         type(c_funptr) :: node_positions = c_null_funptr
         type(c_funptr) :: last_error = c_null_funptr
         type(c_funptr) :: hanging_parents = c_null_funptr
+        type(c_funptr) :: presence = c_null_funptr
     end type nestgrid_grid
 
     type, bind(c) :: nestgrid_field

@@ -3,6 +3,8 @@
 #include <nestgrid/algorithms/indicator.hpp>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
 
 #include <indicators/lattice_deviations.hpp>
@@ -11,6 +13,8 @@
 #include <indicators/stars.hpp>
 #include <indicators/update.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 #include <walk/crossing_nodes.hpp>
 #include <walk/hanging_nodes.hpp>
 #include <walk/unusable_values.hpp>
@@ -45,6 +49,30 @@ void PrerollFacts::refuse(double value) {
 }
 
 }  // namespace detail
+
+namespace {
+
+/// Takes the facts of all ranks together.
+void agree(detail::PrerollFacts& facts, Ranks& ranks) {
+    // A node may be made on different levels on two ranks.
+    facts.one_level_a_node = false;
+    double least = -facts.least;
+    auto largest_split = static_cast<double>(facts.largest_split);
+    auto finest_level = static_cast<double>(facts.finest_level);
+    auto longest_chain = static_cast<double>(facts.longest_chain);
+    double not_divided = facts.all_divided ? 0 : 1;
+    std::array<double*, 7> greatest{&least,         &facts.greatest, &facts.hanging_violation,
+                                    &largest_split, &finest_level,   &longest_chain,
+                                    &not_divided};
+    engine::take_greatest(ranks, greatest);
+    facts.least = -least;
+    facts.largest_split = static_cast<std::size_t>(largest_split);
+    facts.finest_level = static_cast<int>(finest_level);
+    facts.longest_chain = static_cast<int>(longest_chain);
+    facts.all_divided = not_divided == 0;
+}
+
+}  // namespace
 
 bool ChangedBox::operator()(std::span<const Point> points) const {
     Point least = points.front();
@@ -90,12 +118,20 @@ HierarchicalIndicator::HierarchicalIndicator(const Hierarchy<double>& hierarchy,
 template <class Real>
 void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
                                     const Executor& executor) {
-    engine::require_spread(spread_);
+    const engine::SharedNodes* const shared = hierarchy.facts().shared;
+    engine::together(shared, "a preroll of offsets", [&] {
+        engine::require_spread(spread_);
+        if (shared != nullptr) {
+            engine::require_same_state(hierarchy);
+            engine::require_preroll_on_ranks(static_cast<bool>(leaf_errors), error_, spread_);
+        }
+    });
     epoch_ = hierarchy.epoch();
     roundoff_ = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
     own_errors_ = static_cast<bool>(leaf_errors);
     hanging_ = engine::find_hanging_nodes(hierarchy);
-    engine::with_places(hierarchy, [&] {
+    std::optional<engine::Sweeps> sweeps;
+    const auto walk_all = [&] {
         const bool measures = spread_.slope > 0;
         const bool deviations = error_ == NodeError::deviation;
         const bool plain = spread_.factor == 1 && !measures && !own_errors_ && !deviations;
@@ -111,18 +147,24 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
             return;
         }
         const engine::Walk<Real> walk(
-            hierarchy, {.values = true, .keys = true, .positions = measures}, hanging());
+            hierarchy, {.values = true, .keys = true, .positions = measures, .on_ranks = true},
+            hanging());
         const engine::MadeOf made_of = deviations    ? engine::MadeOf::deviations
                                        : own_errors_ ? engine::MadeOf::leaf_errors
                                                      : engine::MadeOf::offsets;
-        engine::Sweeps sweeps(hierarchy.facts().node_count, made_of, spread_);
-        facts_ = engine::walk_preroll(walk, {&leaf_errors, measures, deviations}, sweeps, executor);
-        sweeps.saturate();
-        // No element above a crossing node stops, whatever its level.
-        facts_.one_level_a_node = sweeps.one_level_a_node() && hanging_.crossing() == nullptr;
-        node_count_ = sweeps.node_count();
-        sweeps.store(entries_);
-    });
+        sweeps.emplace(hierarchy.facts().node_count, made_of, spread_);
+        facts_ =
+            engine::walk_preroll(walk, {&leaf_errors, measures, deviations}, *sweeps, executor);
+    };
+    engine::together(shared, "a preroll of offsets",
+                     [&] { engine::with_places(hierarchy, walk_all); });
+    if (!sweeps) return;
+    sweeps->saturate(shared);
+    // No element above a crossing node stops, whatever its level.
+    facts_.one_level_a_node = sweeps->one_level_a_node() && hanging_.crossing() == nullptr;
+    if (shared != nullptr) agree(facts_, shared->ranks());
+    node_count_ = sweeps->node_count();
+    sweeps->store(entries_);
 }
 
 template <class Real>

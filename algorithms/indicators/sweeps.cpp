@@ -29,11 +29,36 @@ void Sweeps::raise(NodeKey key, const Entry& known) {
     node.finer = std::max(node.finer, known.bound);
 }
 
-void Sweeps::saturate() {
+void Sweeps::sweep_all() {
     sweep(splits_, one_level_ && one_step_,
           [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
               return sweep_split(rule, of, reach);
           });
+}
+
+/// Raises shared nodes to the greatest numbers that any rank has for them.
+/// \return whether some rank was told more than it knew
+bool Sweeps::raise_across(const SharedNodes& shared) {
+    const auto at = [&](NodeKey key) -> Node& { return nodes_[numbers({&key, 1}).front()]; };
+    return shared.raise<2>(
+        [&](NodeKey key) {
+            const Node& node = at(key);
+            return std::array<std::uint16_t, 2>{node.entry.stop, node.finer};
+        },
+        [&](NodeKey key, const std::array<std::uint16_t, 2>& told) {
+            Node& node = at(key);
+            const bool raises = node.entry.stop < told[0] || node.finer < told[1];
+            node.entry.stop = std::max(node.entry.stop, told[0]);
+            node.finer = std::max(node.finer, told[1]);
+            return raises;
+        });
+}
+
+/// The numbers are the least fixed point of maxima that only grow, whatever the order in which
+/// ranks sweep.
+void Sweeps::saturate(const SharedNodes* shared) {
+    sweep_all();
+    while (shared != nullptr && raise_across(*shared)) sweep_all();
     if (made_of_ == MadeOf::deviations) return;
     for (Node& node : nodes_) node.entry.bound = std::max(node.entry.bound, node.bound());
 }
@@ -56,10 +81,12 @@ inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> o
         return changed;
     };
     Below greatest;
-    const bool changed = raise_parents(rule, of, of_node, hand, raise, greatest);
+    bool changed = raise_parents(rule, of, of_node, hand, raise, greatest);
     if (rule.inside != no_new_node) {
         Entry& within =
             nodes_[of[static_cast<std::size_t>(rule.corner_count()) + rule.inside]].entry;
+        // It may have parents in the same split, to which it hands the greatest number on.
+        changed |= rule.steps > 1 && within.stop < greatest.stop;
         within.stop = std::max(within.stop, greatest.stop);
         within.bound = std::max(within.bound, greatest.bound);
     }

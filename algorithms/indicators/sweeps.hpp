@@ -14,6 +14,7 @@
 #include <indicators/fine_to_coarse.hpp>
 #include <indicators/path_deviations.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
+#include <ranks/shared_nodes.hpp>
 
 namespace nestgrid::engine {
 
@@ -55,8 +56,10 @@ public:
     /// A node whose numbers are known to be at least these.
     void raise(NodeKey node, const detail::IndicatorEntry& known);
 
-    /// Completes the entries. To be called when all splits are known.
-    void saturate();
+    /// Completes the entries. To be called when all splits are known. Collective where nodes are
+    /// shared.
+    /// \param shared the nodes that other ranks have, too, or null
+    void saturate(const SharedNodes* shared = nullptr);
 
     std::size_t node_count() const { return nodes_.size(); }
     /// Whether each node was created on one level only.
@@ -99,6 +102,8 @@ private:
             return {std::max(a.stop, b.stop), std::max(a.bound, b.bound)};
         }
     };
+    void sweep_all();
+    bool raise_across(const SharedNodes& shared);
     bool sweep_split(const Rule& rule, std::span<const std::size_t> of, float reach);
 
     NodeNumbers number_of_;

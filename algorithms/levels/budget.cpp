@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <optional>
+
 #include <levels/draw.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid {
 
@@ -56,9 +60,18 @@ template <int dimension, class Real>
 Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
                         const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
                         const Executor& executor) {
-    hierarchy.facts().require_dimension(dimension);
-    const auto levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
-    return engine::criterion_for<dimension>(levels, indicator, options, executor);
+    const engine::SharedNodes* const shared = hierarchy.facts().shared;
+    std::optional<Threshold> criterion;
+    engine::together(shared, "isosurfaces", [&] {
+        hierarchy.facts().require_dimension(dimension);
+        if (shared != nullptr && options.max_triangles != 0) {
+            engine::refuse_on_ranks("a number of triangles");
+        }
+        const auto levels =
+            engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
+        criterion = engine::criterion_for<dimension>(levels, indicator, options, executor);
+    });
+    return *criterion;
 }
 
 #define NESTGRID_INSTANTIATE(dimension, Real)                                                      \

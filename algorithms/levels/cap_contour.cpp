@@ -62,7 +62,8 @@ template <int dimension, class Real>
 NodeKey CapContour<dimension, Real>::edge_key(std::uint8_t edge) const {
     FaceKey key;
     if (const auto* maximal = cuts_->view().closed.edge(edge)) {
-        for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) key.add_corner(maximal->key(end));
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
+            key.add_corner(maximal->key(end));
     } else {
         const auto& ends = cuts_->view().topology().edge[edge];
         for (const std::uint8_t end : ends) key.add_corner(cuts_->keys()[end]);
@@ -90,7 +91,8 @@ void CapContour<dimension, Real>::record_side(const FaceTopology& face, const Po
         const std::uint8_t corner = face.corner[polygon.corner[end].from];
         const NodeKey key = cuts_->keys()[corner];
         const Number vertex = record.vertex({key, key}, [&] { return cuts_->node(corner); });
-        record.record(edge_key(edge), vertex, vertex);
+        const auto* const around = cuts_->view().closed.edge(edge);
+        record.record_on_edge(edge_key(edge), {around->key(0), around->key(1)}, vertex);
     }
 }
 

@@ -4,12 +4,13 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/error.hpp>
-
-#include <walk/unusable_values.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid {
 
@@ -170,21 +171,31 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
                                                const Executor& executor) {
     using Drawing = LevelSet<dimension, Real>;
     const std::size_t count = levels.levels.size();
-    require_sound(*levels.hierarchy, criterion, bounds);
-    require_options<dimension>(options);
-    require_targets(targets, count, options);
+    const SharedNodes* const shared = levels.hierarchy->facts().shared;
+    std::optional<Walk<Real>> walk_here;
+    const auto asked = [&] { return asked_for<Real>(levels.levels, criterion, options); };
+    together(shared, asked, [&] {
+        if (shared != nullptr) {
+            require_same_state(*levels.hierarchy);
+            require_drawn_on_ranks(criterion, bounds, options, levels.functions != nullptr);
+        }
+        require_sound(*levels.hierarchy, criterion, bounds);
+        require_options<dimension>(options);
+        require_targets(targets, count, options);
+        Needs needs = Drawing::needs;
+        needs.on_ranks = true;
+        walk_here.emplace(*levels.hierarchy, needs, bounds.hanging(), levels.functions);
+    });
+    const Walk<Real>& walk = *walk_here;
     std::vector<Surface<dimension>> chunks(count);
     for (Surface<dimension>& chunk : chunks) chunk.elements = levels.hierarchy->make_elements();
     const auto builders = make_builders(targets, chunks, options);
-    const Walk<Real> walk(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
     const LevelSearch<Real> search(walk, levels.levels, criterion, bounds);
     Drawing drawing(walk, search, builders, options, levels.first_attribute);
-    const auto run = [&] {
-        const bool stopped = run_until_cancelled(drawing, executor);
-        drawing.flush();
-        return stopped;
-    };
-    const bool cancelled = with_places(*levels.hierarchy, run, walk.function_count());
+    const bool cancelled = run_until_cancelled(drawing, executor);
+    // Of a walk that went to its end, nothing is left to flush.
+    together(cancelled ? shared : nullptr, "isosurfaces", [&] { drawing.flush(); });
+    if (shared != nullptr) drawing.agree(shared->ranks());
     std::vector<Isosurface<dimension>> results(count);
     for (std::size_t i = 0; i < count; ++i) {
         drawing.report(i, results[i]);
@@ -209,8 +220,10 @@ std::vector<Isosurface<dimension>> draw_isosurfaces(
     const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
     const SurfaceTargets<dimension>& targets, const Criterion& criterion, const Bounds& bounds,
     const IsosurfaceOptions& options, const Executor& executor) {
-    return engine::draw_levels<dimension>(engine::isosurface_levels(hierarchy, isovalues), targets,
-                                          criterion, bounds, options, executor);
+    engine::Levels<Real> levels{&hierarchy, {}};
+    engine::together(hierarchy.facts().shared, "isosurfaces",
+                     [&] { levels = engine::isosurface_levels(hierarchy, isovalues); });
+    return engine::draw_levels<dimension>(levels, targets, criterion, bounds, options, executor);
 }
 
 }  // namespace detail

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include <ranks/shared_nodes.hpp>
+
 namespace nestgrid::engine {
 
 namespace {
@@ -46,6 +48,9 @@ template <class Real>
 bool may_stop_apart(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
                     const Bounds& bounds) {
     if (hierarchy.offers(Feature::constrained) || bounds.hanging() != nullptr) return true;
+    if (const SharedNodes* shared = hierarchy.facts().shared; shared != nullptr) {
+        if (shared->any_hangs()) return true;
+    }
     if (criterion.never_holds()) return false;
     return hierarchy.offers(Feature::hidden) || !bounds.stops_conform();
 }

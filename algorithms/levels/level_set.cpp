@@ -7,6 +7,8 @@
 #include <limits>
 
 #include <levels/error_bound.hpp>
+#include <ranks/agreement.hpp>
+#include <walk/unusable_values.hpp>
 
 namespace nestgrid::engine {
 
@@ -40,6 +42,7 @@ LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Re
     for (const Builder& builder : builders) surfaces_.emplace_back(builder, keys);
     for (Transitions& t : transitions_) {
         t.record.begin(at_hand_.cuts.attribute_count(), walk.hierarchy().make_elements());
+        t.record.share(walk.hierarchy().facts().shared);
     }
     begin(search, builders);
 }
@@ -133,20 +136,66 @@ bool LevelSet<dimension, Real>::bisects_slices() const {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::run(const Executor& executor) {
-    find_hidden_faces();
-    walk(executor);
-    if (walks_.is_recording()) {
-        walks_.finish();
-        counts_of_first_walk_ = counts_;
-        restart();
-        tally_.begin_later();
-        for (Transitions& t : transitions_) t.record.finish();
+    const SharedNodes* const shared = walk_->hierarchy().facts().shared;
+    const auto alone = [&](const auto& part) {
+        together(shared, "isosurfaces",
+                 [&] { with_places(walk_->hierarchy(), part, walk_->function_count()); });
+    };
+    const bool records = walks_.is_recording();
+    alone([&] {
+        find_hidden_faces();
         walk(executor);
+    });
+    for (Transitions& t : transitions_) {
+        if (records && shared != nullptr) t.record.exchange();
     }
+    alone([&] {
+        if (records) {
+            finish_first_walk();
+            walk(executor);
+        }
+        finish();
+    });
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::finish_first_walk() {
+    walks_.finish();
+    counts_of_first_walk_ = counts_;
+    restart();
+    tally_.begin_later();
+    for (Transitions& t : transitions_) t.record.finish();
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::finish() {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         fill_gaps(i);
         surfaces_[i].builder().flush();
         surfaces_[i].finish(options_->at_nodes && !surfaces_[i].counts_only());
+    }
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::agree(Ranks& ranks) {
+    for (LevelSurface<dimension>& surface : surfaces_) {
+        double error = surface.error_bound();
+        double off_level = surface.off_level();
+        double leaf_error = surface.leaf_error();
+        std::array<double*, 3> greatest{&error, &off_level, &leaf_error};
+        take_greatest(ranks, greatest);
+        surface.raise_error_bound(error);
+        surface.raise_off_level(off_level);
+        surface.raise_leaf_error(leaf_error);
+        std::uint64_t extracted = surface.extracted();
+        ranks.reduce(std::span(&extracted, 1), Ranks::Reduction::sum);
+        surface.add_extracted(extracted - surface.extracted());
+    }
+    for (TraversalCounts* counts : {&counts_, &counts_of_first_walk_}) {
+        std::array<std::uint64_t, 2> sums{counts->calls, counts->visited};
+        ranks.reduce(sums, Ranks::Reduction::sum);
+        counts->calls = sums[0];
+        counts->visited = sums[1];
     }
 }
 
@@ -184,11 +233,13 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
 
 template <int dimension, class Real>
 Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
-    ++counts_.calls;
+    // Ranks that have parts of one element all visit it; that with its first leaf counts it.
+    counted_ = view.member->presence == Presence::partly ? 0 : 1;
+    counts_.calls += counted_;
     if ((counts_.calls & 0xFFFFU) == 0) report_progress(0, 0);
     if (view.father == nullptr && !walks_.enters(view)) return {Visit::skip, 0};
     const Decision decision = look(view, split);
-    counts_.visited += decision.visit != Visit::skip;
+    if (decision.visit != Visit::skip) counts_.visited += counted_;
     return decision;
 }
 
@@ -209,8 +260,8 @@ Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::undo() {
-    --counts_.calls;
-    --counts_.visited;
+    counts_.calls -= counted_;
+    counts_.visited -= counted_;
 }
 
 /// Leaves out leaves that would only record and around which nothing is closed. With caps, inspects

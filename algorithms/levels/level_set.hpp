@@ -14,6 +14,7 @@
 #include <levels/patch_level_set.hpp>
 #include <levels/transitions.hpp>
 #include <levels/two_walks.hpp>
+#include <nestgrid/algorithms/ranks.hpp>
 #include <walk/frontier.hpp>
 
 namespace nestgrid::engine {
@@ -39,13 +40,15 @@ public:
     /// \param most run() throws OverLimit where there are more
     void count_only(std::uint64_t most);
 
-    /// Draws everything.
+    /// Draws everything. Collective where the grid is distributed.
     /// \throw Cancelled, OverLimit, and what the grid, the field and the sinks throw
     void run(const Executor& executor);
     /// Hands all that is drawn to the sinks, also where a walk was cancelled.
     void flush();
     /// Number of simplices drawn so far.
     std::uint64_t simplices() const { return tally_.drawn(); }
+    /// Takes the counts and bounds of all ranks together, after run(). Collective.
+    void agree(Ranks& ranks);
     /// Sets counts, error bound and memory in the result of level i.
     void report(std::size_t i, Isosurface<dimension>& result) const;
 
@@ -69,6 +72,8 @@ private:
 
     void join(const LevelSet& leader);
     void walk(const Executor& executor);
+    void finish_first_walk();
+    void finish();
     void extract(std::size_t level, const View& view, unsigned inside, unsigned boundary,
                  bool draws);
     void record(std::size_t level, unsigned inside, unsigned boundary);
@@ -135,6 +140,7 @@ private:
     AtHand at_hand_;
     TraversalCounts counts_;
     TraversalCounts counts_of_first_walk_;
+    std::uint64_t counted_ = 1;  // by the last inspect(): 0 where another rank counts the element
     int deepest_ = 0;
     bool bisects_ = false;  // takes() walks bisections in patches
     bool finest_ = false;   // edges are cut on their finest pieces

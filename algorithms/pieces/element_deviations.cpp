@@ -9,6 +9,7 @@
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <pieces/corner_values.hpp>
+#include <projection/made_for_ranks.hpp>
 
 namespace nestgrid {
 
@@ -37,7 +38,9 @@ struct At {
 class Leaves {
 public:
     explicit Leaves(const DiscontinuousData& data)
-        : grid_{&data.grid()}, values_(data), task_{grid_->open()} {}
+        : grid_{&data.grid()}, values_(data), task_{grid_->open()} {
+        engine::require_whole_grid(*grid_);
+    }
 
     template <class Visit>
     void for_each_coarse(const Visit& visit) {

@@ -4,6 +4,7 @@
 
 #include <nestgrid/detail/hanging.hpp>
 #include <nestgrid/hierarchy.hpp>
+#include <ranks/shared_nodes.hpp>
 #include <walk/walk.hpp>
 
 namespace nestgrid::engine {
@@ -60,6 +61,7 @@ void find_unseen_nodes(const Hierarchy<Real>& hierarchy, HangingNodes& nodes);
 /// \throw GridError as derive_hanging_nodes()
 template <class Real>
 HangingNodes find_hanging_nodes(const Hierarchy<Real>& hierarchy) {
+    if (hierarchy.facts().shared != nullptr) return hierarchy.facts().shared->hanging();
     HangingNodes nodes;
     if (hanging_nodes_unknown(hierarchy)) nodes = derive_hanging_nodes(hierarchy);
     if (hierarchy.offers(Feature::hidden)) find_unseen_nodes(hierarchy, nodes);

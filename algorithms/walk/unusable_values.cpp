@@ -23,7 +23,8 @@ template <class Real>
 void refuse_with_place(const Hierarchy<Real>& hierarchy, std::size_t functions,
                        const UnusableValue& refusal) {
     const HangingNodes hanging = find_hanging_nodes(hierarchy);
-    const Walk<Real> walk(hierarchy, {.values = true, .keys = true, .positions = true}, &hanging);
+    const Walk<Real> walk(
+        hierarchy, {.values = true, .keys = true, .positions = true, .on_ranks = true}, &hanging);
     const auto components = static_cast<std::size_t>(hierarchy.facts().components);
     for_each_element(walk, false, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule != nullptr || view.member->hidden == Hidden::wholly) return;

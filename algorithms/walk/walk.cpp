@@ -10,6 +10,8 @@
 #include <nestgrid/detail/coarse_boundary.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/far_values.hpp>
 #include <walk/crossing_nodes.hpp>
 
 namespace nestgrid::engine {
@@ -84,6 +86,7 @@ Walk<Real>::Walk(const Hierarchy<Real>& hierarchy, const Needs& needs, const Han
       carries_keys_{needs.keys && !own_keys_},
       carries_positions_{needs.positions && !own_positions_},
       carries_placed_{needs.placed && new_positions_} {
+    if (hierarchy.offers(Feature::presence)) require_made_for_parts(hierarchy, needs.on_ranks);
     if (!boundary_faces_) boundary_ = detail::coarse_boundary(hierarchy);
     if (hanging != nullptr && hanging->crossing() != nullptr) {
         fixed_ = std::make_unique<FixedNodes<Real>>(hierarchy, *hanging->crossing(), needs.values,
@@ -174,8 +177,13 @@ void Walk<Real>::put_coarse_values(View& view) const {
     const std::size_t corners = view.corner_count();
     Stack& stack = *view.stack;
     Real* const value = with_room(stack.value, corners * components_);
-    const NodeMask missing =
-        hierarchy_->coarse_values(stack.task.get(), view.coarse, corners, value);
+    NodeMask missing = hierarchy_->coarse_values(stack.task.get(), view.coarse, corners, value);
+    if (missing != 0 && hierarchy_->facts().far_values != nullptr) {
+        std::array<NodeKey, max_corners> keys;
+        this->corners(view, keys.data(), nullptr);
+        missing =
+            hierarchy_->facts().far_values->give(std::span(keys).first(corners), missing, value);
+    }
     const NodeMask unseen = unseen_corners(view);
     if ((missing & ~unseen) != 0) throw_missing(missing & ~unseen, view.coarse);
     for (std::size_t k = 0; k < corners; ++k) {
@@ -220,7 +228,8 @@ void Walk<Real>::visit(const View& view, Visitor<Real>& visitor) const {
     if (count > 0) decision = visitor.inspect(view, split);
     if (decision.visit == Visit::skip) return;
     if (decision.visit == Visit::stop && member.hidden != Hidden::partly) {
-        visitor.extract(view);
+        // Else the rank draws it that has its first leaf.
+        if (member.presence != Presence::partly) visitor.extract(view);
     } else {
         descend(view, split, decision, visitor);
     }
@@ -278,8 +287,12 @@ void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, No
     Real* const value = with_room(frame.value, (corners + rule.new_nodes.size()) * stride);
     if (needs_.values) std::copy_n(view.value, corners * stride, value);
     const NodeMask which = needs_.values ? rule.all() & ~(mean | split.crossing) : NodeMask{0};
-    const NodeMask missing = hierarchy_->enter(view.stack->task.get(), view.element(), rule, which,
-                                               value, wanted, frame.family);
+    NodeMask missing = hierarchy_->enter(view.stack->task.get(), view.element(), rule, which, value,
+                                         wanted, frame.family);
+    if ((missing & which) != 0 && hierarchy_->facts().far_values != nullptr) {
+        missing = hierarchy_->facts().far_values->give(split.keys, missing & which,
+                                                       value + corners * stride);
+    }
     if ((missing & which) != 0) throw_missing(missing & which, view);
     if (!needs_.values) return;
     if (split.crossing != 0) fixed_->put_values(split, value + corners * stride);

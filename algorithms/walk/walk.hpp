@@ -40,6 +40,7 @@ struct Needs {
     bool positions = false;  ///< positions by Walk::corners()
     bool closed = false;     ///< closed edges and faces; needs the other three
     bool placed = false;     ///< true positions by Walk::placed_corners(); needs `positions`
+    bool on_ranks = false;   ///< the caller is made for the part of a grid that one rank has
 };
 
 /// The nodes of one split, and the children.
@@ -85,7 +86,9 @@ public:
     /// \param hanging nodes that hang, where the grid does not say so itself; may be null
     /// \param functions that the walk sets the first components to, where the hierarchy leaves
     ///        them undefined (WidenedHierarchy); or null. The walk must carry values and positions.
-    /// \throw GridError where a coarse element has a shape of another dimension than the grid
+    ///
+    /// \throw GridError where a coarse element has a shape of another dimension than the grid, and
+    ///        as require_whole_grid() unless needs.on_ranks says otherwise
     Walk(const Hierarchy<Real>& hierarchy, const Needs& needs,
          const HangingNodes* hanging = nullptr, const PositionFunctions* functions = nullptr);
 

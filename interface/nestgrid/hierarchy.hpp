@@ -30,6 +30,11 @@
 
 namespace nestgrid {
 
+namespace engine {
+class FarValues;
+class SharedNodes;
+}  // namespace engine
+
 /// The grid's own state of one task: a rebuilt entity, a cache. Used by one thread at a time.
 class Task {
 public:
@@ -44,10 +49,11 @@ struct Member {
     NodeMask outside = 0;         ///< new nodes at which no element may stop
     std::uint32_t first_key = 0;  ///< in Family::keys, where the grid has keys of its own
     Hidden hidden = Hidden::not_at_all;
+    Presence presence = Presence::here;
 };
 
 /// The children of one element, or one coarse element. Members that are neither split nor leaves
-/// are masked, or were not asked for; nothing of them is set but the handle.
+/// are masked, elsewhere, or were not asked for; nothing of them is set but handle and presence.
 struct Family {
     std::vector<Member> members;
     NodeMask split = 0;         ///< members that are split, one bit each
@@ -91,10 +97,15 @@ struct HierarchyFacts {
     bool fills_rows = false;            ///< every node is in a star row
     bool decodes = false;               ///< values at new nodes need those at the corners
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
+    /// What this process shares with others, where the grid and the field are distributed.
+    const engine::SharedNodes* shared = nullptr;
+    const engine::FarValues* far_values = nullptr;
 
     bool offers(Feature feature) const { return (features & static_cast<unsigned>(feature)) != 0; }
     /// \throw InvalidInput where the dimension is another one
     void require_dimension(int wanted) const;
+    /// Drops what only a grid that is on one process can promise, where parts may be elsewhere.
+    void drop_promises_of_whole_grids();
 };
 
 namespace detail {

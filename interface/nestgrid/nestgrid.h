@@ -125,7 +125,7 @@ typedef struct nestgrid_grid {
      * and the tag t - 1, or dimension after 1; the second one is mirrored where t is odd. Those of
      * the tag dimension are split dimension times over, into elements of which all are split or
      * none. corner_keys, new_keys, corner_positions and boundary_faces are there too, `conforming`
-     * is not 0, and masked, hidden and outside are NULL. */
+     * is not 0, and masked, hidden, outside and presence are NULL. */
     /* the node halfway between a[i] and b[i], the corners 0 and t of an element in either order, or
      * NESTGRID_NO_NODE where it is not split; out may be a */
     int (*middles)(const void* self, size_t count, const uint64_t* a, const uint64_t* b,
@@ -141,6 +141,10 @@ typedef struct nestgrid_grid {
     /* Optional, with corner_keys and new_keys: the keys of the nodes in whose middle a node hangs
      * on an edge of a leaf, or twice its own key (hanging_parents in optional.hpp). */
     int (*hanging_parents)(const void* self, uint64_t node, uint64_t out[2]);
+
+    /* Optional, where the grid is distributed: which leaves below e this process has. *which: 0
+     * for all, 1 for some and the first one, 2 for some others, 3 for none. */
+    int (*presence)(const void* self, void* context, const nestgrid_element* e, int* which);
 } nestgrid_grid;
 
 /** The questions to a field. Values are float or double as value_type says; component c of node n

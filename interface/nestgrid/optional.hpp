@@ -28,6 +28,9 @@
 //         whether e and what lies below it is shown. Nothing depends on values at nodes of hidden
 //         leaves alone: they are interpolated, on the coarse grid 0. No element that is hidden in
 //         part stops, and hidden leaves constrain no node
+//     Presence presence(e)
+//         which leaves below e this process has, where the grid is distributed; default: all. What
+//         lies below an element that is elsewhere is never asked for. No leaf is here in part
 //     NodeMask outside(e)
 //         new nodes at which no element may stop because only deeper elements end at the boundary
 //         of the domain; saturated like an infinite indicator
@@ -96,10 +99,19 @@ enum class Feature : unsigned {
     gradients = 256,
     hidden = 512,
     hanging_parents = 1024,
+    presence = 2048,
 };
-inline constexpr Feature last_feature = Feature::hanging_parents;
+inline constexpr Feature last_feature = Feature::presence;
 
 /// Whether an element is drawn.
 enum class Hidden : std::uint8_t { not_at_all, partly, wholly };
+
+/// Which leaves below an element this process has.
+enum class Presence : std::uint8_t {
+    here,          ///< all
+    partly_first,  ///< some, among them the first one in the order of children
+    partly,        ///< some, but not the first one
+    elsewhere,     ///< none
+};
 
 }  // namespace nestgrid

@@ -12,6 +12,16 @@ void HierarchyFacts::require_dimension(int wanted) const {
                        std::to_string(wanted));
 }
 
+void HierarchyFacts::drop_promises_of_whole_grids() {
+    knows_stars = knows_star_positions = fills_rows = false;
+    knows_patches = bisects_means = gradients_at_nodes = false;
+    if (shared == nullptr) return;
+    // Which nodes hang depends on leaves elsewhere, and dense keys count the nodes of all.
+    features &=
+        ~(static_cast<unsigned>(Feature::constrained) | static_cast<unsigned>(Feature::dense_keys));
+    node_count = 0;
+}
+
 namespace detail {
 
 void throw_too_many_children(const Rule& rule, std::size_t most) {

@@ -276,12 +276,20 @@ TEST(P4estGrid, RefusesWhatItCannotRead) {
 }
 
 /// On several processes (tests/adapters/CMakeLists.txt runs it on two) no leaf of another one is
-/// asked for; alone, the forest is told that there are others.
-TEST(P4estGrid, RefusesADistributedForest) {
+/// asked for; alone, the forest is told that there are others. p4est_ranks_test draws such forests.
+TEST(P4estGrid, RefusesADistributedForestWithoutRanks) {
     const Forest<3> forest(p8est_connectivity_new_brick(2, 2, 2, 0, 0, 0));
     p8est_t part = *forest.get();
-    if (part.mpisize == 1) ++part.global_num_quadrants;
-    expect_refused([&] { P4estGrid<3> grid(&part); }, "the forest is distributed: process");
+    std::array<p8est_quadrant_t, 2> positions{};
+    positions[1].p.which_tree = 7;
+    if (part.mpisize == 1) {
+        ++part.global_num_quadrants;
+        part.global_first_position = positions.data();
+    }
+    const P4estGrid<3> grid(&part);
+    EXPECT_NE(refusal<GridError>([&] { derive_hanging_nodes(grid); })
+                  .find("are on other processes, and the grid does not say how to reach them"),
+              std::string::npos);
 }
 
 }  // namespace

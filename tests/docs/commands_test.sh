@@ -7,6 +7,7 @@
 #                                       its pictures in docs/figures are shown by the same page
 #   cp /usr/share/mricron/templates/... names a volume of the Debian package mricron-data
 #   build/release/docs/examples/figures is run, and makes a figure that the same page shows
+#   mpirun -n N build/release/...       likewise, as the next
 #   other programs of build/release     are programs of this build, with a test or benchmark of their own
 #   build/python/bin/python SCRIPT      is run with the package of this build, if there is one and a
 #                                       display, and makes a figure that the same page shows,
@@ -143,6 +144,7 @@ check() {
     case "$1" in
     nestgrid) nestgrid "${@:2}" ;;
     cp) [ "$2 $3" = "/usr/share/mricron/templates/ch2bet.nii.gz brain.nii.gz" ] || fail "$page: '$*'" ;;
+    mpirun) check "${@:4}" ;;
     doxygen) [ "$2" = docs/reference/Doxyfile ] || fail "$page: '$*' is tested by nothing" ;;
     build/python/bin/python) python "${@:2}" ;;
     build/release/docs/examples/figures) figure "$2" "$3" ;;

@@ -43,6 +43,7 @@ HierarchyFacts facts_of_grid(const Grid& grid) {
     if constexpr (requires { grid.conforming(); }) facts.conforming = grid.conforming();
     if constexpr (requires { grid.whole(); }) facts.fills_rows = grid.whole();
     facts.only_shape = only_shape<Grid>();
+    if constexpr (requires { grid.shared_nodes(); }) facts.shared = grid.shared_nodes();
     return facts;
 }
 
@@ -52,6 +53,12 @@ void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& 
                      const ElementOf<Grid>& e, Family& family, std::size_t c) {
     Member& member = family.members[c];
     set_handle(member.element, e);
+    if constexpr (may_offer<Grid>(Feature::presence)) {
+        if (facts.offers(Feature::presence)) {
+            member.presence = call_presence(grid, context, e);
+            if (member.presence == Presence::elsewhere) return;
+        }
+    }
     if constexpr (may_offer<Grid>(Feature::masked)) {
         if (facts.offers(Feature::masked) && call_masked(grid, context, e)) return;
     }
@@ -299,6 +306,8 @@ private:
             facts.gradients_at_nodes = facts.knows_patches;
         }
         facts.bisects_means = bisects_means_;
+        if constexpr (requires { field.far_values(); }) facts.far_values = field.far_values();
+        if (facts.offers(Feature::presence)) facts.drop_promises_of_whole_grids();
         return facts;
     }
 

@@ -149,6 +149,19 @@ public:
         }
     }
 
+    /// Probes for nodes inside an edge, a triangle or a quadrilateral of a leaf, whose corners are
+    /// in tensor order.
+    void probe_part(std::span<const NodeKey> k) {
+        if (k.size() == 2) probe_edge(k[0], k[1]);
+        if (k.size() == 3) probe_triangle(k[0], k[1], k[2]);
+        if (k.size() == 4) probe_quadrilateral(k[0], k[1], k[2], k[3]);
+    }
+    /// Whether nodes lie across the line between the middles of 01 and 23 of a quadrilateral, in
+    /// tensor order, that an element elsewhere divides there first.
+    bool crosses(const std::array<NodeKey, 4>& corner) const {
+        return is_crossed(corner, nullptr, nullptr);
+    }
+
     HangingNodes take() { return std::move(hanging_); }
 
     /// The given parents of a node that hangs between them on an edge of a leaf; else null.

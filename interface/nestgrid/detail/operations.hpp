@@ -79,6 +79,8 @@ struct NoContextArgument {
     OPERATION(of_grid, Feature::masked, masked, "bool masked(const Element&) const", bool, C, E)   \
     OPERATION(of_grid, Feature::hidden, hidden, "Hidden hidden(const Element&) const", Hidden, C,  \
               E)                                                                                   \
+    OPERATION(of_grid, Feature::presence, presence, "Presence presence(const Element&) const",     \
+              Presence, C, E)                                                                      \
     OPERATION(of_grid, Feature::outside, outside, "NodeMask outside(const Element&) const",        \
               NodeMask, C, E)                                                                      \
     OPERATION(of_grid, Feature::boundary_faces, boundary_faces,                                    \

@@ -22,12 +22,14 @@ void GridChecker::walk(const State& s) {
     check_rule(s, *rule);
     Frame& frame = this->frame(s.level);
     put_corner_values(s, frame);
-    const NodeMask missing = hierarchy_->enter(task_.get(), s.member->element, *rule, rule->all(),
-                                               frame.value.data(), ~NodeMask{0}, frame.children);
+    const NodeMask missing = values_that_count(
+        frame.value, hierarchy_->enter(task_.get(), s.member->element, *rule, rule->all(),
+                                       frame.value.data(), ~NodeMask{0}, frame.children));
     std::vector<Corner> nodes(s.corner.begin(), s.corner.begin() + topology(s.shape).corners);
     if ((missing & rule->all()) != 0) check_missing(s, *rule, missing, nodes);
     check_new_nodes(s, *rule, std::span(frame.value).subspan(nodes.size() * components_), nodes);
     check_hidden(s);
+    check_presence(s);
     walk_children(s, nodes);
 }
 
@@ -84,6 +86,9 @@ void GridChecker::check_leaf_state(const State& s) {
     if (s.member->hidden == Hidden::partly) {
         fail(Law::hidden, name(s.step) + " is a leaf, but hidden in part");
     }
+    if (s.member->presence != Presence::here) {
+        fail(Law::presence, name(s.step) + " is a leaf, but here in part");
+    }
     if (s.member->hidden == Hidden::wholly) return;
     std::array<NodeKey, max_corners> keys{};
     for (std::size_t k = 0; k < topology(s.shape).corners; ++k) {
@@ -104,6 +109,42 @@ void GridChecker::check_hidden(const State& s) {
                               (hidden == Hidden::wholly ? "hidden, but not" : "not hidden, but") +
                               " all that lies below it");
     }
+}
+
+/// The values at nodes of which no leaf is here come from other processes (DistributedField): where
+/// parts may be elsewhere, no value counts.
+/// \return the nodes without a value
+NodeMask GridChecker::values_that_count(std::span<double> values, NodeMask missing) const {
+    if (!hierarchy_->offers(Feature::presence)) return missing;
+    std::ranges::fill(values, 0.0);
+    return 0;
+}
+
+/// Compares an element that is not elsewhere with its children, which are in its frame.
+void GridChecker::check_presence(const State& s) {
+    const Presence presence = s.member->presence;
+    const Family& children = frame(s.level).children;
+    const std::size_t count = s.member->rule->children.size();
+    std::size_t here = 0;
+    std::size_t elsewhere = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        here += children.members[k].presence == Presence::here ? 1 : 0;
+        elsewhere += children.members[k].presence == Presence::elsewhere ? 1 : 0;
+    }
+    const bool has_first = children.members[0].presence <= Presence::partly_first;
+    const char* wrong = nullptr;
+    if (presence == Presence::here && here < count) {
+        wrong = " is here, but not all that lies below it";
+    } else if (elsewhere == count) {
+        wrong = " is here in part, but all that lies below it is elsewhere";
+    } else if (presence != Presence::here && here == count) {
+        wrong = " is here in part, but all that lies below it is here";
+    } else if (presence == Presence::partly_first && !has_first) {
+        wrong = " has its first leaf here, but its first child has not";
+    } else if (presence == Presence::partly && has_first) {
+        wrong = " does not have its first leaf here, but its first child has";
+    }
+    if (wrong != nullptr) fail(Law::presence, name(s.step) + wrong);
 }
 
 void GridChecker::check_rule(const State& s, const Rule& rule) {

@@ -85,7 +85,8 @@ void GridChecker::walk_coarse(std::size_t i) {
     coarse_ids_.emplace_back(coarse_.ids.begin(), coarse_.ids.begin() + corners);
     if (is_masked(coarse_family_, 0)) return;
     std::vector<double> values(max_corners * components_);
-    const NodeMask missing = hierarchy_->coarse_values(task_.get(), i, corners, values.data());
+    const NodeMask missing = values_that_count(
+        values, hierarchy_->coarse_values(task_.get(), i, corners, values.data()));
     for (std::size_t k = 0; k < corners; ++k) {
         if ((missing >> k & 1U) == 0) continue;
         fail_unless_hidden(s.corner[k].place, Law::value_present,

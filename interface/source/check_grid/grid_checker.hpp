@@ -165,6 +165,8 @@ private:
     bool deviates_from_mean(const Stencil& stencil, const std::vector<Corner>& nodes) const;
     void check_own(const State& s);
     void check_hidden(const State& s);
+    void check_presence(const State& s);
+    NodeMask values_that_count(std::span<double> values, NodeMask missing) const;
     void add_made(const Corner& node, const Stencil& stencil, const std::vector<Corner>& nodes);
 
     // Hanging nodes (check_hanging.cpp).

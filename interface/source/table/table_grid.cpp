@@ -89,6 +89,14 @@ Hidden TableGrid::hidden(const Element& e, TableContext& c) const {
     return static_cast<Hidden>(part);
 }
 
+Presence TableGrid::presence(const Element& e, TableContext& c) const {
+    const int which = ask<int>(table_.presence, "presence", e, c);
+    if (which < 0 || which > 3) {
+        throw GridError("presence gave " + std::to_string(which) + ", not 0, 1, 2 or 3");
+    }
+    return static_cast<Presence>(which);
+}
+
 bool TableGrid::offers(Feature feature) const {
     const bool keys = table_.corner_keys != nullptr && table_.new_keys != nullptr;
     switch (feature) {
@@ -112,6 +120,8 @@ bool TableGrid::offers(Feature feature) const {
             return table_.boundary_faces != nullptr;
         case Feature::hanging_parents:
             return keys && table_.hanging_parents != nullptr;
+        case Feature::presence:
+            return table_.presence != nullptr;
         default:
             return false;
     }
@@ -136,7 +146,8 @@ bool TableGrid::tells_bisections() const {
     return t.middles != nullptr && t.node_keys != nullptr && t.node_positions != nullptr &&
            t.corner_keys != nullptr && t.new_keys != nullptr && t.corner_positions != nullptr &&
            t.boundary_faces != nullptr && t.conforming != 0 && t.constrained == nullptr &&
-           t.masked == nullptr && t.hidden == nullptr && t.outside == nullptr;
+           t.masked == nullptr && t.hidden == nullptr && t.outside == nullptr &&
+           t.presence == nullptr;
 }
 
 void TableGrid::node_keys(std::span<const std::uint64_t> nodes, std::span<NodeKey> out) const {

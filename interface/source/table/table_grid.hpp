@@ -131,6 +131,7 @@ public:
         return ask<int>(table_.masked, "masked", e, c) != 0;
     }
     Hidden hidden(const Element& e, TableContext& c) const;
+    Presence presence(const Element& e, TableContext& c) const;
     NodeMask outside(const Element& e, TableContext& c) const {
         return ask<std::uint64_t>(table_.outside, "outside", e, c);
     }

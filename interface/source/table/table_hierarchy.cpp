@@ -85,6 +85,7 @@ public:
         if (facts.gradients_at_nodes) {
             facts.features |= static_cast<unsigned>(Feature::gradients);
         }
+        if (facts.offers(Feature::presence)) facts.drop_promises_of_whole_grids();
     }
 
     std::size_t coarse_count() const override { return grid_.coarse_count(); }

@@ -230,6 +230,9 @@ private:
         if constexpr (has(Feature::hidden)) {
             if (offered(Feature::hidden)) table.hidden = hidden;
         }
+        if constexpr (has(Feature::presence)) {
+            if (offered(Feature::presence)) table.presence = presence;
+        }
         if constexpr (has(Feature::outside)) {
             if (offered(Feature::outside)) table.outside = outside;
         }
@@ -309,6 +312,13 @@ private:
         return guarded([&] {
             *answer = static_cast<int>(Cross::with(context, [&](auto& ctx) {
                 return nestgrid::detail::call_hidden(grid(self), ctx, Cross::load(e));
+            }));
+        });
+    }
+    static int presence(const void* self, void* context, E e, int* answer) {
+        return guarded([&] {
+            *answer = static_cast<int>(Cross::with(context, [&](auto& ctx) {
+                return nestgrid::detail::call_presence(grid(self), ctx, Cross::load(e));
             }));
         });
     }

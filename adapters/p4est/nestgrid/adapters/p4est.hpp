@@ -6,8 +6,10 @@
 // or not, over any number of trees rotated against each other.
 //
 // Nodes are named by p4est's own coordinates in the first tree that has them, so keys agree on
-// every process. The forest must stay where it is; after it was refined or coarsened, indicators
-// and fields must be made anew (its revision and number of leaves are the grid's epoch).
+// every process; where the forest is distributed, `presence` says which leaves are here, and
+// distributed.hpp reaches the others. The forest must stay where it is; after it was refined or
+// coarsened, indicators and fields must be made anew (its revision and number of leaves are the
+// grid's epoch).
 #pragma once
 
 #include <cmath>
@@ -41,18 +43,21 @@ public:
         std::uint32_t last;   ///< one behind
         std::array<std::int32_t, 3> anchor;
         std::uint8_t level;
+        Presence presence;
     };
 
-    /// \throw InvalidInput where the forest has leaves on other processes, where the connectivity
-    ///        has no vertices (and there is no map) or puts one node at two places, for flat trees,
-    ///        and as P4estTrees
+    /// \throw InvalidInput where the connectivity has no vertices (and there is no map) or puts one
+    ///        node at two places, for flat trees, and as P4estTrees
     explicit P4estGrid(const Forest* forest, Map map = {});
 
     std::size_t coarse_count() const {
         return static_cast<std::size_t>(forest_->connectivity->num_trees);
     }
     CoarseElement<Element> coarse(std::size_t i) const;
-    const Rule* split(const Element& e) const { return e.last - e.first == 1 ? nullptr : rule_; }
+    const Rule* split(const Element& e) const {
+        return e.last - e.first == 1 && e.presence == Presence::here ? nullptr : rule_;
+    }
+    Presence presence(const Element& e) const { return e.presence; }
     void children(const Element& e, std::span<Element> out) const {
         std::uint32_t first = e.first;
         for (unsigned c = 0; c < max_children; ++c) {
@@ -86,20 +91,26 @@ public:
     std::size_t leaf_count() const {
         return static_cast<std::size_t>(forest_->local_num_quadrants);
     }
-    /// Number of a leaf in p4est's order of all leaves.
+    /// Number of a leaf in p4est's order of all leaves here.
     std::size_t leaf_index(const Element& leaf) const {
         return static_cast<std::size_t>(tree(leaf.tree).quadrants_offset) + leaf.first;
     }
     /// p4est's own record of a leaf, with the user's data.
     const Quadrant& quadrant(const Element& leaf) const { return leaf_of(leaf.tree, leaf.first); }
-    /// Number of the leaf in a corner of an element, in p4est's order of all leaves.
+    /// Number of the leaf in a corner of an element, in p4est's order of all leaves here.
+    /// \return no_leaf where that is elsewhere
     std::size_t corner_leaf(Element e, unsigned corner) const {
+        while (e.presence == Presence::partly || e.presence == Presence::partly_first) {
+            e = child(e, corner, bound(e, e.first, corner));
+        }
+        if (e.presence == Presence::elsewhere) return no_leaf;
         if (corner + 1 == max_corners) e.first = e.last - 1;
         while (corner != 0 && e.last - e.first > 1) {
             e = child(e, corner, bound(e, e.first, corner));
         }
         return leaf_index(e);
     }
+    static constexpr std::size_t no_leaf = ~std::size_t{0};
 
 private:
     using Trees = P4estTrees<dim>;
@@ -115,6 +126,7 @@ private:
         return reinterpret_cast<const Quadrant*>(tree(t).quadrants.array)[i];
     }
 
+    Presence find_presence(const Element& e) const;
     static unsigned child_of(const Quadrant& leaf, unsigned bit);
     std::uint32_t bound(const Element& e, std::uint32_t low, unsigned c) const;
     Element child(const Element& e, unsigned c, std::uint32_t first) const;

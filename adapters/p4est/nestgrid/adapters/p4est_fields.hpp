@@ -45,26 +45,37 @@ public:
             throw GridError("the forest has changed since its nodes were numbered");
         }
         const Element e = grid_->coarse(i).element;
-        for (unsigned c = 0; c < corners_; ++c) out[c] = corner_value(e, c);
-        return 0;
+        NodeMask missing = 0;
+        for (unsigned c = 0; c < corners_; ++c) put_corner_value(e, c, c, out, missing);
+        return missing;
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
         const Rule& rule = *grid_->split(e);
         std::array<Element, corners_> children;
         grid_->children(e, children);
+        NodeMask missing = 0;
         for (std::size_t k = 0; k < Grid::max_new_nodes; ++k) {
             if ((which >> k & 1U) == 0) continue;
             const auto [child, corner] = rule.new_corner[k];
-            out[k] = corner_value(children[child], corner);
+            put_corner_value(children[child], corner, k, out, missing);
         }
-        return 0;
+        return missing;
     }
 
 private:
     static constexpr unsigned corners_ = 1U << dim;
 
-    Real corner_value(const Element& e, unsigned corner) const {
+    /// Puts the value at a corner of an element into out[n], unless the leaf there is elsewhere.
+    void put_corner_value(const Element& e, unsigned corner, std::size_t n, std::span<Real> out,
+                          NodeMask& missing) const {
         const std::size_t leaf = grid_->corner_leaf(e, corner);
+        if (leaf == Grid::no_leaf) {
+            missing |= NodeMask{1} << n;
+        } else {
+            out[n] = leaf_value(leaf, corner);
+        }
+    }
+    Real leaf_value(std::size_t leaf, unsigned corner) const {
         const auto at = [&](unsigned c) {
             return values_[static_cast<std::size_t>(nodes_->element_nodes[corners_ * leaf + c])];
         };

@@ -29,12 +29,6 @@ P4estGrid<dim, Map>::P4estGrid(const Forest* forest, Map map)
 template <int dim, class Map>
 const typename P4estTypes<dim>::Connectivity& P4estGrid<dim, Map>::checked(const Forest* forest) {
     if (forest == nullptr) throw InvalidInput("there is no forest");
-    if (forest->local_num_quadrants != forest->global_num_quadrants) {
-        throw InvalidInput("the forest is distributed: process " + std::to_string(forest->mpirank) +
-                           " has " + std::to_string(forest->local_num_quadrants) + " of its " +
-                           std::to_string(forest->global_num_quadrants) +
-                           " leaves; gather it on one process (p4est_partition) first");
-    }
     if (!curved && forest->connectivity->vertices == nullptr) {
         throw InvalidInput(
             "the connectivity of the forest has no vertices; give a map of its trees");
@@ -108,7 +102,9 @@ auto P4estGrid<dim, Map>::coarse(std::size_t i) const -> CoarseElement<Element> 
                  0,
                  static_cast<std::uint32_t>(tree(i).quadrants.elem_count),
                  {},
-                 0};
+                 0,
+                 Presence::here};
+    c.element.presence = find_presence(c.element);
     for (unsigned k = 0; k < max_corners; ++k) {
         const P4estNode node = trees_.canonical(Trees::corner(i, k));
         c.ids[k] = node.tree * std::uint64_t{max_corners} + Trees::corner_number(node);
@@ -131,7 +127,8 @@ unsigned P4estGrid<dim, Map>::child_of(const Quadrant& leaf, unsigned bit) {
 /// The first leaf of an element, from `low` on, in child `c` or a later one.
 template <int dim, class Map>
 std::uint32_t P4estGrid<dim, Map>::bound(const Element& e, std::uint32_t low, unsigned c) const {
-    if (e.last - e.first == max_children) return e.first + c;
+    if (e.last - e.first == max_children && e.presence == Presence::here) return e.first + c;
+    if (low == e.last) return low;
     const auto bit = static_cast<unsigned>(Types::max_level - e.level - 1);
     const std::span<const Quadrant> leaves(&leaf_of(e.tree, low), e.last - low);
     const auto at = std::partition_point(leaves.begin(), leaves.end(), [&](const Quadrant& leaf) {
@@ -144,10 +141,38 @@ template <int dim, class Map>
 auto P4estGrid<dim, Map>::child(const Element& e, unsigned c, std::uint32_t first) const
     -> Element {
     const std::uint32_t last = c + 1 == max_children ? e.last : bound(e, first, c + 1);
-    Element result{e.tree, first, last, e.anchor, static_cast<std::uint8_t>(e.level + 1)};
+    Element result{e.tree,    first, last, e.anchor, static_cast<std::uint8_t>(e.level + 1),
+                   e.presence};
     const std::int32_t half = Trees::length >> result.level;
     for (unsigned d = 0; d < dim; ++d) result.anchor[d] += (c >> d & 1U) != 0 ? half : 0;
+    if (e.presence != Presence::here) result.presence = find_presence(result);
     return result;
+}
+
+/// Which leaves of an element are here, whose range of leaves here is known: the order of leaves is
+/// cut among the processes at known positions.
+template <int dim, class Map>
+Presence P4estGrid<dim, Map>::find_presence(const Element& e) const {
+    if (forest_->local_num_quadrants == forest_->global_num_quadrants) return Presence::here;
+    if (e.first == e.last) return Presence::elsewhere;
+    // Whether a place of the tree, on the deepest level, lies before a position.
+    const auto before = [&](std::int32_t up, const Quadrant& position) {
+        const auto tree = static_cast<std::uint32_t>(position.p.which_tree);
+        if (tree != e.tree) return e.tree < tree;
+        Quadrant at = position;
+        at.level = Types::deepest_level;
+        at.x = e.anchor[0] + up;
+        at.y = e.anchor[1] + up;
+        if constexpr (dim == 3) at.z = e.anchor[2] + up;
+        Quadrant begin = position;
+        begin.level = Types::deepest_level;
+        return Types::compare(&at, &begin) < 0;
+    };
+    const std::int32_t to_last =
+        (Trees::length >> e.level) - (std::int32_t{1} << (Types::max_level - Types::deepest_level));
+    const Quadrant* const mine = forest_->global_first_position + forest_->mpirank;
+    if (before(0, mine[0])) return Presence::partly;
+    return before(to_last, mine[1]) ? Presence::here : Presence::partly_first;
 }
 
 template <int dim, class Map>

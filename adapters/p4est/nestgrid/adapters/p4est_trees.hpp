@@ -20,8 +20,10 @@
 #include <vector>
 
 #include <p4est.h>
+#include <p4est_bits.h>
 #include <p4est_lnodes.h>
 #include <p8est.h>
+#include <p8est_bits.h>
 #include <p8est_lnodes.h>
 
 #include <nestgrid/detail/key_table.hpp>
@@ -38,7 +40,9 @@ struct P4estTypes {
     using Connectivity = p4est_connectivity_t;
     using Nodes = p4est_lnodes_t;
     static constexpr int max_level = P4EST_MAXLEVEL;
+    static constexpr int deepest_level = P4EST_QMAXLEVEL;
 
+    static constexpr auto compare = p4est_quadrant_compare;
     static constexpr auto corner_across_face = p4est_connectivity_face_neighbor_corner;
     static constexpr auto& face_corners = p4est_face_corners;
 };
@@ -52,7 +56,9 @@ struct P4estTypes<3> {
     using Connectivity = p8est_connectivity_t;
     using Nodes = p8est_lnodes_t;
     static constexpr int max_level = P8EST_MAXLEVEL;
+    static constexpr int deepest_level = P8EST_QMAXLEVEL;
 
+    static constexpr auto compare = p8est_quadrant_compare;
     static constexpr auto corner_across_face = p8est_connectivity_face_neighbor_corner;
     static constexpr auto& face_corners = p8est_face_corners;
 };

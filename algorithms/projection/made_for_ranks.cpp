@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <projection/made_for_ranks.hpp>
+
+#include <algorithm>
+#include <array>
+
+#include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/error.hpp>
+#include <ranks/agreement.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+/// The first coarse element of which this process lacks leaves, or their number.
+template <class Real>
+std::size_t find_partly_elsewhere(const Hierarchy<Real>& grid) {
+    const std::unique_ptr<Task> task = grid.open();
+    Coarse coarse;
+    Family family;
+    for (std::size_t i = 0; i < grid.coarse_count(); ++i) {
+        grid.coarse(task.get(), i, coarse, family);
+        if (family.members[0].presence != Presence::here) return i;
+    }
+    return grid.coarse_count();
+}
+
+struct Refused {
+    bool asked;
+    const char* what;
+};
+
+void refuse_first(std::span<const Refused> all) {
+    for (const Refused& each : all) {
+        if (each.asked) refuse_on_ranks(each.what);
+    }
+}
+
+}  // namespace
+
+void refuse_on_ranks(const std::string& what) {
+    throw InvalidInput(what +
+                       " is not made for distributed grids yet (docs/distributed.md says what is): "
+                       "gather the grid on one process, or do without");
+}
+
+template <class Real>
+void require_made_for_parts(const Hierarchy<Real>& hierarchy, bool on_ranks) {
+    if (on_ranks && hierarchy.facts().shared != nullptr) return;
+    if (hierarchy.facts().shared != nullptr) refuse_on_ranks("what is asked for");
+    const std::size_t i = find_partly_elsewhere(hierarchy);
+    if (i == hierarchy.coarse_count()) return;
+    throw GridError(
+        "leaves of coarse element " + std::to_string(i) +
+        " are on other processes, and the grid does not say how to reach them: write 'const "
+        "Distributed grid(mine, ranks);' and 'const DistributedField field(grid, values);' "
+        "(nestgrid/algorithms/distributed.hpp) and draw these");
+}
+
+template <class Real>
+void require_same_state(const Hierarchy<Real>& hierarchy) {
+    if (hierarchy.facts().shared->epoch() == hierarchy.epoch()) return;
+    throw GridError(
+        "the grid has changed since its ranks shared their nodes: make another Distributed of it");
+}
+
+template <class Real>
+void require_drawn_on_ranks(const Hierarchy<Real>& grid) {
+    const std::array refused{
+        Refused{grid.offers(Feature::hidden), "a grid with hidden elements"},
+        Refused{grid.offers(Feature::masked), "a grid with masked elements"},
+        Refused{grid.offers(Feature::outside), "a grid that ends outside its coarse elements"},
+        Refused{grid.offers(Feature::new_positions), "a grid with curved elements"},
+        Refused{grid.offers(Feature::hanging_parents), "a grid with nodes that hang across"},
+    };
+    refuse_first(refused);
+}
+
+void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& spread) {
+    const std::array refused{
+        Refused{leaf_errors, "an indicator of errors of leaves"},
+        Refused{error != NodeError::offset, "an indicator of deviations"},
+        Refused{spread.factor != 1 || spread.slope != 0, "an indicator for blends or lenses"},
+    };
+    refuse_first(refused);
+}
+
+void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
+                            const IsosurfaceOptions& options, bool of_functions) {
+    const auto* const own = dynamic_cast<const HierarchicalIndicator*>(&bounds);
+    const Threshold* const threshold = criterion.as_threshold();
+    const bool on_own = own != nullptr && threshold != nullptr && threshold->indicator() == own;
+    const std::array refused{
+        Refused{of_functions, "a slice"},
+        Refused{own == nullptr, "a surface under other bounds than those of offsets"},
+        Refused{criterion.insists(), "a surface under a criterion that is not saturated"},
+        Refused{!on_own && !criterion.never_holds(),
+                "a surface under another criterion than a threshold on offsets"},
+        Refused{options.max_triangles != 0, "a number of triangles"},
+        Refused{options.normals, "a surface with normals"},
+        Refused{options.reference, "a surface with reference coordinates"},
+        Refused{options.at_nodes, "a surface with vertices at nodes"},
+        Refused{options.cuts != Cuts::linear, "a surface with cuts on the finest pieces"},
+        Refused{options.position_bounds != nullptr, "a bound of positions"},
+    };
+    refuse_first(refused);
+}
+
+template <class Real>
+std::string asked_for(std::span<const Level<Real>> levels, const Criterion& criterion,
+                      const IsosurfaceOptions& options) {
+    std::string asked = "isosurfaces of ";
+    for (const Level<Real>& level : levels) asked += all_digits(level.value) + ", ";
+    const Threshold* const threshold = criterion.as_threshold();
+    asked += "threshold " + (threshold == nullptr ? "none" : all_digits(threshold->epsilon()));
+    return asked + (options.cap ? ", with caps" : "");
+}
+
+template void require_made_for_parts(const Hierarchy<float>&, bool);
+template void require_made_for_parts(const Hierarchy<double>&, bool);
+template void require_same_state(const Hierarchy<float>&);
+template void require_same_state(const Hierarchy<double>&);
+template void require_drawn_on_ranks(const Hierarchy<float>&);
+template void require_drawn_on_ranks(const Hierarchy<double>&);
+template std::string asked_for(std::span<const Level<float>>, const Criterion&,
+                               const IsosurfaceOptions&);
+template std::string asked_for(std::span<const Level<double>>, const Criterion&,
+                               const IsosurfaceOptions&);
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The one place that decides what is drawn on distributed grids, and what is refused. The table in
+// docs/distributed.md says the same.
+//
+// Whatever does not ask here is refused: a walk over a distributed grid must say that it is made
+// for it (Needs::on_ranks).
+#pragma once
+
+#include <string>
+
+#include <contours/level.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
+
+namespace nestgrid::engine {
+
+/// \param what "a slice"
+///
+/// \throw InvalidInput
+[[noreturn]] void refuse_on_ranks(const std::string& what);
+
+/// \throw GridError where elements are elsewhere and the grid has no ranks
+/// \throw InvalidInput where it has, and the walk is not made for them
+template <class Real>
+void require_made_for_parts(const Hierarchy<Real>& hierarchy, bool on_ranks);
+
+/// What looks at elements without a Walk, and is not made for ranks, calls this.
+template <class Real>
+void require_whole_grid(const Hierarchy<Real>& hierarchy) {
+    if (hierarchy.offers(Feature::presence)) require_made_for_parts(hierarchy, false);
+}
+
+/// \throw GridError where the grid has changed since its ranks shared their nodes
+template <class Real>
+void require_same_state(const Hierarchy<Real>& hierarchy);
+
+/// \throw InvalidInput where the grid has operations that are not made for ranks
+template <class Real>
+void require_drawn_on_ranks(const Hierarchy<Real>& grid);
+
+/// Refuses prerolls that are not made for ranks.
+/// \param leaf_errors whether leaves have errors
+///
+/// \throw InvalidInput
+void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& spread);
+
+/// Refuses surfaces that are not made for ranks.
+/// \param of_functions whether levels are those of functions of position
+///
+/// \throw InvalidInput
+void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
+                            const IsosurfaceOptions& options, bool of_functions);
+
+/// What a surface is asked for with, as settle() compares it.
+template <class Real>
+std::string asked_for(std::span<const Level<Real>> levels, const Criterion& criterion,
+                      const IsosurfaceOptions& options);
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nestgrid/algorithms/distributed.hpp>
+
+#include <bit>
+#include <string>
+
+#include <nestgrid/detail/forwarding_hierarchy.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
+#include <ranks/hanging_across.hpp>
+#include <walk/for_each_element.hpp>
+
+namespace nestgrid {
+
+namespace engine {
+
+namespace {
+
+std::uint64_t hash_of(const Point& x) {
+    std::uint64_t sum = 0;
+    for (const double along : x) {
+        sum = nestgrid::detail::mix64(sum + std::bit_cast<std::uint64_t>(along + 0.0));
+    }
+    return sum;
+}
+
+/// A hierarchy that walks with ranks before the nodes that they share are known.
+class BeforeSharing final : public nestgrid::detail::ForwardingHierarchy<float> {
+public:
+    BeforeSharing(const Hierarchy<float>& inner, const SharedNodes& shared)
+        : ForwardingHierarchy(inner, with(inner.facts(), shared)) {}
+
+private:
+    static HierarchyFacts with(HierarchyFacts facts, const SharedNodes& shared) {
+        facts.shared = &shared;
+        facts.drop_promises_of_whole_grids();
+        return facts;
+    }
+};
+
+/// All nodes of the elements that this rank visits, with their places where keys are the grid's
+/// own.
+std::vector<SharedNodes::Candidate> nodes_of(const Hierarchy<float>& grid) {
+    const bool places = grid.offers(Feature::own_keys);
+    const Walk<float> walk(grid,
+                           {.values = false, .keys = true, .positions = places, .on_ranks = true});
+    struct Seen {};
+    KeyTable<NodeKey, Seen> seen;
+    std::vector<SharedNodes::Candidate> nodes;
+    SplitKeys keys;
+    SplitPositions positions{};
+    for_each_element(walk, true, [&](const ElementView<float>& view, const Split& split) {
+        walk.corners(view, keys.data(), nullptr);
+        std::size_t count = view.corner_count();
+        if (split.rule != nullptr) count = walk.split_keys(view, split, keys).size();
+        if (places && split.rule == nullptr) walk.corners(view, nullptr, positions.data());
+        if (places && split.rule != nullptr) {
+            const auto of = walk.split_positions(view, split, positions);
+            if (of.data() != positions.data()) std::copy(of.begin(), of.end(), positions.begin());
+        }
+        for (std::size_t n = view.level == 0 ? 0 : view.corner_count(); n < count; ++n) {
+            if (!seen.insert(keys[n], {}).second) continue;
+            nodes.push_back({keys[n], places ? hash_of(positions[n]) : 0});
+        }
+    });
+    return nodes;
+}
+
+}  // namespace
+
+}  // namespace engine
+
+std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<float>& grid,
+                                                               Ranks& ranks,
+                                                               std::size_t most_sharers) {
+    const auto shared = std::make_shared<engine::SharedNodes>(ranks, grid.epoch());
+    const engine::BeforeSharing before(grid, *shared);
+    std::vector<engine::SharedNodes::Candidate> nodes;
+    const auto asked = [&] {
+        return "a distributed grid of dimension " + std::to_string(grid.facts().dimension) +
+               " with nodes of more than " + std::to_string(most_sharers) + " ranks told to all";
+    };
+    engine::together(shared.get(), asked, [&] {
+        engine::require_drawn_on_ranks(grid);
+        nodes = engine::nodes_of(before);
+    });
+    shared->find(nodes, most_sharers);
+    shared->set_hanging(engine::hanging_across(before, *shared));
+    return shared;
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ranks/hanging_across.hpp>
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include <nestgrid/detail/hanging_probe.hpp>
+#include <nestgrid/error.hpp>
+#include <ranks/agreement.hpp>
+#include <walk/for_each_element.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+/// The corners of an edge or a face, in tensor order.
+struct Part {
+    std::array<NodeKey, 4> key{};
+    std::uint8_t corners = 0;
+    bool of_leaf = true;  ///< else an element divides it between the middles of 01 and 23 first
+
+    template <class Corners>
+    Part(std::span<const NodeKey> keys, const Corners& of, std::size_t count, bool leaf)
+        : corners{static_cast<std::uint8_t>(count)}, of_leaf{leaf} {
+        for (std::size_t i = 0; i < count; ++i) key[i] = keys[of[i]];
+    }
+    Part() = default;
+    std::span<const NodeKey> all() const { return std::span(key).first(corners); }
+};
+
+class HangingAcross {
+public:
+    HangingAcross(const Hierarchy<float>& grid, const SharedNodes& shared)
+        : walk_(grid, {.values = false, .keys = true, .on_ranks = true}),
+          shared_{&shared},
+          box_(shared.ranks().size()) {}
+
+    /// Collects the nodes of this rank, and tells the parts of leaves that others may have, too.
+    void collect() {
+        for_each_element(walk_, false, [&](const ElementView<float>& view, const Split& split) {
+            if (split.rule == nullptr) return tell_leaf(view);
+            const std::span<const NodeKey> keys = walk_.split_keys(view, split, keys_);
+            probe_.add_nodes(*split.rule, keys, split.keys);
+            for (const auto& face : faces_of(*split.rule)) tell({keys, face.corner, 4, false});
+        });
+        probe_.finish();
+    }
+    void exchange() {
+        shared_->send(box_, [&](int, Reader& in) {
+            while (in.more()) told_.push_back(in.get<Part>());
+        });
+    }
+    HangingNodes find() {
+        for (const Part& part : told_) {
+            if (part.of_leaf) probe_.probe_part(part.all());
+            if (!part.of_leaf && probe_.crosses(part.key)) refuse_crossed("elements of two ranks");
+        }
+        for_each_element(walk_, false, [&](const ElementView<float>& view, const Split& split) {
+            if (split.rule != nullptr) return check(view, split);
+            walk_.corners(view, keys_.data(), nullptr);
+            probe_.probe_leaf(view.shape, keys_);
+        });
+        if (!probe_.hangs_at_weights()) return probe_.take();
+        throw GridError(
+            "a node hangs that is not in the middle of an edge, as where a neighbour is divided by "
+            "three or graded: this is not made for distributed grids yet");
+    }
+
+private:
+    using OneWayFaces = std::vector<nestgrid::detail::OneWayFace>;
+    const OneWayFaces& faces_of(const Rule& rule) {
+        const auto at = faces_.find(&rule);
+        if (at != faces_.end()) return at->second;
+        return faces_.emplace(&rule, nestgrid::detail::one_way_faces(rule, false)).first->second;
+    }
+    void tell_leaf(const ElementView<float>& leaf) {
+        const Topology& t = leaf.topology();
+        walk_.corners(leaf, keys_.data(), nullptr);
+        for (std::size_t e = 0; e < t.edges; ++e) tell({keys_, t.edge[e], 2, true});
+        for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
+            std::array<std::uint8_t, 4> corner{};
+            for (int i = 0; i < t.face[f].corners; ++i) {
+                corner[static_cast<std::size_t>(i)] = t.face[f].tensor_corner(i);
+            }
+            tell({keys_, corner, t.face[f].corners, true});
+        }
+    }
+    void tell(const Part& part) {
+        shared_->route(part.all(), box_, [&](Bytes& out) { put(out, part); });
+    }
+    void check(const ElementView<float>& view, const Split& split) {
+        if (!probe_.divides_one_way()) return;
+        if (!probe_.crossed_face(*split.rule, walk_.split_keys(view, split, keys_))) return;
+        refuse_crossed("elements below coarse element " + std::to_string(view.coarse) +
+                       " and their neighbours");
+    }
+    [[noreturn]] static void refuse_crossed(const std::string& who) {
+        throw GridError(who +
+                        " divide a face in different directions first and one of them then across, "
+                        "so that a node there hangs on others than its parents: refine both in the "
+                        "same order, or each in its own direction only");
+    }
+
+    Walk<float> walk_;
+    const SharedNodes* shared_;
+    nestgrid::detail::HangingProbe probe_;
+    Outbox box_;
+    std::vector<Part> told_;
+    std::map<const Rule*, OneWayFaces> faces_;
+    SplitKeys keys_{};
+};
+
+}  // namespace
+
+HangingNodes hanging_across(const Hierarchy<float>& grid, const SharedNodes& shared) {
+    std::optional<HangingAcross> search;
+    together(&shared, "hanging nodes", [&] {
+        search.emplace(grid, shared);
+        search->collect();
+    });
+    search->exchange();
+    HangingNodes hanging;
+    together(&shared, "hanging nodes", [&] { hanging = search->find(); });
+    return hanging;
+}
+
+}  // namespace nestgrid::engine

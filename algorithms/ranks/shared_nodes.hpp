@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The nodes that this rank has in common with others, and with which.
+//
+// A rank has the nodes of the elements that it visits: all but those that are wholly elsewhere.
+// Invariants:
+//   - each rank that has a node knows all ranks that have it; or the node is common, and all ranks
+//     know it, whether they have it or not;
+//   - of two ranks, each keeps their shared nodes in the same order, so that numbers travel without
+//     keys.
+// Consequence: a face or an edge that several ranks visit has all its corners shared on each of
+// them; who they are is the intersection over the corners. Nobody needs neighbours or ghosts.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include <nestgrid/detail/hanging.hpp>
+#include <nestgrid/detail/key_table.hpp>
+#include <ranks/wire.hpp>
+
+namespace nestgrid::engine {
+
+class SharedNodes {
+public:
+    /// A node that this rank has.
+    struct Candidate {
+        NodeKey key;
+        std::uint64_t place;  ///< a hash of where it lies, or 0: the same on all ranks
+    };
+
+    SharedNodes(Ranks& ranks, std::uint64_t epoch) : ranks_{&ranks}, epoch_{epoch} {}
+
+    /// Finds out which other ranks have the same nodes. Collective.
+    /// \param candidates at least all nodes that others may have, each once
+    /// \param most_sharers nodes that more ranks have are common
+    ///
+    /// \throw GridError on all ranks where one key is at two places
+    void find(std::span<const Candidate> candidates, std::size_t most_sharers);
+
+    Ranks& ranks() const { return *ranks_; }
+    /// The state of the grid for which they were found.
+    std::uint64_t epoch() const { return epoch_; }
+    std::size_t count() const { return index_.size(); }
+    std::span<const NodeKey> common() const { return common_; }
+    /// Whether this rank has a common node.
+    bool has_common(std::size_t i) const { return common_here_[i]; }
+    bool is_shared(NodeKey node) const { return index_.find(node) != nullptr; }
+    bool all_shared(std::span<const NodeKey> nodes) const {
+        return std::all_of(nodes.begin(), nodes.end(), [&](NodeKey n) { return is_shared(n); });
+    }
+
+    /// Calls write(bytes) for the boxes of all other ranks that have all of these nodes.
+    template <class Write>
+    void route(std::span<const NodeKey> nodes, Outbox& box, Write&& write) const;
+    /// Sends what route() put into a box, and calls take(rank, reader). Collective.
+    template <class Take>
+    void send(Outbox& box, Take&& take) const {
+        box.send(*ranks_, take);
+        if (!common_.empty()) box.send_to_all(*ranks_, take);
+    }
+    /// Calls write(bytes, node) for each node that is not common and each other rank that has it,
+    /// and take(rank, node, reader) for what others wrote. Collective.
+    template <class Write, class Take>
+    void tell_sharers(Write&& write, Take&& take) const;
+    /// Takes maxima over the ranks that have each node. Collective.
+    /// \param get get(node) returns this rank's numbers
+    /// \param raise raise(node, numbers) returns whether it raised any
+    /// \return whether some rank was told more than it knew
+    template <std::size_t n, class Get, class Raise>
+    bool raise(Get&& get, Raise&& raise) const;
+
+    /// The hanging nodes that this rank has, wherever the leaf is that they hang on.
+    const HangingNodes& hanging() const { return hanging_; }
+    /// Whether nodes hang on any rank.
+    bool any_hangs() const { return any_hangs_; }
+    /// Collective.
+    void set_hanging(HangingNodes hanging);
+
+private:
+    template <std::size_t n, class Get, class Raise>
+    bool raise_common(Get& get, Raise& raise) const;
+    void keep(NodeKey node, std::vector<int> sharers);
+    void keep_common(std::span<const Candidate> candidates);
+
+    Ranks* ranks_;
+    std::uint64_t epoch_;
+    std::vector<NodeKey> keys_;                     // of nodes that are not common, in order
+    std::vector<std::vector<int>> sharers_;         // of each: the other ranks, in order
+    std::vector<std::vector<std::uint32_t>> with_;  // of each rank: the numbers of the nodes
+    std::vector<NodeKey> common_;                   // in order, the same on all ranks
+    std::vector<bool> common_here_;
+    KeyTable<NodeKey, std::uint32_t> index_;  // numbers; keys_.size() where common
+    HangingNodes hanging_;
+    bool any_hangs_ = false;
+};
+
+template <class Write>
+void SharedNodes::route(std::span<const NodeKey> nodes, Outbox& box, Write&& write) const {
+    std::vector<int> with_all;
+    bool any = false;
+    for (const NodeKey node : nodes) {
+        const std::uint32_t* const at = index_.find(node);
+        if (at == nullptr) return;
+        if (*at == keys_.size()) continue;
+        const std::vector<int>& sharers = sharers_[*at];
+        std::vector<int> left;
+        if (any) {
+            std::set_intersection(with_all.begin(), with_all.end(), sharers.begin(), sharers.end(),
+                                  std::back_inserter(left));
+        }
+        with_all = any ? std::move(left) : sharers;
+        any = true;
+    }
+    if (!any) return write(box.to_all());
+    for (const int rank : with_all) write(box.to(rank));
+}
+
+template <class Write, class Take>
+void SharedNodes::tell_sharers(Write&& write, Take&& take) const {
+    Outbox box(ranks_->size());
+    for (std::size_t r = 0; r < with_.size(); ++r) {
+        for (const std::uint32_t i : with_[r]) write(box.to(static_cast<int>(r)), keys_[i]);
+    }
+    box.send(*ranks_, [&](int rank, Reader& in) {
+        for (const std::uint32_t i : with_[static_cast<std::size_t>(rank)]) {
+            take(rank, keys_[i], in);
+        }
+    });
+}
+
+template <std::size_t n, class Get, class Raise>
+bool SharedNodes::raise(Get&& get, Raise&& raise) const {
+    bool raised = false;
+    tell_sharers([&](Bytes& out, NodeKey node) { put(out, get(node)); },
+                 [&](int, NodeKey node, Reader& in) {
+                     raised |= raise(node, in.get<std::array<std::uint16_t, n>>());
+                 });
+    if (!common_.empty()) raised |= raise_common<n>(get, raise);
+    std::uint64_t any = raised ? 1 : 0;
+    ranks_->reduce(std::span(&any, 1), Ranks::Reduction::max);
+    return any != 0;
+}
+
+template <std::size_t n, class Get, class Raise>
+bool SharedNodes::raise_common(Get& get, Raise& raise) const {
+    bool raised = false;
+    std::vector<std::uint64_t> all(n * common_.size(), 0);
+    for (std::size_t i = 0; i < common_.size(); ++i) {
+        if (!common_here_[i]) continue;
+        const std::array<std::uint16_t, n> own = get(common_[i]);
+        std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(n * i));
+    }
+    ranks_->reduce(all, Ranks::Reduction::max);
+    for (std::size_t i = 0; i < common_.size(); ++i) {
+        if (!common_here_[i]) continue;
+        std::array<std::uint16_t, n> to;
+        for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<std::uint16_t>(all[n * i + k]);
+        raised |= raise(common_[i], to);
+    }
+    return raised;
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is not made for distributed grids is refused, on all ranks, before they talk to each other;
+// docs/distributed.md lists the same.
+#include <nestgrid/algorithms/boundary_surface.hpp>
+#include <nestgrid/algorithms/cell_data.hpp>
+#include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/cut_indicator.hpp>
+#include <nestgrid/algorithms/discontinuous_data.hpp>
+#include <nestgrid/algorithms/element_deviations.hpp>
+#include <nestgrid/algorithms/geometry_indicator.hpp>
+#include <nestgrid/algorithms/hanging_nodes.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/holes.hpp>
+#include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/algorithms/mesh_size.hpp>
+#include <nestgrid/algorithms/node_levels.hpp>
+#include <nestgrid/algorithms/norm_indicator.hpp>
+#include <nestgrid/algorithms/numerical_indicator.hpp>
+#include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/region.hpp>
+#include <nestgrid/algorithms/shading.hpp>
+#include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/visual_indicator.hpp>
+#include <nestgrid/algorithms/wavelet_indicator.hpp>
+
+#include "distributed_judge.hpp"
+#include "sample_grids.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+template <int dim>
+using Grid = Distributed<CutGrid<dim>>;
+template <int dim>
+using Field = DistributedField<CutGrid<dim>, CutField<dim, double>>;
+
+/// What one rank has.
+template <int dim>
+struct Scene {
+    const Grid<dim>& grid;
+    const Field<dim>& field;
+    HierarchicalIndicator& indicator;
+
+    auto hierarchy() const { return erase(grid, field); }
+    void draw(const IsosurfaceOptions& options) const {
+        isosurface(grid, field, 0.5, indicator, options);
+    }
+    void draw(const Criterion& criterion, const Bounds& bounds) const {
+        isosurface(grid, field, 0.5, criterion, bounds);
+    }
+};
+
+template <int dim>
+struct Refused {
+    const char* what;
+    std::function<void(const Scene<dim>&)> ask;
+};
+
+/// A criterion of a user's.
+struct Nowhere final : Criterion {
+    NodeMask holds(const NewNodes&) const override { return 0; }
+    bool saturated() const override { return true; }
+};
+
+/// Bounds of a user's.
+struct Wide final : Bounds {
+    double offset_bound(NodeKey) const override { return 9; }
+    double bound(const Rule&, std::span<const NodeKey>) const override { return 9; }
+    const HangingNodes* hanging() const override { return nullptr; }
+    bool made_for(std::uint64_t) const override { return true; }
+};
+
+struct LeafValues {
+    static constexpr int components = 1;
+    void leaf_values(const CutGrid<3>::Element&, std::span<double> out) const {
+        std::fill(out.begin(), out.end(), 0.0);
+    }
+};
+
+const std::vector<Refused<3>> in_space{
+    {"slice",
+     [](const auto& s) {
+         slice(s.grid, s.field, Plane({0.5, 0.5, 0.5}, {1, 2, 3}), s.indicator);
+     }},
+    {"boundary surface", [](const auto& s) { boundary_surface(s.grid, s.field); }},
+    {"normals", [](const auto& s) { s.draw({.normals = true}); }},
+    {"number of triangles", [](const auto& s) { s.draw({.max_triangles = 100}); }},
+    {"reference coordinates", [](const auto& s) { s.draw({.reference = true}); }},
+    {"vertices at nodes", [](const auto& s) { s.draw({.at_nodes = true}); }},
+    {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
+    {"bounds of positions", [](const auto& s) { s.draw({.position_bounds = &s.indicator}); }},
+    {"other criteria", [](const auto& s) { s.draw(Nowhere(), s.indicator); }},
+    {"other bounds", [](const auto& s) { s.draw(Exact(), Wide()); }},
+    {"unsaturated criteria",
+     [](const auto& s) { s.draw(Unsaturated{Threshold(&s.indicator, 0.1)}, s.indicator); }},
+    {"lens",
+     [](const auto& s) {
+         s.draw(Lens(&s.indicator, [](const Point& x) { return norm(x); }), s.indicator);
+     }},
+    {"conjunction",
+     [](const auto& s) {
+         s.draw(Threshold(&s.indicator, 0.1) && Threshold(&s.indicator, 0.2), s.indicator);
+     }},
+    {"deviations",
+     [](const auto& s) { HierarchicalIndicator(s.grid, s.field, NodeError::deviation); }},
+    {"errors of leaves",
+     [](const auto& s) {
+         HierarchicalIndicator(s.grid, s.field, [](const CutGrid<3>::Element&) { return 1.0; });
+     }},
+    {"spread", [](const auto& s) { HierarchicalIndicator(s.grid, s.field, Spread{.slope = 1}); }},
+    {"update",
+     [](const auto& s) {
+         s.indicator.update(s.grid, s.field, ChangedBox{{0, 0, 0}, {1, 1, 1}});
+     }},
+    {"visual indicator", [](const auto& s) { visual_indicator(s.grid, s.field); }},
+    {"numerical indicator", [](const auto& s) { numerical_indicator(s.grid, s.field); }},
+    {"norm indicator", [](const auto& s) { norm_indicator(s.grid, s.field); }},
+    {"wavelet indicator", [](const auto& s) { wavelet_indicator(s.grid, s.field); }},
+    {"geometry indicator", [](const auto& s) { geometry_indicator(s.grid, s.field); }},
+    {"cut deviations",
+     [](const auto& s) { cut_deviations(s.grid, s.field, std::array{0.5}, s.indicator); }},
+    {"mesh size", [](const auto& s) { mesh_size(s.grid, Spread{}); }},
+    {"node levels", [](const auto& s) { NodeLevels{s.grid}; }},
+    {"region", [](const auto& s) { Region(s.grid, [](const Point&) { return true; }); }},
+    {"hanging nodes",
+     [](const auto& s) { derive_hanging_nodes(erase(s.grid, ZeroField<Grid<3>>{})); }},
+    {"holes",
+     [](const auto& s) {
+         const auto all = s.hierarchy();
+         const HiddenElements hidden(static_cast<const Hierarchy<double>&>(all));
+     }},
+    {"probe",
+     [](const auto& s) {
+         probe_point(s.hierarchy(), Point{0.3, 0.4, 0.5});
+     }},
+    {"cell averages",
+     [](const auto& s) { CellAverages(s.grid, [](const CutGrid<3>::Element&) { return 1.0; }); }},
+    {"discontinuous data",
+     [](const auto& s) {
+         const LeafValues values;
+         const DiscontinuousData data(s.grid, values);
+         const ElementDeviations deviations(data);
+     }},
+};
+
+const std::vector<Refused<2>> in_plane{
+    {"height field", [](const auto& s) { height_field(s.grid, s.field, 1.0, s.indicator); }},
+    {"shading", [](const auto& s) { shading(s.grid, s.field, s.indicator); }},
+    {"isolines with normals", [](const auto& s) { s.draw({.normals = true}); }},
+};
+
+/// \return what each of two ranks says
+template <int dim, class Family>
+void expect_refused(const std::vector<Refused<dim>>& all, typename Family::Grid grid) {
+    std::mt19937 random(7);
+    refine_at_random(grid, random, 3, 4, 3, 200);
+    const Whole whole(grid);
+    const std::vector<int> owner = whole.partition(2, Whole::Cut::in_runs, random);
+    std::vector<double> values(2 * whole.positions.size(), 0.25);
+    for (std::size_t n = 0; n < whole.positions.size(); ++n) values[2 * n] = whole.positions[n][0];
+    for (const Refused<dim>& each : all) {
+        std::array<bool, 2> talked{};
+        const auto ended = SimulatedRanks::run(2, [&](Ranks& ranks) {
+            const Part part(whole, owner, ranks.rank());
+            const CutGrid<dim> mine(whole, &part, true);
+            const Grid<dim> distributed(mine, ranks);
+            const Field<dim> field(distributed, {&mine, &values});
+            HierarchicalIndicator indicator(distributed, field);
+            const auto before = SimulatedRanks::traffic(ranks).exchanges;
+            try {
+                each.ask(Scene<dim>{distributed, field, indicator});
+            } catch (const std::exception&) {
+                talked[static_cast<std::size_t>(ranks.rank())] =
+                    SimulatedRanks::traffic(ranks).exchanges != before;
+                throw;
+            }
+        });
+        for (const std::string& sentence : ended) {
+            EXPECT_NE(sentence.find("not made for distributed grids yet"), std::string::npos)
+                << each.what << ": '" << sentence << "'";
+        }
+        EXPECT_FALSE(talked[0] || talked[1]) << each.what;
+    }
+}
+
+TEST(DistributedRefusals, WhatIsNotMadeForRanksSaysSo) {
+    expect_refused<3, UnbalancedOctree>(in_space, UnbalancedOctree::grids()[0]);
+    expect_refused<2, UnbalancedQuadtree>(in_plane, UnbalancedQuadtree::grids()[0]);
+}
+
+}  // namespace
