@@ -79,9 +79,23 @@ private:
         const RealNodes* nodes_;
         double tolerance_;
     };
-    struct OpenTask;
+    /// The nets of the children of the elements on the way down that were entered last.
+    struct OpenTask final : Task {
+        struct Halves {
+            std::uint32_t leaf = VirtualElement::no_leaf;
+            BoxPlace place{};
+            std::vector<double> nets;  // of one child behind the other, component 0 and so on
+        };
+        std::unique_ptr<Task> base;
+        Family family;               // of a coarse element
+        std::vector<Halves> halves;  // by level of the element entered
+    };
+    /// What a leaf, or an element below it, looks like at the tolerance.
+    struct Looked {
+        NodeMask flat = 0;  // new nodes that halve a flat part
+        NetFacts facts;     // of the element; its range includes that of the records around
+    };
     struct Places;
-    struct Looked;
 
     static Places& places(Family& family, std::size_t count);
     void set_leaf(VirtualElement& e, const Member& member) const;
@@ -92,6 +106,7 @@ private:
     void describe_split(const VirtualElement& e, Member& member) const;
     void describe_leaf(OpenTask& task, const VirtualElement& e, const double* u,
                        Member& member) const;
+    // One leaf and its parts (leaf_parts.cpp).
     Looked look(const VirtualElement& e, const double* net) const;
     bool is_flat(const NetFacts& facts, int level) const;
     double drawn_error(const double* net, const LeafPolynomial& leaf, double beta,
@@ -110,6 +125,7 @@ private:
     double flat_;  // beta of what is flat
     int depth_;
     double least_beyond_;  // covers rounding
+    bool linear_;          // every leaf is the interpolant of its corners, and fits its neighbours
     Stops criterion_;
     std::vector<HalvedPart> halved_;
 };

@@ -32,6 +32,10 @@ struct WorldOptions {
     double noise = 0;  ///< by how much data jump between leaves, at most
     unsigned seed = 1;
     bool mirrored = true;
+    /// In the place of chance, where they are given: whether a cell is refined, and the degree of a
+    /// leaf, by its middle and its level.
+    std::function<bool(const Point& middle, int level)> divides{};
+    std::function<int(const Point& middle, int level)> degree{};
 };
 
 /// Polynomial of degree p through values at the tensor product of p + 1 points in [0, 1].
@@ -109,8 +113,11 @@ public:
         }
         coarse_ = count;
         for (std::size_t i = 0; i < cells_.size(); ++i) {
-            const bool divides = cells_[i].level < options.levels &&
-                                 random() % 1000 < static_cast<unsigned>(1000 * options.refined);
+            const Point middle = position(cells_[i], {0.5, 0.5, 0.5});
+            const bool by_chance = cells_[i].level < options.levels &&
+                                   random() % 1000 < static_cast<unsigned>(1000 * options.refined);
+            const bool divides =
+                options.divides ? options.divides(middle, cells_[i].level) : by_chance;
             if (divides) {
                 cells_[i].first_child = static_cast<std::uint32_t>(cells_.size());
                 for (std::size_t c = 0; c < corners; ++c) {
@@ -123,8 +130,9 @@ public:
                 continue;
             }
             const int spread = options.greatest_degree - options.least_degree + 1;
-            const int degree =
+            int degree =
                 options.least_degree + static_cast<int>(random() % static_cast<unsigned>(spread));
+            if (options.degree) degree = options.degree(middle, cells_[i].level);
             const auto noise = [&] {
                 return options.noise * (2 * (static_cast<double>(random()) / 4294967296.0) - 1);
             };

@@ -1,19 +1,17 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Data of higher degree, the same in all leaves or not (paper, section 7): at a tolerance they are
-// an ordinary hierarchy with hanging nodes, for every algorithm.
+// Data of higher degree (paper, section 7) as an ordinary hierarchy with hanging nodes.
 //     const HighOrder data(grid, field);                            once per solution
 //     const VirtualRefinement fine(data, {.tolerance = 1e-3});
 //     isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
-// Quadrilaterals and hexahedra with flat edges, halved in all directions; the field has degree()
-// and evaluate() (optional.hpp). Component 0 is what the tolerance is of. docs/high_order.md.
+// For quadrilaterals and hexahedra, straight and halved in all directions; the field has degree()
+// and evaluate() (optional.hpp). The tolerance is one of component 0. docs/high_order.md.
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
-
 namespace engine {
 struct HighOrderData;
 class VirtualElements;
@@ -22,19 +20,17 @@ class VirtualElements;
 /// The polynomials of all leaves, records of the edges and faces that they share, and a preroll.
 class HighOrder {
 public:
-    /// Borrows the hierarchy. Asks the field once for each leaf.
-    /// \throw InvalidInput where the grid or the field is none of those above
-    /// \throw GridError where a degree or a value cannot be, and names the leaf
+    /// Borrows the hierarchy, or grid and field. Asks the field once for each leaf.
+    ///
+    /// \throw InvalidInput for other grids and fields, GridError for a wrong degree or value
     explicit HighOrder(const Hierarchy<float>& base);
     explicit HighOrder(const Hierarchy<double>& base);
-    /// Borrows grid and field.
     template <class Grid, class Field>
     HighOrder(const Grid& grid, const Field& field)
         : HighOrder(std::make_shared<const detail::ErasedHierarchy<Grid, Field>>(grid, field)) {}
 
     int greatest_degree() const;
-    /// How far data of leaves are apart on edges and faces that they share, at most: rounding where
-    /// the field is continuous. Surfaces are closed all the same.
+    /// How far leaves are apart on edges and faces that they share: rounding in a continuous field.
     double jump() const;
     std::size_t memory_bytes() const;
 
@@ -54,14 +50,12 @@ struct VirtualOptions {
     int depth = 8;         ///< leaves are halved at most this many times, 1 to 16
 };
 
-/// Leaves of higher degree, halved until what is drawn differs from the data by at most the
-/// tolerance, but for elements that meet the depth limit (TraversalCounts::limited). Made in no
-/// time; nothing is stored for virtual elements.
+/// Leaves halved until what is drawn is within the tolerance, but for elements that meet the depth
+/// limit (TraversalCounts::limited). Nothing is stored for virtual elements.
 class VirtualRefinement final : public Hierarchy<double> {
 public:
-    /// \throw InvalidInput where the options are none of those above
+    /// \throw InvalidInput for other options
     VirtualRefinement(const HighOrder& data, const VirtualOptions& options);
-
     const Criterion& criterion() const;  ///< where coarser elements of the hierarchy may stop
     const Bounds& bounds() const;
 
