@@ -47,6 +47,11 @@ public:
         for (int i = 0; i <= degree; ++i) {
             nodes_.push_back(0.5 - 0.5 * std::cos(std::acos(-1.0) * i / degree));
         }
+        for (const double at : nodes_) {
+            double scale = 1;
+            for (const double other : nodes_) scale *= other == at ? 1 : 1 / (at - other);
+            scale_.push_back(scale);
+        }
         std::size_t count = 1;
         for (int d = 0; d < dim; ++d) count *= nodes_.size();
         for (std::size_t i = 0; i < count; ++i) {
@@ -60,13 +65,15 @@ public:
     int degree() const { return static_cast<int>(nodes_.size()) - 1; }
     double operator()(const Point& x) const {
         const std::size_t n = nodes_.size();
-        std::vector<double> left = values_;
-        std::size_t count = left.size();
+        std::array<double, 9 * 9 * 9> left;
+        std::copy(values_.begin(), values_.end(), left.begin());
+        std::size_t count = values_.size();
         for (std::size_t d = 0; d < std::size_t{dim}; ++d) {
-            std::vector<double> weight(n, 1.0);
+            std::array<double, 9> weight;
             for (std::size_t i = 0; i < n; ++i) {
+                weight[i] = scale_[i];
                 for (std::size_t k = 0; k < n; ++k) {
-                    if (k != i) weight[i] *= (x[d] - nodes_[k]) / (nodes_[i] - nodes_[k]);
+                    if (k != i) weight[i] *= x[d] - nodes_[k];
                 }
             }
             count /= n;
@@ -81,6 +88,7 @@ public:
 
 private:
     std::vector<double> nodes_;
+    std::vector<double> scale_;  // of the Lagrange polynomials
     std::vector<double> values_;
 };
 

@@ -118,7 +118,7 @@ TEST(HighOrder, SurfacesAreClosedAndWithinTheirBounds) {
         const Drawn<3> drawn(options, functions[random() % functions.size()]);
         const double tolerance = std::pow(10.0, -0.3 - 0.3 * static_cast<double>(random() % 4));
         const double isovalue = random() % 2 == 0 ? 0.0 : 0.1;
-        const auto result = drawn.surface(isovalue, {tolerance, 3 + static_cast<int>(random() % 3)},
+        const auto result = drawn.surface(isovalue, {tolerance, 3 + static_cast<int>(random() % 2)},
                                           {.verify = true});
         expect_closed(result.surface);
         expect_bound(drawn, result, isovalue, tolerance);
@@ -319,6 +319,7 @@ TEST(HighOrder, DegreeOneIsTheHierarchyItself) {
         const VirtualRefinement fine(drawn.data, {.tolerance = 1e-6});
         const auto plain = isosurface(drawn.world, drawn.field, 0.1);
         const auto decorated = isosurface<3>(fine, 0.1, Exact(), fine.bounds());
+        EXPECT_GT(plain.surface.simplices.size(), 10U);
         expect_same_bits(plain.surface.vertices, decorated.surface.vertices, "vertices");
         expect_same_bits(plain.surface.simplices, decorated.surface.simplices, "triangles");
         EXPECT_EQ(plain.error_bound, decorated.error_bound);
