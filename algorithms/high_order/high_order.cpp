@@ -48,10 +48,11 @@ HierarchyFacts facts_of(const HighOrderData& data) {
     HierarchyFacts facts;
     facts.dimension = base.dimension;
     facts.components = base.components;
-    facts.features =
-        static_cast<unsigned>(Feature::constrained) | static_cast<unsigned>(Feature::outside) |
-        (base.features &
-         (static_cast<unsigned>(Feature::boundary_faces) | static_cast<unsigned>(Feature::masked)));
+    facts.features = static_cast<unsigned>(Feature::constrained) |
+                     static_cast<unsigned>(Feature::outside) |
+                     (base.features & (static_cast<unsigned>(Feature::boundary_faces) |
+                                       static_cast<unsigned>(Feature::new_positions) |
+                                       static_cast<unsigned>(Feature::masked)));
     facts.decodes = true;  // what is below an element depends on P_S U at its corners
     facts.only_shape = base.only_shape;
     return facts;
@@ -122,6 +123,11 @@ void VirtualRefinement::corners(Task* task, const Handle& element, std::size_t c
     if (boundary != nullptr && offers(Feature::boundary_faces)) {
         *boundary = elements_->boundary(task, e);
     }
+}
+
+void VirtualRefinement::new_positions(Task* task, const Handle& element, NodeMask which,
+                                      std::span<Point> out) const {
+    elements_->new_positions(task, engine::element_of(element), which, out);
 }
 
 }  // namespace nestgrid

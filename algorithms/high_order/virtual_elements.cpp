@@ -88,7 +88,7 @@ void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& 
     const Member& base = places.base.members[0];
     if ((places.base.split | places.base.leaves) == 0) return;
     ElementState& state = places.states[0];
-    state = {base.element, base.rule, {}, coarse_path(i)};
+    state = {base.element, base.rule, {}, coarse_path(i), coarse.corners};
     std::vector<double> u(corners_);
     for (std::size_t k = 0; k < corners_; ++k) {
         state.key[k] = coarse_key(coarse.ids[k]);
@@ -142,6 +142,7 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
                            places.base);
     }
     const BoxSplitKeys keys = split_keys_of(e.state->key, *rule_);
+    const std::array<Point, 27> x = positions(task, e, which);
     for (std::size_t c = 0; c < corners_; ++c) {
         if ((wanted >> c & 1U) == 0) continue;
         VirtualElement child;
@@ -151,6 +152,7 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
         for (std::size_t k = 0; k < corners_; ++k) {
             state.key[k] = keys[rule_->children[c].corner[k]];
             at_corners[k] = u[rule_->children[c].corner[k]];
+            state.x[k] = x[rule_->children[c].corner[k]];
         }
         if (e.leaf == VirtualElement::no_leaf &&
             ((places.base.split | places.base.leaves) >> c & 1U) == 0) {
@@ -269,6 +271,38 @@ void VirtualElements::new_values(Task* task, const VirtualElement& e, NodeMask w
             nets + in.child * components_ * size + net_corner(leaf.degree, dimension_, in.corner);
         for (std::size_t c = 0; c < components_; ++c) out[n * components_ + c] = net[c * size];
     }
+}
+
+/// Positions at the corners and, behind them, at the new nodes.
+/// \param which new nodes that have true ones
+std::array<Point, 27> VirtualElements::positions(Task* task, const VirtualElement& e,
+                                                 NodeMask which) const {
+    std::array<Point, 27> x{};
+    if (!data_->base->offers(Feature::new_positions)) return x;
+    std::copy_n(e.state->x.begin(), corners_, x.begin());
+    const std::size_t count = rule_->new_nodes.size();
+    NodeMask given = 0;
+    if (e.leaf == VirtualElement::no_leaf) {
+        const BoxSplitKeys keys = split_keys_of(e.state->key, *rule_);
+        for (std::size_t n = 0; n < count; ++n) {
+            const RealNode* const node = nodes_->find(keys[corners_ + n]);
+            const bool own = node != nullptr && !node->hangs;
+            given |= NodeMask{own} << n;
+        }
+        given &= which;
+        data_->base->new_positions(static_cast<OpenTask&>(*task).base.get(), e.state->base, given,
+                                   std::span(x).subspan(corners_, count));
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+        if ((given >> n & 1U) == 0) x[corners_ + n] = interpolate(rule_->new_nodes[n], x.data());
+    }
+    return x;
+}
+
+void VirtualElements::new_positions(Task* task, const VirtualElement& e, NodeMask which,
+                                    std::span<Point> out) const {
+    const std::array<Point, 27> x = positions(task, e, which);
+    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(corners_), out.size(), out.begin());
 }
 
 /// Faces on the boundary of the domain, where the hierarchy tells those of its elements.

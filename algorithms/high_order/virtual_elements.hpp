@@ -39,7 +39,8 @@ struct ElementState {
     Handle base;                 // the element of the hierarchy, or the leaf it lies in
     const Rule* rule = nullptr;  // of that element
     BoxKeys key{};
-    NodeKey path = 0;  // of that element
+    NodeKey path = 0;                        // of that element
+    std::array<Point, max_box_corners> x{};  // of the corners, where the hierarchy has positions
 };
 
 /// An element of the hierarchy, or one below a leaf.
@@ -65,6 +66,10 @@ public:
                Family& family) const;
     void new_values(Task* task, const VirtualElement& e, NodeMask which, double* values) const;
     unsigned boundary(Task* task, const VirtualElement& e) const;
+    /// Positions of new nodes: true ones of the hierarchy; means of the parents where these hang,
+    /// and below leaves, whose edges are straight.
+    void new_positions(Task* task, const VirtualElement& e, NodeMask which,
+                       std::span<Point> out) const;
 
 private:
     /// S = (stop <= tolerance) at nodes of the hierarchy.
@@ -97,6 +102,7 @@ private:
     };
     struct Places;
 
+    std::array<Point, 27> positions(Task* task, const VirtualElement& e, NodeMask which) const;
     static Places& places(Family& family, std::size_t count);
     void set_leaf(VirtualElement& e, const Member& member) const;
     void set_child(const VirtualElement& father, std::size_t child, const Family& base,

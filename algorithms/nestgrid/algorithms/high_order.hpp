@@ -69,7 +69,7 @@ public:
                    NodeMask wanted, Family&) const override;
     NodeMask new_values(Task*, const Handle&, const Rule&, NodeMask, double*) const override;
     void corners(Task*, const Handle&, std::size_t, NodeKey*, Point*, unsigned*) const override;
-    void new_positions(Task*, const Handle&, NodeMask, std::span<Point>) const override {}
+    void new_positions(Task*, const Handle&, NodeMask, std::span<Point>) const override;
     void corner_gradients(Task*, const Handle&, std::span<Point>) const override {}
 
 private:
