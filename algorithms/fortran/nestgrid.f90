@@ -118,6 +118,8 @@ module nestgrid
         type(c_funptr) :: node_values = c_null_funptr
         type(c_funptr) :: last_error = c_null_funptr
         type(c_funptr) :: node_gradients = c_null_funptr
+        type(c_funptr) :: degree = c_null_funptr
+        type(c_funptr) :: evaluate = c_null_funptr
     end type nestgrid_field
 
     type, bind(c) :: nestgrid_lens

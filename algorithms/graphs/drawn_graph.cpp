@@ -11,6 +11,7 @@ void DrawnGraph::count_only(std::uint64_t most) {
 
 void DrawnGraph::add(const DrawnGraph& task, const SurfacePart<3>& part) {
     surface.add_extracted(task.surface.extracted());
+    surface.add_limited(task.surface.limited());
     surface.raise_error_bound(task.surface.error_bound());
     nodes.append(task.nodes);
     tally.add(task.tally);
@@ -20,6 +21,7 @@ void DrawnGraph::add(const DrawnGraph& task, const SurfacePart<3>& part) {
 void DrawnGraph::report(Shading& result) const {
     result.counts = counts;
     result.counts.extracted = surface.extracted();
+    result.counts.limited = surface.limited();
     result.error_bound = surface.error_bound();
     result.edge_nodes = nodes.size();
     result.edge_nodes_bytes = nodes.memory_bytes();

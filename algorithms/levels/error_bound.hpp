@@ -79,6 +79,7 @@ double projected_away(const ElementView<Real>& view, const std::array<NodeKey, m
 template <class Real>
 double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& search, Real below) {
     const ElementView<Real>& view = element.view();
+    if (view.is_leaf() && view.member->error > 0) return static_cast<double>(view.member->error);
     const Topology& t = view.topology();
     const double bound =
         projected_away(view, element.keys(), static_cast<double>(below), search.bounds(), search);

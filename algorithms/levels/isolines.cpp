@@ -22,6 +22,7 @@ Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> valu
         result.counts.calls = drawn[i].counts.calls;
         result.counts.visited = drawn[i].counts.visited;
         result.counts.extracted += drawn[i].counts.extracted;
+        result.counts.limited += drawn[i].counts.limited;
         result.add_bounds(drawn[i]);
         result.cancelled = drawn[i].cancelled;
     }

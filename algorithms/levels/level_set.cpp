@@ -216,6 +216,7 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& result) const {
     result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
     result.counts.extracted = surfaces_[i].extracted();
+    result.counts.limited = surfaces_[i].limited();
     result.range_bound = range_bound(search_->levels()[i], *search_);
     const double off_level = surfaces_[i].off_level();
     result.surface_error = off_level > 0 ? std::numeric_limits<double>::infinity()
@@ -482,6 +483,7 @@ bool LevelSet<dimension, Real>::stops_above_cap(const View& view) {
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);
+    surface.add_limited(at_hand_.cuts.view().member->limited ? 1 : 0);
     surface.raise_off_level(at_hand_.cuts.off_level());
     const double bound = error_bound(at_hand_.cuts, *search_, at_hand_.bound);
     const View& view = at_hand_.cuts.view();

@@ -71,6 +71,7 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
     for (std::size_t i = 0; i < leader.surfaces_.size(); ++i) {
         LevelSurface<dimension>& surface = leader.surfaces_[i];
         surface.add_extracted(drawn.surfaces_[i].extracted());
+        surface.add_limited(drawn.surfaces_[i].limited());
         surface.raise_error_bound(drawn.surfaces_[i].error_bound());
         surface.raise_off_level(drawn.surfaces_[i].off_level());
         surface.raise_leaf_error(drawn.surfaces_[i].leaf_error());

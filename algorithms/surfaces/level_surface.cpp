@@ -36,7 +36,7 @@ void LevelSurface<dimension>::begin(Builder builder, const VertexNormals& normal
     at_nodes_.clear();
     is_at_node_.clear();
     keeps_simplices_ = makes_normals() && builder_.target() == nullptr;
-    extracted_ = 0;
+    extracted_ = limited_ = 0;
     error_bound_ = 0;
     off_level_ = 0;
     leaf_error_ = 0;

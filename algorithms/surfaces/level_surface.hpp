@@ -116,6 +116,9 @@ public:
     /// Counts elements that contribute to the surface.
     void add_extracted(std::uint64_t more) { extracted_ += more; }
     std::uint64_t extracted() const { return extracted_; }
+    /// Counts those of them that a limit kept from being divided.
+    void add_limited(std::uint64_t more) { limited_ += more; }
+    std::uint64_t limited() const { return limited_; }
     /// Raises the bound of |U - level| on the surface to `bound` at least.
     void raise_error_bound(double bound) { error_bound_ = std::max(error_bound_, bound); }
     double error_bound() const { return error_bound_; }
@@ -170,6 +173,7 @@ private:
     std::vector<bool> is_at_node_;   // by vertex: whether it is among at_nodes_
     std::deque<Simplex> simplices_;  // all of them, where a sink takes them and normals are wanted
     std::uint64_t extracted_ = 0;
+    std::uint64_t limited_ = 0;
     double error_bound_ = 0;
     double off_level_ = 0;
     double leaf_error_ = 0;

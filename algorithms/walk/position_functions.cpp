@@ -207,7 +207,7 @@ NodeMask WidenedHierarchy<Real>::enter(Task* task, const Handle& element, const 
                                        NodeMask which, double* values, NodeMask wanted,
                                        Family& children) const {
     WidenedTask& t = own(task);
-    if (which != 0) give_corners(rule, values, t.values.data());
+    if (values != nullptr) give_corners(rule, values, t.values.data());
     const NodeMask missing =
         inner_->enter(t.inner.get(), element, rule, which, t.values.data(), wanted, children);
     if (which != 0) take_new(rule, t.values.data(), values);
@@ -223,6 +223,19 @@ NodeMask WidenedHierarchy<Real>::new_values(Task* task, const Handle& element, c
         inner_->new_values(t.inner.get(), element, rule, which, t.values.data());
     take_new(rule, t.values.data(), values);
     return missing;
+}
+
+template <class Real>
+int WidenedHierarchy<Real>::degree(Task* task, const Handle& leaf) const {
+    return inner_->degree(own(task).inner.get(), leaf);
+}
+
+template <class Real>
+void WidenedHierarchy<Real>::evaluate(Task* task, const Handle& leaf,
+                                      std::span<const Point> reference, double* out) const {
+    std::vector<Real> values(reference.size() * inner_components_);
+    inner_->evaluate(own(task).inner.get(), leaf, reference, values.data());
+    copy(values.data(), reference.size(), out);
 }
 
 template <class Real>

@@ -102,6 +102,9 @@ public:
                        std::span<Point> out) const override;
     void corner_gradients(Task* /*task*/, const Handle& /*element*/,
                           std::span<Point> /*out*/) const override {}
+    int degree(Task* task, const Handle& leaf) const override;
+    void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
+                  double* out) const override;
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         return inner_->hanging_parents(node);
     }

@@ -50,6 +50,11 @@ struct Member {
     std::uint32_t first_key = 0;  ///< in Family::keys, where the grid has keys of its own
     Hidden hidden = Hidden::not_at_all;
     Presence presence = Presence::here;
+    bool limited = false;  ///< a leaf that a limit on depth kept from being divided
+    float beyond = 0;  ///< how far U may leave the range of P_S U at the corners, besides Bounds
+    /// On a leaf: how far U may be from what is drawn of P_S U at its corners, triangles included;
+    /// 0 where these say all.
+    float error = 0;
 };
 
 /// The children of one element, or one coarse element. Members that are neither split nor leaves
@@ -193,6 +198,13 @@ public:
     virtual void corner_gradients(Task* task, const Handle& element,
                                   std::span<Point> out) const = 0;
 
+    /// The degree of the field on a leaf, where it has degree; else 1.
+    virtual int degree(Task* task, const Handle& leaf) const;
+    /// The field on a leaf at points of the reference element, likewise.
+    /// \param out component c of point n at out[n * components + c]
+    virtual void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
+                          Real* out) const;
+
     /// The parents of a node that hangs on an edge, where the grid has hanging_parents.
     virtual std::array<NodeKey, 2> hanging_parents(NodeKey node) const;
 
@@ -224,6 +236,12 @@ protected:
     HierarchyFacts facts_;
 };
 
+template <class Real>
+int Hierarchy<Real>::degree(Task*, const Handle&) const {
+    return 1;
+}
+template <class Real>
+void Hierarchy<Real>::evaluate(Task*, const Handle&, std::span<const Point>, Real*) const {}
 template <class Real>
 std::array<NodeKey, 2> Hierarchy<Real>::hanging_parents(NodeKey node) const {
     return {node, node};

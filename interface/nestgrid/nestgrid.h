@@ -175,6 +175,13 @@ typedef struct nestgrid_field {
      * isosurfaces with normals as fast as without. Where there are corner_gradients, too, these are
      * the same. */
     int (*node_gradients)(const void* self, size_t count, const uint64_t* nodes, double (*out)[3]);
+
+    /* Optional, both or neither; asked of leaves alone, and not where there are further fields. The
+     * degree of the polynomials of a leaf, 1 to 8, and the field at `count` points of the reference
+     * element: component c of point n goes to out[n * components + c]. */
+    int (*degree)(const void* self, void* context, const nestgrid_element* leaf, int* degree);
+    int (*evaluate)(const void* self, void* context, const nestgrid_element* leaf, size_t count,
+                    const double (*reference)[3], void* out);
 } nestgrid_field;
 
 #ifdef __cplusplus

@@ -57,6 +57,14 @@
 //     void row_values(NodeKey first, std::size_t stride, std::span<value_type> out)
 //         at the nodes first, first + stride, ... of a star row or of their parents in one place;
 //         random access, with for_each_star_row
+//     int degree(leaf)
+//         of the polynomials of the leaf, 1 to 8: in each direction on segments, quadrilaterals and
+//         hexahedra, in all on simplices, in the triangle and along the segment on prisms. 1: the
+//         values at its corners say all
+//     void evaluate(leaf, std::span<const Point> reference, std::span<value_type> out)
+//         the field itself, all components, at points of the reference element (shape.hpp):
+//         component c of point n at out[n * components + c]. With degree(), neither without the
+//         other; asked of leaves only. At a corner that does not hang it is the value of the node
 // A member with one of these names and another signature does not compile; check_grid lists the
 // operations it found.
 #pragma once
@@ -100,8 +108,11 @@ enum class Feature : unsigned {
     hidden = 512,
     hanging_parents = 1024,
     presence = 2048,
+    degree = 4096,
 };
-inline constexpr Feature last_feature = Feature::presence;
+inline constexpr Feature last_feature = Feature::degree;
+/// The greatest degree that a leaf may have.
+inline constexpr int max_degree = 8;
 
 /// Whether an element is drawn.
 enum class Hidden : std::uint8_t { not_at_all, partly, wholly };

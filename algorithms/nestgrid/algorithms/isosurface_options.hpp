@@ -21,6 +21,7 @@ struct TraversalCounts {
     std::uint64_t calls = 0;      ///< calls of Inspect(): elements looked at
     std::uint64_t visited = 0;    ///< elements that passed the test of interest
     std::uint64_t extracted = 0;  ///< elements that contribute to the surface
+    std::uint64_t limited = 0;    ///< of these: kept from being divided by a limit (high_order.hpp)
 };
 
 /// How far what is drawn may be from the data, in the units of the data. Every result has it.
@@ -105,8 +106,8 @@ struct Isosurface : ErrorBounds {
     /// threshold on them was the criterion: |U - C| on the triangles, |P_S U - C| on the whole
     /// surface U = C, and |U - C| wherever inside and outside are not those of U; all at most this.
     /// It is no less than what the flatness of triangles in leaves makes it, in shapes other than
-    /// simplices. Infinity under other criteria, but for none (Exact), and for cuts that lie off the
-    /// level of P_S U (Cuts::finest).
+    /// simplices. Infinity under other criteria, but for none (Exact), and for cuts that lie off
+    /// the level of P_S U (Cuts::finest).
     double surface_error = std::numeric_limits<double>::infinity();
     bool cancelled = false;       ///< by options.progress; the surface is then a part
     std::size_t table_bytes = 0;  ///< hash tables used while extracting

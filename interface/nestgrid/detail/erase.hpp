@@ -210,6 +210,24 @@ public:
         }
     }
 
+    int degree(Task* task, const Handle& leaf) const override {
+        if constexpr (may_have_degree_) {
+            return with(task, [&](auto& context) {
+                return static_cast<int>(call_degree(*field_, context, element_of<Element>(leaf)));
+            });
+        }
+        return 1;
+    }
+    void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
+                  Real* out) const override {
+        if constexpr (may_have_degree_) {
+            with(task, [&](auto& context) {
+                call_evaluate(*field_, context, element_of<Element>(leaf), reference,
+                              std::span<Real>(out, reference.size() * components_));
+            });
+        }
+    }
+
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         if constexpr (may_offer<Grid>(Feature::hanging_parents)) {
             return grid_->hanging_parents(node);
@@ -257,6 +275,10 @@ private:
     };
     static constexpr bool may_have_gradients_ =
         offers_corner_gradients<Field, Context<Grid>, const Element&, std::span<Point>>;
+    static constexpr bool may_have_degree_ =
+        offers_degree<Field, Context<Grid>, const Element&> &&
+        offers_evaluate<Field, Context<Grid>, const Element&, std::span<const Point>,
+                        std::span<Real>>;
     static constexpr bool may_know_patches_ = requires(
         const Grid& grid, const Field& field, Context<Grid>& context, const Element& e,
         const Real* values, ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) {
@@ -294,6 +316,9 @@ private:
             if (offers_gradients<Grid>(field)) {
                 facts.features |= static_cast<unsigned>(Feature::gradients);
             }
+        }
+        if (offers_polynomials<Grid>(field)) {
+            facts.features |= static_cast<unsigned>(Feature::degree);
         }
         if constexpr (has_star_rows_ && KnowsRows<Field>) {
             facts.knows_stars = nestgrid::knows_stars(grid) && nestgrid::knows_stars(field);

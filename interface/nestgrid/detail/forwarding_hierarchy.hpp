@@ -43,6 +43,11 @@ public:
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         inner_->corner_gradients(task, element, out);
     }
+    int degree(Task* task, const Handle& leaf) const override { return inner_->degree(task, leaf); }
+    void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
+                  Real* out) const override {
+        inner_->evaluate(task, leaf, reference, out);
+    }
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         return inner_->hanging_parents(node);
     }

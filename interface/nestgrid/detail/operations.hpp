@@ -99,7 +99,12 @@ struct NoContextArgument {
     OPERATION(                                                                                     \
         of_field, no_feature, row_values,                                                          \
         "void row_values(NodeKey first, std::size_t stride, std::span<value_type> out) const",     \
-        void, NoContextArgument, NodeKey, std::size_t, Values)
+        void, NoContextArgument, NodeKey, std::size_t, Values)                                     \
+    OPERATION(of_field, Feature::degree, degree, "int degree(const Element&) const", int, C, E)    \
+    OPERATION(of_field, Feature::degree, evaluate,                                                 \
+              "void evaluate(const Element&, std::span<const Point> reference, "                   \
+              "std::span<value_type> out) const",                                                  \
+              void, C, E, Places, Values)
 
 /// Whether an operation that returns T can stand for one that returns Result: integers for
 /// integers, but truth values for truth values only, and anything for void.
@@ -206,6 +211,7 @@ private:
     using C = Context<Grid>;
     using Keys = std::span<NodeKey>;
     using Points = std::span<Point>;
+    using Places = std::span<const Point>;
     using Parents = std::array<NodeKey, 2>;
     using Values = std::span<Real>;
 };
@@ -245,6 +251,22 @@ constexpr bool offers_gradients(const Field& field) {
         return false;
     } else if constexpr (detail::DecidesAtRunTime<Field>) {
         return field.offers(Feature::gradients);
+    } else {
+        return true;
+    }
+}
+
+/// Whether this field tells the polynomials of leaves of the grid.
+template <class Grid, class Field>
+constexpr bool offers_polynomials(const Field& field) {
+    using E = const ElementOf<Grid>&;
+    using C = Context<Grid>;
+    if constexpr (!detail::offers_degree<Field, C, E> ||
+                  !detail::offers_evaluate<Field, C, E, std::span<const Point>,
+                                           std::span<typename Field::value_type>>) {
+        return false;
+    } else if constexpr (detail::DecidesAtRunTime<Field>) {
+        return field.offers(Feature::degree);
     } else {
         return true;
     }
@@ -294,6 +316,11 @@ consteval bool require_fitting_operations() {
                       detail::offers_new_keys<Grid, C, E, std::span<NodeKey>>,
                   "A nested grid with keys of its own must define both 'corner_keys' and "
                   "'new_keys'; the library would ignore one alone.");
+    static_assert(detail::offers_degree<Field, C, E> ==
+                      detail::offers_evaluate<Field, C, E, std::span<const Point>,
+                                              std::span<typename Field::value_type>>,
+                  "A nodal field of higher degree must define both 'degree' and 'evaluate'; the "
+                  "library would ignore one alone.");
     return detail::OperationsOfGrid<Grid>::all_fit() &&
            detail::OperationsOfField<Field, Grid>::all_fit();
 }

@@ -105,8 +105,9 @@ void GridChecker::check_region(const State& s, const std::vector<Inside>& inside
         fail(Law::split_repeats, "split() gives another rule when asked again in " + name(s.step));
     }
     if (rule == nullptr) {
-        if (s.member->hidden != Hidden::wholly) check_leaf(s, inside);
-        return;
+        if (s.member->hidden == Hidden::wholly) return;
+        check_leaf(s, inside);
+        return check_degree(s);
     }
     std::vector<Corner> nodes(s.corner.begin(), s.corner.begin() + topology(s.shape).corners);
     for (std::size_t n = 0; n < rule->new_nodes.size(); ++n) make_node(*rule, n, nodes);

@@ -178,6 +178,11 @@ private:
     void check_leaf(const State& s, const std::vector<Inside>& inside);
     void check_hanging_node(const State& leaf, const Made& made, bool interpolated);
 
+    // Leaves of higher degree (check_degree.cpp).
+    void check_degree(const State& leaf);
+    void check_corner_values(const State& leaf);
+    void check_line(const State& leaf, int degree, Point from, std::size_t axis, double length);
+
     const Hierarchy<double>* hierarchy_;
     double epsilon_;
     const CheckOptions* options_;

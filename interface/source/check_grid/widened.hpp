@@ -53,6 +53,13 @@ public:
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         from_->corner_gradients(task, element, out);
     }
+    int degree(Task* task, const Handle& leaf) const override { return from_->degree(task, leaf); }
+    void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
+                  double* out) const override {
+        std::vector<float> values(reference.size() * static_cast<std::size_t>(facts().components));
+        from_->evaluate(task, leaf, reference, values.data());
+        std::copy(values.begin(), values.end(), out);
+    }
 
 private:
     /// Lets ask() write all components at some nodes, and converts them. There is room for as many

@@ -150,6 +150,9 @@ nestgrid_field checked_table(const nestgrid_field& given, int value_type) {
         throw InvalidInput(
             "the table of the field lacks the function 'coarse_values' or 'new_values'");
     }
+    if ((table.degree == nullptr) != (table.evaluate == nullptr)) {
+        throw InvalidInput("the table of the field has one of 'degree' and 'evaluate' alone");
+    }
     return table;
 }
 

@@ -40,7 +40,8 @@ constexpr int value_type_code() {
     return std::is_same_v<Real, float> ? NESTGRID_FLOAT : NESTGRID_DOUBLE;
 }
 
-using TableRows = double (*)[3];  // NOLINT(modernize-avoid-c-arrays)
+using TableRows = double (*)[3];             // NOLINT(modernize-avoid-c-arrays)
+using ConstTableRows = const double (*)[3];  // NOLINT(modernize-avoid-c-arrays)
 
 inline TableRows as_rows(Point* points) {
     static_assert(sizeof(Point) == 3 * sizeof(double));
@@ -205,7 +206,19 @@ public:
         return missing;
     }
     bool offers(Feature feature) const {
-        return feature == Feature::gradients && table_.corner_gradients != nullptr;
+        return (feature == Feature::gradients && table_.corner_gradients != nullptr) ||
+               (feature == Feature::degree && table_.degree != nullptr);
+    }
+    int degree(const nestgrid_element& leaf, TableContext& c) const {
+        int degree = 1;
+        check(table_.degree(table_.self, c.state(), &leaf, &degree), "degree", &c);
+        return degree;
+    }
+    void evaluate(const nestgrid_element& leaf, std::span<const Point> reference,
+                  std::span<Real> out, TableContext& c) const {
+        check(table_.evaluate(table_.self, c.state(), &leaf, reference.size(),
+                              reinterpret_cast<ConstTableRows>(reference.data()), out.data()),
+              "evaluate", &c);
     }
     /// Whether the table gives values at nodes that the grid tells in rows, and gradients.
     bool tells_values() const { return table_.node_values != nullptr; }

@@ -77,6 +77,7 @@ public:
             const auto feature = static_cast<Feature>(bit);
             if (grid_.offers(feature) || field_.first().offers(feature)) facts.features |= bit;
         }
+        if (!more.empty()) facts.features &= ~static_cast<unsigned>(Feature::degree);
         if (facts.offers(Feature::dense_keys)) facts.node_count = grid_.node_count();
         facts.conforming = grid_.conforming();
         facts.knows_patches = tells_rows();
@@ -153,6 +154,17 @@ public:
         }
         // An element that is told in rows is nothing but its corners.
         gradients(std::span(of(element).word).first(out.size()), out);
+    }
+
+    int degree(Task* task, const Handle& leaf) const override {
+        if (!this->offers(Feature::degree)) return 1;
+        return field_.first().degree(of(leaf), context_of(task));
+    }
+    void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
+                  Real* out) const override {
+        if (!this->offers(Feature::degree)) return;
+        field_.first().evaluate(of(leaf), reference, values_at(out, reference.size()),
+                                context_of(task));
     }
 
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {

@@ -396,6 +396,27 @@ nestgrid_field field_in_c(const Grid&, const Field& model) {
             };
         }
     }
+    if constexpr (nestgrid::detail::offers_degree<Field, nestgrid::Context<Grid>,
+                                                  const nestgrid::ElementOf<Grid>&>) {
+        t.degree = [](const void* self, void* context, const nestgrid_element* e, int* degree) {
+            return guarded([&] {
+                *degree = Cross::with(context, [&](auto& ctx) {
+                    return nestgrid::detail::call_degree(field(self), ctx, Cross::load(e));
+                });
+            });
+        };
+        t.evaluate = [](const void* self, void* context, const nestgrid_element* e,
+                        std::size_t count, const double(*reference)[3], void* out) {
+            return guarded([&] {
+                Cross::with(context, [&](auto& ctx) {
+                    nestgrid::detail::call_evaluate(
+                        field(self), ctx, Cross::load(e),
+                        std::span(reinterpret_cast<const nestgrid::Point*>(reference), count),
+                        values(out, count));
+                });
+            });
+        };
+    }
     return t;
 }
 

@@ -6,8 +6,8 @@
 
 namespace nestgrid {
 
-/// Components of a finite element function at the vertices, from the solver's own vector. Of
-/// elements of higher order the values at the vertices alone are used.
+/// Components of a finite element function, from the solver's own vector: at the vertices, and, of
+/// elements of higher degree, everywhere (degree() and evaluate(), high_order.hpp).
 template <int dim, class Vector, int component_count = 1, int spacedim = dim>
 class DealiiField {
 public:
@@ -55,6 +55,13 @@ public:
         return 0;
     }
 
+    /// The greatest degree of the components, the same on all leaves.
+    int degree(const typename Grid::Element& /*leaf*/) const { return degree_; }
+    /// Values at points of the reference element. Where these are the nodes of the components,
+    /// entries of the vector are copied.
+    void evaluate(const typename Grid::Element& leaf, std::span<const Point> reference,
+                  std::span<value_type> out) const;
+
 private:
     using DofCell = typename dealii::DoFHandler<dim, spacedim>::cell_iterator;
 
@@ -64,12 +71,25 @@ private:
         }
     }
 
+    /// A degree of freedom of a cell, and where it lies.
+    struct Node {
+        unsigned dof = 0;
+        Point at{0, 0, 0};
+    };
+
+    void find_nodes(std::size_t component, unsigned of_element);
+    static bool are_at(std::span<const Node> nodes, std::span<const Point> places);
+    dealii::Point<dim> to_unit_cell(const Point& x) const;
+
     const Grid* grid_;
     const dealii::DoFHandler<dim, spacedim>* dofs_;
     const Vector* values_;
     dealii::types::global_dof_index count_;  // of degrees of freedom
     detail::MadeFor made_for_;
     std::array<unsigned, component_count> offset_{};  // among the degrees of freedom of a vertex
+    int degree_ = 1;
+    std::array<std::vector<Node>, component_count> nodes_{};  // first direction fastest
+    std::array<unsigned, component_count> which_{};
 };
 
 template <int dim, class Vector, int component_count, int spacedim>
@@ -88,6 +108,7 @@ DealiiField<dim, Vector, component_count, spacedim>::DealiiField(
                            std::to_string(dofs.n_dofs()) + " degrees of freedom");
     }
     const auto& fe = dofs.get_fe();
+    which_ = which;
     const unsigned per_vertex = fe.n_dofs_per_vertex();
     for (std::size_t c = 0; c < which.size(); ++c) {
         if (which[c] >= fe.n_components()) {
@@ -105,6 +126,79 @@ DealiiField<dim, Vector, component_count, spacedim>::DealiiField(
         if (!found) {
             throw InvalidInput("component " + std::to_string(which[c]) + " of " + fe.get_name() +
                                " has no nodal values at vertices");
+        }
+        find_nodes(c, fe.system_to_base_index(offset_[c]).first.first);
+    }
+}
+
+/// Lists the degrees of freedom of a component. It is one of the base element with this number.
+template <int dim, class Vector, int component_count, int spacedim>
+void DealiiField<dim, Vector, component_count, spacedim>::find_nodes(std::size_t component,
+                                                                     unsigned of_element) {
+    const auto& fe = dofs_->get_fe();
+    degree_ = std::max(degree_, static_cast<int>(fe.base_element(of_element).degree));
+    std::vector<Node>& nodes = nodes_[component];
+    for (unsigned i = 0; i < fe.n_dofs_per_cell(); ++i) {
+        if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != which_[component]) {
+            continue;
+        }
+        Node node{i, {0, 0, 0}};
+        const unsigned in_base = fe.system_to_base_index(i).second;
+        const auto& places = fe.base_element(of_element).get_unit_support_points();
+        for (unsigned d = 0; d < dim; ++d) node.at[d] = places[in_base][d];
+        nodes.push_back(node);
+    }
+    std::ranges::sort(nodes, [](const Node& a, const Node& b) {
+        for (std::size_t d = dim; d-- > 0;) {
+            if (std::abs(a.at[d] - b.at[d]) > 1e-9) return a.at[d] < b.at[d];
+        }
+        return false;
+    });
+}
+
+template <int dim, class Vector, int component_count, int spacedim>
+bool DealiiField<dim, Vector, component_count, spacedim>::are_at(std::span<const Node> nodes,
+                                                                 std::span<const Point> places) {
+    return std::equal(
+        nodes.begin(), nodes.end(), places.begin(), places.end(),
+        [](const Node& node, const Point& place) { return norm(node.at - place) < 1e-12; });
+}
+
+/// The base of deal.II's pyramid is twice as long, and its apex lies above the middle.
+template <int dim, class Vector, int component_count, int spacedim>
+dealii::Point<dim> DealiiField<dim, Vector, component_count, spacedim>::to_unit_cell(
+    const Point& x) const {
+    dealii::Point<dim> to;
+    const bool pyramid = dofs_->get_fe().reference_cell() == dealii::ReferenceCells::Pyramid;
+    for (unsigned d = 0; d < dim; ++d) to[d] = pyramid && d < 2 ? 2 * x[d] - (1 - x[2]) : x[d];
+    return to;
+}
+
+template <int dim, class Vector, int component_count, int spacedim>
+void DealiiField<dim, Vector, component_count, spacedim>::evaluate(
+    const typename Grid::Element& leaf, std::span<const Point> reference,
+    std::span<value_type> out) const {
+    const auto& fe = dofs_->get_fe();
+    const DofCell cell(&grid_->triangulation(), leaf.level, leaf.index, dofs_);
+    std::vector<dealii::types::global_dof_index> dof(fe.n_dofs_per_cell());
+    cell->get_dof_indices(dof);
+    const std::size_t stride = nodes_.size();
+    for (std::size_t c = 0; c < stride; ++c) {
+        const std::vector<Node>& nodes = nodes_[c];
+        if (are_at(nodes, reference)) {
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                out[i * stride + c] = (*values_)(dof[nodes[i].dof]);
+            }
+            continue;
+        }
+        for (std::size_t i = 0; i < reference.size(); ++i) {
+            const dealii::Point<dim> at = to_unit_cell(reference[i]);
+            double sum = 0;
+            for (const Node& node : nodes) {
+                sum += fe.shape_value_component(node.dof, at, which_[c]) *
+                       static_cast<double>((*values_)(dof[node.dof]));
+            }
+            out[i * stride + c] = static_cast<value_type>(sum);
         }
     }
 }

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The preroll of a solution of higher degree: what holds at the nodes that the hierarchy itself
+// makes, at any tolerance.
+//
+// A node inside an edge or face of a larger leaf hangs there: its value is that of the record, and
+// beta is that of the part that it halves. Two numbers guide the search:
+//   bound  |U - mean of P_S U at the parents|, and the greatest bound of finer nodes: on an element
+//   U
+//          is within P_S U at the corners +- the greatest bound of its new nodes. At a node that
+//          hangs, P_S U may be that mean; what this moves is added where the node is a parent or a
+//          corner (deviation);
+//   stop   with the tolerance tau, S = (stop <= tau) holds only where every element that may stop
+//          differs from U by at most tau, and where all edges and faces of leaves around and below
+//          are flat at tau / 3. It is saturated: at a corner no less than at the new nodes.
+// Consequence: where an element stops, every deeper node on its faces is interpolated, those of the
+// hierarchy by `stop`, virtual ones by beta.
+#pragma once
+
+#include <high_order/leaf_records.hpp>
+#include <nestgrid/algorithms/indicator.hpp>
+
+namespace nestgrid::engine {
+
+/// Parts are flat where beta is at most tau / 3: in all dimensions, so that parts of what is flat
+/// are flat.
+inline constexpr double flat_share = 3;
+
+struct RealNode {
+    double beta = 0;  ///< of the part that the node halves, where it hangs
+    float stop = 0;   ///< rounded up, as the others
+    float bound = 0;
+    float off = 0;  ///< the node's own part of the bound
+    bool hangs = false;
+    std::uint8_t shift = 0;  ///< the part halved has 2^-shift of the size of the record
+};
+
+/// The table of all nodes of the hierarchy, which is also the guide of searches.
+class RealNodes final : public Bounds {
+public:
+    /// Borrows the records.
+    RealNodes(const Hierarchy<double>& base, const BaseWalk& walk, LeafRecords& records);
+
+    const RealNode* find(NodeKey key) const {
+        const std::uint32_t* const at = number_.find(key);
+        return at == nullptr ? nullptr : &nodes_[*at];
+    }
+    /// Values of all components at a node, which exists.
+    const double* values(NodeKey key) const {
+        return values_.data() + *number_.find(key) * records_->components();
+    }
+    std::size_t size() const { return nodes_.size(); }
+    std::size_t memory_bytes() const;
+
+    double offset_bound(NodeKey node) const override;
+    double bound(const Rule& rule, std::span<const NodeKey> nodes) const override;
+    const HangingNodes* hanging() const override { return nullptr; }
+    bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
+    double least() const override { return records_->least(); }
+    double greatest() const override { return records_->greatest(); }
+
+private:
+    struct Split {
+        std::array<std::uint32_t, 27> node;  // corners first
+        NodeMask outside;
+        int level;
+    };
+    struct Leaf {
+        std::array<std::uint32_t, max_box_corners> corner;
+        std::size_t leaf;
+    };
+    class Preroll;
+
+    const LeafRecords* records_;
+    std::uint64_t epoch_;
+    std::vector<RealNode> nodes_;
+    std::vector<double> values_;
+    KeyTable<NodeKey, std::uint32_t> number_;
+};
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Elements of a virtual refinement: those of the hierarchy, and the parts of leaves.
+//
+// A part of a leaf is flat where beta is at most a third of the tolerance, or where it is as small
+// as the depth allows. A leaf, or an element below it, is divided where an edge, a face or itself
+// is not flat, or where what is drawn in it might miss U by more than the tolerance. Invariants:
+//   - a new node hangs exactly where the part that it halves is flat;
+//   - values and flatness of what lies on the surface of a leaf come from the records, of what lies
+//     inside from its own coefficients;
+//   - no criterion stops at a virtual node.
+// Consequence: a virtual element ends only where every deeper node on its faces hangs, seen from
+// any side, so that drawings are closed as at other hanging nodes.
+#pragma once
+
+#include <optional>
+
+#include <high_order/real_nodes.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
+#include <walk/position_functions.hpp>
+
+namespace nestgrid::engine {
+
+/// What is made once per solution.
+struct HighOrderData {
+    std::optional<WidenedHierarchy<float>> widened;  // where the values are float
+    const Hierarchy<double>* base;
+    BaseWalk walk;
+    LeafRecords records;
+    RealNodes nodes;
+
+    explicit HighOrderData(const Hierarchy<float>& single);
+    explicit HighOrderData(const Hierarchy<double>& base);
+};
+
+/// What is known of an element besides its place.
+struct ElementState {
+    Handle base;                 // the element of the hierarchy, or the leaf it lies in
+    const Rule* rule = nullptr;  // of that element
+    BoxKeys key{};
+    NodeKey path = 0;                        // of that element
+    std::array<Point, max_box_corners> x{};  // of the corners, where the hierarchy has positions
+};
+
+/// An element of the hierarchy, or one below a leaf.
+struct VirtualElement {
+    static constexpr std::uint32_t no_leaf = 0xFFFFFFFFU;
+    std::uint32_t leaf = no_leaf;  // none: an element that the hierarchy itself divides
+    std::int32_t level = 0;        // below the leaf
+    BoxPlace place{};              // in the leaf, in units of the element
+    const ElementState* state = nullptr;
+};
+
+class VirtualElements {
+public:
+    VirtualElements(std::shared_ptr<const HighOrderData> data, const VirtualOptions& options);
+
+    const HighOrderData& data() const { return *data_; }
+    const Criterion& criterion() const { return criterion_; }
+
+    std::unique_ptr<Task> open() const;
+    void coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const;
+    NodeMask coarse_values(Task* task, std::size_t i, std::span<double> out) const;
+    void enter(Task* task, const VirtualElement& e, NodeMask which, double* values, NodeMask wanted,
+               Family& family) const;
+    void new_values(Task* task, const VirtualElement& e, NodeMask which, double* values) const;
+    unsigned boundary(Task* task, const VirtualElement& e) const;
+    /// Positions of new nodes: true ones of the hierarchy; means of the parents where these hang,
+    /// and below leaves, whose edges are straight.
+    void new_positions(Task* task, const VirtualElement& e, NodeMask which,
+                       std::span<Point> out) const;
+
+private:
+    /// S = (stop <= tolerance) at nodes of the hierarchy.
+    class Stops final : public Criterion {
+    public:
+        Stops(const RealNodes& nodes, double tolerance) : nodes_{&nodes}, tolerance_{tolerance} {}
+        NodeMask holds(const NewNodes& nodes) const override;
+        bool saturated() const override { return true; }
+        bool made_for(std::uint64_t epoch) const override { return nodes_->made_for(epoch); }
+
+    private:
+        const RealNodes* nodes_;
+        double tolerance_;
+    };
+    /// The nets of the children of the elements on the way down that were entered last.
+    struct OpenTask final : Task {
+        struct Halves {
+            std::uint32_t leaf = VirtualElement::no_leaf;
+            BoxPlace place{};
+            std::vector<double> nets;  // of one child behind the other, component 0 and so on
+        };
+        std::unique_ptr<Task> base;
+        Family family;               // of a coarse element
+        std::vector<Halves> halves;  // by level of the element entered
+    };
+    /// What a leaf, or an element below it, looks like at the tolerance.
+    struct Looked {
+        NodeMask flat = 0;  // new nodes that halve a flat part
+        NetFacts facts;     // of the element; its range includes that of the records around
+    };
+    struct Places;
+
+    std::array<Point, 27> positions(Task* task, const VirtualElement& e, NodeMask which) const;
+    static Places& places(Family& family, std::size_t count);
+    void set_leaf(VirtualElement& e, const Member& member) const;
+    void set_child(const VirtualElement& father, std::size_t child, const Family& base,
+                   VirtualElement& e, ElementState& state) const;
+    void describe(OpenTask& task, const VirtualElement& e, const double* u, Family& family,
+                  std::size_t member) const;
+    void describe_split(const VirtualElement& e, Member& member) const;
+    void describe_leaf(OpenTask& task, const VirtualElement& e, const double* u,
+                       Member& member) const;
+    // One leaf and its parts (leaf_parts.cpp).
+    Looked look(const VirtualElement& e, const double* net) const;
+    bool is_flat(const NetFacts& facts, int level) const;
+    double drawn_error(const double* net, const LeafPolynomial& leaf, double beta,
+                       std::span<const double> u) const;
+    const double* net_of(OpenTask& task, const VirtualElement& e) const;
+    const double* nets_of_children(OpenTask& task, const VirtualElement& e) const;
+
+    std::shared_ptr<const HighOrderData> data_;
+    const LeafRecords* records_;
+    const RealNodes* nodes_;
+    const Rule* rule_;
+    int dimension_;
+    std::size_t corners_;
+    std::size_t components_;
+    double tolerance_;
+    double flat_;  // beta of what is flat
+    int depth_;
+    double least_beyond_;  // covers rounding
+    bool linear_;          // every leaf is the interpolant of its corners, and fits its neighbours
+    Stops criterion_;
+    std::vector<HalvedPart> halved_;
+};
+
+}  // namespace nestgrid::engine

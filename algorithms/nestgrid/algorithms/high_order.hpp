@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Data of higher degree (paper, section 7) as an ordinary hierarchy with hanging nodes.
+//     const HighOrder data(grid, field);                            once per solution
+//     const VirtualRefinement fine(data, {.tolerance = 1e-3});
+//     isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
+// For quadrilaterals and hexahedra, straight and halved in all directions; the field has degree()
+// and evaluate() (optional.hpp). The tolerance is one of component 0. docs/high_order.md.
+#pragma once
+
+#include <nestgrid/algorithms/indicator.hpp>
+
+namespace nestgrid {
+namespace engine {
+struct HighOrderData;
+class VirtualElements;
+}  // namespace engine
+
+/// The polynomials of all leaves, records of the edges and faces that they share, and a preroll.
+class HighOrder {
+public:
+    /// Borrows the hierarchy, or grid and field. Asks the field once for each leaf.
+    ///
+    /// \throw InvalidInput for other grids and fields, GridError for a wrong degree or value
+    explicit HighOrder(const Hierarchy<float>& base);
+    explicit HighOrder(const Hierarchy<double>& base);
+    template <class Grid, class Field>
+    HighOrder(const Grid& grid, const Field& field)
+        : HighOrder(std::make_shared<const detail::ErasedHierarchy<Grid, Field>>(grid, field)) {}
+
+    int greatest_degree() const;
+    /// How far leaves are apart on edges and faces that they share: rounding in a continuous field.
+    double jump() const;
+    std::size_t memory_bytes() const;
+
+private:
+    friend class VirtualRefinement;
+    template <class Base>
+    explicit HighOrder(std::shared_ptr<const Base> base)
+        : HighOrder(static_cast<const Hierarchy<typename Base::value_type>&>(*base)) {
+        base_ = std::move(base);
+    }
+    std::shared_ptr<const void> base_;
+    std::shared_ptr<const engine::HighOrderData> data_;
+};
+
+struct VirtualOptions {
+    double tolerance = 0;  ///< in the units of the data; at least 1e-12 of their range
+    int depth = 8;         ///< leaves are halved at most this many times, 1 to 16
+};
+
+/// Leaves halved until what is drawn is within the tolerance, but for elements that meet the depth
+/// limit (TraversalCounts::limited). Nothing is stored for virtual elements.
+class VirtualRefinement final : public Hierarchy<double> {
+public:
+    /// \throw InvalidInput for other options
+    VirtualRefinement(const HighOrder& data, const VirtualOptions& options);
+    const Criterion& criterion() const;  ///< where coarser elements of the hierarchy may stop
+    const Bounds& bounds() const;
+
+    std::size_t coarse_count() const override;
+    std::uint64_t epoch() const override;
+    Elements make_elements() const override;
+    std::unique_ptr<Task> open() const override;
+    void coarse(Task*, std::size_t i, Coarse&, Family&) const override;
+    NodeMask coarse_values(Task*, std::size_t i, std::size_t corners, double* out) const override;
+    NodeMask enter(Task*, const Handle&, const Rule&, NodeMask which, double* values,
+                   NodeMask wanted, Family&) const override;
+    NodeMask new_values(Task*, const Handle&, const Rule&, NodeMask, double*) const override;
+    void corners(Task*, const Handle&, std::size_t, NodeKey*, Point*, unsigned*) const override;
+    void new_positions(Task*, const Handle&, NodeMask, std::span<Point>) const override;
+    void corner_gradients(Task*, const Handle&, std::span<Point>) const override {}
+
+private:
+    std::shared_ptr<const void> base_;
+    std::shared_ptr<const engine::VirtualElements> elements_;
+};
+
+}  // namespace nestgrid
