@@ -188,7 +188,8 @@ TEST(BlockFields, ReadAnyLayout) {
             }
         }
     }
-    const BlockArray<3> array{bytes.data() + 1 + 4UL * (3UL * 30 + 5), {-4L * 30, 4L * 6, -4L}};
+    const BlockArray<3, float> array{bytes.data() + 1 + 4UL * (3UL * 30 + 5),
+                                     {-4L * 30, 4L * 6, -4L}};
     EXPECT_EQ(values_of(grid, BlockCells<3, float>(grid, data.arrays())),
               values_of(grid, BlockCells<3, float>(grid, {{array}})));
 }

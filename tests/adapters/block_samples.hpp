@@ -210,11 +210,11 @@ public:
     BlockData& operator=(const BlockData&) = delete;
     ~BlockData() = default;
 
-    const BlockArrays<dim>& arrays() const { return arrays_; }
+    const BlockArrays<dim, Real>& arrays() const { return arrays_; }
 
 private:
     std::vector<std::vector<Real>> values_;
-    BlockArrays<dim> arrays_;
+    BlockArrays<dim, Real> arrays_;
 };
 
 /// Values one after the other.

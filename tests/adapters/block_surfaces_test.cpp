@@ -97,7 +97,7 @@ void expect_leaf_blocks_closed() {
         add_parents(blocks);
         const BlockGrid<dim> grid(blocks);
         const BlockData<dim> all(blocks, [](const Point& x) { return norm(x) - 0.31; });
-        BlockArrays<dim> arrays = all.arrays();
+        BlockArrays<dim, double> arrays = all.arrays();
         std::size_t parents = 0;
         for (std::size_t l = 0; l < arrays.size(); ++l) {
             for (std::size_t b = leaves.levels[l].boxes.size(); b < arrays[l].size(); ++b) {

@@ -222,8 +222,8 @@ TEST(Blocks, SayWhatIsWrong) {
     const BlockGrid<3> grid(good);
     const BlockData<3> data(good, [](const Point& x) { return x[0]; });
     const auto add_arrays = [&](const std::string& state,
-                                const std::function<void(BlockArrays<3>&)>& spoil) {
-        BlockArrays<3> arrays = data.arrays();
+                                const std::function<void(BlockArrays<3, double>&)>& spoil) {
+        BlockArrays<3, double> arrays = data.arrays();
         spoil(arrays);
         rows.add(state, [&] { BlockCells<3, double>(grid, arrays); });
     };
@@ -233,7 +233,7 @@ TEST(Blocks, SayWhatIsWrong) {
     rows.add("an array of another size",
              [&] { block_array(good.levels[0].boxes[0], std::span<const double>(), 1); });
     rows.add<GridError>("an array that is not here, where it is needed", [&] {
-        BlockArrays<3> arrays = data.arrays();
+        BlockArrays<3, double> arrays = data.arrays();
         arrays[1][1].first = nullptr;
         isosurface(grid, BlockCells<3, double>(grid, arrays), 0.55);
     });

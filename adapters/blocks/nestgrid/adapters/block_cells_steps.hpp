@@ -10,8 +10,8 @@
 namespace nestgrid {
 
 template <int dim, class Real>
-detail::BlockReader<dim, Real>::BlockReader(const BlockGrid<dim>& grid, BlockArrays<dim> arrays,
-                                            BlockCentring centring)
+detail::BlockReader<dim, Real>::BlockReader(const BlockGrid<dim>& grid,
+                                            BlockArrays<dim, Real> arrays, BlockCentring centring)
     : grid_{&grid}, arrays_{std::move(arrays)} {
     if (arrays_.size() != grid.level_count()) {
         throw InvalidInput("there are arrays of " + std::to_string(arrays_.size()) +
@@ -25,7 +25,7 @@ detail::BlockReader<dim, Real>::BlockReader(const BlockGrid<dim>& grid, BlockArr
                                std::to_string(arrays_[l].size()) + " arrays");
         }
         for (std::size_t b = 0; b < arrays_[l].size(); ++b) {
-            const BlockArray<dim>& array = arrays_[l][b];
+            const BlockArray<dim, Real>& array = arrays_[l][b];
             if (array.first == nullptr) continue;
             const auto size = grid.box_size(l, b);
             for (std::size_t d = 0; d < size.size(); ++d) {

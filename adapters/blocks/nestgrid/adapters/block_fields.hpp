@@ -17,15 +17,16 @@
 namespace nestgrid {
 
 /// Where the numbers of a box lie. They need not be aligned.
-template <int dim>
+/// \tparam Real float or double
+template <int dim, class Real>
 struct BlockArray {
     const void* first = nullptr;  ///< of the first cell, or node, of the box; behind ghost cells
     std::array<std::ptrdiff_t, static_cast<std::size_t>(dim)> stride{};  ///< in bytes
 };
 
 /// Those of all boxes, by level.
-template <int dim>
-using BlockArrays = std::vector<std::vector<BlockArray<dim>>>;
+template <int dim, class Real>
+using BlockArrays = std::vector<std::vector<BlockArray<dim, Real>>>;
 
 /// What an array has one number for.
 enum class BlockCentring : std::uint8_t { cells, nodes };
@@ -35,9 +36,9 @@ enum class BlockCentring : std::uint8_t { cells, nodes };
 ///
 /// \throw InvalidInput where there are more or fewer numbers than that
 template <int dim, class Real>
-BlockArray<dim> block_array(const BlockBox<dim>& box, std::span<const Real> values, int ghosts = 0,
-                            BlockCentring centring = BlockCentring::cells) {
-    BlockArray<dim> array;
+BlockArray<dim, Real> block_array(const BlockBox<dim>& box, std::span<const Real> values,
+                                  int ghosts = 0, BlockCentring centring = BlockCentring::cells) {
+    BlockArray<dim, Real> array;
     std::size_t count = 1;
     std::size_t first = 0;
     for (std::size_t d = 0; d < array.stride.size(); ++d) {
@@ -65,13 +66,13 @@ class BlockReader {
 public:
     /// \throw InvalidInput where there is not one array for each box, or numbers of one lie on each
     /// other
-    BlockReader(const BlockGrid<dim>& grid, BlockArrays<dim> arrays, BlockCentring centring);
+    BlockReader(const BlockGrid<dim>& grid, BlockArrays<dim, Real> arrays, BlockCentring centring);
 
     const BlockGrid<dim>& grid() const { return *grid_; }
     bool has(const BlockCell<dim>& cell) const { return array(cell).first != nullptr; }
     /// \param offset from the cell or its first node
     Real read(const BlockCell<dim>& cell, const BlockPlace<dim>& offset = {}) const {
-        const BlockArray<dim>& a = array(cell);
+        const BlockArray<dim, Real>& a = array(cell);
         std::ptrdiff_t bytes = 0;
         for (std::size_t d = 0; d < offset.size(); ++d) {
             bytes += a.stride[d] * (cell.place[d] + offset[d]);
@@ -104,12 +105,12 @@ public:
     }
 
 private:
-    const BlockArray<dim>& array(const BlockCell<dim>& cell) const {
+    const BlockArray<dim, Real>& array(const BlockCell<dim>& cell) const {
         return arrays_[static_cast<std::size_t>(cell.level)][static_cast<std::size_t>(cell.box)];
     }
 
     const BlockGrid<dim>* grid_;
-    BlockArrays<dim> arrays_;
+    BlockArrays<dim, Real> arrays_;
 };
 
 }  // namespace detail
@@ -131,7 +132,7 @@ public:
     ///
     /// \throw InvalidInput where there is not one array for each box, or numbers of one lie on each
     /// other
-    BlockCells(const BlockGrid<dim>& grid, BlockArrays<dim> arrays,
+    BlockCells(const BlockGrid<dim>& grid, BlockArrays<dim, Real> arrays,
                CellRule rule = CellRule::smooth)
         : reader_(grid, std::move(arrays), BlockCentring::cells), rule_{rule} {}
 
@@ -202,7 +203,7 @@ public:
     ///
     /// \throw InvalidInput where there is not one array for each box, or numbers of one lie on each
     /// other
-    BlockNodes(const BlockGrid<dim>& grid, BlockArrays<dim> arrays)
+    BlockNodes(const BlockGrid<dim>& grid, BlockArrays<dim, Real> arrays)
         : reader_(grid, std::move(arrays), BlockCentring::nodes) {}
 
     NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
