@@ -111,16 +111,20 @@ void expect_cells() {
         const CellsOfBlocks<dim> cells(blocks);
         const auto hierarchy = erase(grid, ZeroField<BlockGrid<dim>>{});
         std::multiset<Point> centres;
+        std::set<Point> nodes;
         const engine::Walk<float> walk(hierarchy, {.positions = true});
         engine::for_each_element(walk, false, [&](const auto& view, const engine::Split& split) {
             if (split.rule != nullptr) return;
             std::array<Point, max_corners> x;
             walk.corners(view, nullptr, x.data());
             centres.insert(0.5 * (x[0] + x[(std::size_t{1} << dim) - 1]));
+            nodes.insert(x.begin(), x.begin() + (1 << dim));
         });
+        EXPECT_EQ(grid.used_node_count(), nodes.size());
         std::multiset<Point> expected;
         for (const Point& x : cells.centres()) expected.insert(x);
         ASSERT_EQ(centres.size(), expected.size());
+        EXPECT_EQ(grid.leaf_count(), expected.size());
         double off = 0;
         for (auto a = centres.begin(), b = expected.begin(); a != centres.end(); ++a, ++b) {
             off = std::max(off, norm(*a - *b));

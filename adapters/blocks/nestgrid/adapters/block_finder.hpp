@@ -51,6 +51,17 @@ struct CellRange {
     }
 };
 
+/// Calls f(place) for the places of a range; for none where it is empty.
+template <int dim, class Function>
+void for_each_place(const CellRange<dim>& range, Function&& f) {
+    if (range.count() == 0) return;
+    BlockPlace<dim> at = range.low;
+    for (std::size_t d = 0; d < at.size();) {
+        f(at);
+        for (d = 0; d < at.size() && ++at[d] == range.high[d]; ++d) at[d] = range.low[d];
+    }
+}
+
 template <int dim>
 class BlockFinder {
 public:

@@ -85,6 +85,11 @@ public:
     /// Of the boxes, so that what was made for other ones is refused.
     std::uint64_t epoch() const { return epoch_; }
 
+    /// Cells that no finer box covers.
+    std::uint64_t leaf_count() const;
+    /// Nodes that are a corner of some element; fewer than node_count().
+    std::uint64_t used_node_count() const;
+
     // What fields need.
     std::size_t level_count() const { return levels_.size(); }
     std::size_t box_count(std::size_t level) const { return levels_[level].finder.boxes().size(); }
@@ -101,6 +106,9 @@ public:
     BlockCell<dim> cover(const Element& e) const {
         return {std::int32_t{level_of_[e.depth]} + 1, e.finer, {}, {}};
     }
+    /// The leaf at the first corner of a cell: the cell itself where no finer box covers it.
+    /// \param cell with level, box, and place in it
+    BlockCell<dim> first_leaf(const BlockCell<dim>& cell) const;
     /// The leaves around a node.
     /// \param node its finest place
     /// \param near whose box is looked at first
@@ -121,6 +129,7 @@ private:
     void number_nodes();
     void mix_epoch(const Blocks<dim>& blocks);
     NodeKey key(Place node, unsigned depth, std::size_t level, std::int32_t guess) const;
+    std::uint64_t owned_at_border(const Level& level, std::int32_t box, std::int32_t ratio) const;
     bool is_within(const Place& node, const BlockCell<dim>& near, Around& around) const;
     BlockCell<dim> leaf_at(const Place& cell, std::span<std::int32_t> guess) const;
     std::int32_t first_touching(const Level& level, const Place& node, std::int32_t guess) const;

@@ -9,6 +9,69 @@
 namespace nestgrid {
 
 template <int dim>
+std::uint64_t BlockGrid<dim>::leaf_count() const {
+    std::uint64_t count = 0;
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        const unsigned steps = l == 0 ? 0 : levels_[l].depth - levels_[l - 1].depth;
+        for (const auto& box : levels_[l].finder.boxes()) {
+            const auto cells = static_cast<std::uint64_t>(box.count());
+            count += cells - (l == 0 ? 0 : cells >> (steps * size_));
+        }
+    }
+    return count;
+}
+
+/// Each node counts in the box that it belongs to, where it lies on no coarser lattice.
+template <int dim>
+std::uint64_t BlockGrid<dim>::used_node_count() const {
+    std::uint64_t count = 1;
+    for (const std::int32_t n : cells_) count *= static_cast<std::uint64_t>(n) + 1;
+    for (std::size_t l = 1; l < levels_.size(); ++l) {
+        const std::int32_t ratio = std::int32_t{1} << (levels_[l].depth - levels_[l - 1].depth);
+        const auto& boxes = levels_[l].finder.boxes();
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            std::uint64_t all = 1;
+            std::uint64_t coarse = 1;
+            for (std::size_t d = 0; d < size_; ++d) {
+                const std::int32_t cells = boxes[b].high[d] - boxes[b].low[d];
+                all *= static_cast<std::uint64_t>(cells - 1);
+                coarse *= static_cast<std::uint64_t>(cells / ratio - 1);
+            }
+            count +=
+                all - coarse + owned_at_border(levels_[l], static_cast<std::int32_t>(b), ratio);
+        }
+    }
+    return count;
+}
+
+/// How many nodes on the border of a box belong to it and lie on no coarser lattice.
+template <int dim>
+std::uint64_t BlockGrid<dim>::owned_at_border(const Level& level, std::int32_t box,
+                                              std::int32_t ratio) const {
+    const auto& range = level.finder.boxes()[static_cast<std::size_t>(box)];
+    std::uint64_t count = 0;
+    const auto look = [&](const Place& node) {
+        bool is_coarse = true;
+        for (const std::int32_t x : node) is_coarse = is_coarse && x % ratio == 0;
+        if (!is_coarse && first_touching(level, node, box) == box) ++count;
+    };
+    // Each node with the first direction in which it is at an end.
+    for (std::size_t d = 0; d < size_; ++d) {
+        for (const std::int32_t end : {range.low[d], range.high[d]}) {
+            detail::CellRange<dim> side = range;
+            for (std::size_t e = 0; e < size_; ++e) {
+                if (e < d) ++side.low[e];
+                if (e > d) ++side.high[e];
+            }
+            side.low[d] = end;
+            side.high[d] = end + 1;
+            detail::for_each_place(side, look);
+        }
+    }
+    return count;
+}
+
+template <int dim>
 auto BlockGrid<dim>::box_size(std::size_t level, std::size_t box) const -> Place {
     const auto& range = levels_[level].finder.boxes()[box];
     Place size{};
@@ -86,6 +149,19 @@ BlockCell<dim> BlockGrid<dim>::leaf_at(const Place& cell, std::span<std::int32_t
         leaf.low[d] <<= finest_depth() - levels_[level].depth;
     }
     return leaf;
+}
+
+template <int dim>
+BlockCell<dim> BlockGrid<dim>::first_leaf(const BlockCell<dim>& cell) const {
+    const auto l = static_cast<std::size_t>(cell.level);
+    std::array<std::int32_t, 32> guess;
+    std::fill_n(guess.begin(), levels_.size(), -1);
+    guess[l] = cell.box;
+    Place first = levels_[l].finder.boxes()[static_cast<std::size_t>(cell.box)].low;
+    for (std::size_t d = 0; d < size_; ++d) {
+        first[d] = (first[d] + cell.place[d]) << (finest_depth() - levels_[l].depth);
+    }
+    return leaf_at(first, guess);
 }
 
 /// Whether a node has a box all around it, with cells that are leaves and have it for a corner;
