@@ -31,6 +31,8 @@ void add(const Format& more, Format& format) {
     if (more.recognises != nullptr) format.recognises = more.recognises;
     if (more.read_samples != nullptr) format.read_samples = more.read_samples;
     if (more.read_mesh != nullptr) format.read_mesh = more.read_mesh;
+    if (more.read_field != nullptr) format.read_field = more.read_field;
+    if (more.describe != nullptr) format.describe = more.describe;
     if (more.write_surface != nullptr) format.write_surface = more.write_surface;
 }
 

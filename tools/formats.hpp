@@ -11,7 +11,10 @@
 
 #include <vtkPolyData.h>
 
+class Report;
 struct FileSamples;
+struct Input;
+struct InputField;
 struct WantedSamples;
 struct WantedMesh;
 namespace nestgrid {
@@ -43,11 +46,20 @@ struct Format {
     // throw nestgrid::IoError or nestgrid::InvalidInput with a sentence that names the file.
     FileSamples (*read_samples)(const Path& path, const WantedSamples& wanted) = nullptr;
     nestgrid::CoarseGrid (*read_mesh)(const Path& path, const WantedMesh& wanted) = nullptr;
+    /// Reads a field on a grid of its own, or frames of one, in this process.
+    /// \param paths one for each frame
+    /// \param times of the frames; empty for those of the files
+    InputField (*read_field)(const Input& input, const std::vector<Path>& paths,
+                             const std::vector<double>& times) = nullptr;
+    /// Says what such a file has in it; null where there are no such files.
+    void (*describe)(const Path& path, Report& report) = nullptr;
     /// \return why it could not be written, or nothing
     std::string (*write_surface)(vtkPolyData* surface, const Path& path) = nullptr;
 
     /// Whether a field is read from files.
-    bool has_fields() const { return read_samples != nullptr || keeps_hierarchies; }
+    bool has_fields() const {
+        return read_samples != nullptr || read_field != nullptr || keeps_hierarchies;
+    }
 };
 
 /// Makes a format known. For objects of static lifetime. What is read by one source and written by

@@ -14,6 +14,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$tools/make_volumes" "$work"
 "$tools/make_meshes" "$work" 1
+"$tools/make_plotfiles" "$work"
 cd "$work"
 gzip -c v.raw >v.raw.gz
 sed 's/raw$/gzip/; s/v\.gzip/v.raw.gz/' v.nhdr >packed.nhdr
@@ -39,6 +40,9 @@ nhdr) mutate v.nhdr v.raw -- "${volume[@]}" && mutate packed.nhdr v.raw.gz -- "$
 nrrd)
     mutate v.nrrd -- "${volume[@]}" && mutate packed.nrrd -- "${volume[@]}" &&
         mutate text.nrrd -- "${volume[@]}"
+    ;;
+plotfile)
+    mutate small/Header small/Level_{0,1,2}/Cell_{H,D_00000,D_00001} -- "${isosurface[@]}" --array distance --value 0
     ;;
 raw) mutate v.raw -- "${volume[@]}" --dims 20,24,18 --type uint8 ;;
 vti | mha | nii | nii.gz) mutate v.$format -- "${volume[@]}" ;;

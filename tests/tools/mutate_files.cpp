@@ -50,8 +50,9 @@ public:
               return std::mt19937(sequence);
           }()} {}
 
-    /// Damages one of several files. Every kind of damage, in heads and anywhere, in every file: the
-    /// number of the damage goes through them all; what is done there, and more of it, is random.
+    /// Damages one of several files. Every kind of damage, in heads and anywhere, in every file:
+    /// the number of the damage goes through them all; what is done there, and more of it, is
+    /// random.
     void apply(std::vector<Bytes>& files, std::size_t number) {
         Bytes& bytes = files[number / (2 * kinds) % files.size()];
         if (bytes.empty()) return;
@@ -204,6 +205,9 @@ int damage_and_run(const Arguments& arguments) {
     std::string output;
     const std::vector<std::string> command = command_of(arguments, output);
     std::vector<std::string> expected = arguments.files;
+    for (const std::string& name : arguments.files) {
+        expected.push_back(fs::path(name).begin()->string());  // a folder
+    }
     expected.insert(expected.end(), {"out", "err", output});
 
     Damage damage(arguments.files.front());
@@ -215,6 +219,8 @@ int damage_and_run(const Arguments& arguments) {
         // The first of all is not damaged: it must be read.
         if (i > 0) damage.apply(bytes, static_cast<std::size_t>(i));
         for (std::size_t k = 0; k < bytes.size(); ++k) {
+            const fs::path folder = fs::path(arguments.files[k]).parent_path();
+            if (!folder.empty()) fs::create_directories(folder);
             std::ofstream(arguments.files[k], std::ios::binary) << bytes[k];
         }
         fs::remove(output);

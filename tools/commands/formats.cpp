@@ -20,7 +20,7 @@ std::string uses_of(const Format& format) {
 
 void run_formats(Report& report) {
     for (const Format& format : formats()) {
-        std::string endings;
+        std::string endings = format.endings.empty() ? "a folder" : "";
         for (const std::string& ending : format.endings) {
             endings += (endings.empty() ? "" : " ") + ending;
         }

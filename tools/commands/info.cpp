@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "formats.hpp"
 #include "input/hierarchy.hpp"
 #include "options/command_line.hpp"
 #include "output/print.hpp"
@@ -8,7 +9,11 @@ namespace {
 
 void run_info(Input& input, Report& report) {
     open(input);
-    if (is_hierarchy(input.path)) {
+    const Format* const format = format_of(input.path);
+    if (format != nullptr && format->describe != nullptr) {
+        refuse_options(*input.command, {"--array"}, "chooses nothing: all fields are described");
+        format->describe(input.path, report);
+    } else if (is_hierarchy(input.path)) {
         refuse_options(*input.command, {"--array"}, "chooses nothing: all fields are described");
         report_info(hierarchy_info(input.path), report);
     } else {

@@ -7,7 +7,7 @@
 
 #include <nestgrid/grid.hpp>
 
-/// Two fields of one component each, on one stored grid, as the components of one field.
+/// Two fields of one component each, on one grid, as the components of one field.
 template <class Field>
 class FieldPair {
 public:
@@ -26,7 +26,11 @@ public:
     nestgrid::NodeMask new_values(const Element& e, nestgrid::NodeMask which,
                                   std::span<value_type> out, Context& context) const {
         return gather(out, [&](const Field& field, std::span<value_type> values) {
-            return field.new_values(e, which, values, context);
+            if constexpr (requires { field.new_values(e, which, values, context); }) {
+                return field.new_values(e, which, values, context);
+            } else {
+                return field.new_values(e, which, values);
+            }
         });
     }
 

@@ -6,6 +6,8 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 
+#include "formats.hpp"
+
 namespace {
 
 /// Sets the frames of samples on a lattice.
@@ -94,6 +96,10 @@ InputField read_field(Input& input, const Paths& more, const std::vector<double>
     open(input);
     Paths paths{input.path};
     paths.insert(paths.end(), more.begin(), more.end());
+    const Format* const format = format_of(input.path);
+    if (format != nullptr && format->read_field != nullptr) {
+        return format->read_field(input, paths, times);
+    }
     if (is_hierarchy(input.path)) return read_hierarchies(input, paths, times);
     return volume_field(input, paths, times, frames, planes);
 }

@@ -58,7 +58,8 @@ void add_input(CLI::App& command, Input& input) {
     command
         .add_option("INPUT", input.path,
                     "a volume, a picture or a hierarchy: .nii.gz, .nrrd, .mha, .vti, .raw, .tif, "
-                    ".nestgrid and others ('nestgrid formats' lists them); - is standard input")
+                    ".nestgrid, a plotfile of AMReX and others ('nestgrid formats' lists them); - "
+                    "is standard input")
         ->required();
 }
 
@@ -66,7 +67,9 @@ void add_read_options(CLI::App& command, Input& input) {
     command.add_option("--input-format", input.format, "what standard input is, like nii.gz")
         ->type_name("ENDING")
         ->group("Input");
-    command.add_option("--array", input.array, "the array of a .vti, the field of a .nestgrid")
+    command
+        .add_option("--array", input.array,
+                    "the array of a .vti, the field of a .nestgrid or of a plotfile")
         ->type_name("NAME")
         ->group("Input");
     command
@@ -164,7 +167,8 @@ bool applies(const std::string& option, const Format& format) {
 std::string formats_with(const std::string& option) {
     std::vector<std::string> endings;
     for (const Format& format : formats()) {
-        if (applies(option, format)) endings.push_back(format.endings.front());
+        if (!applies(option, format)) continue;
+        endings.push_back(format.endings.empty() ? format.name : format.endings.front());
     }
     return joined(endings, "and");
 }

@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of fields on blocks. Included at the end of block_fields.hpp.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace nestgrid {
+
+template <int dim, class Real>
+detail::BlockReader<dim, Real>::BlockReader(const BlockGrid<dim>& grid,
+                                            BlockArrays<dim, Real> arrays, BlockCentring centring)
+    : grid_{&grid}, arrays_{std::move(arrays)} {
+    if (arrays_.size() != grid.level_count()) {
+        throw InvalidInput("there are arrays of " + std::to_string(arrays_.size()) +
+                           " levels, but the grid has " + std::to_string(grid.level_count()));
+    }
+    const std::int32_t more = centring == BlockCentring::nodes ? 1 : 0;
+    for (std::size_t l = 0; l < arrays_.size(); ++l) {
+        if (arrays_[l].size() != grid.box_count(l)) {
+            throw InvalidInput("level " + std::to_string(l) + " has " +
+                               std::to_string(grid.box_count(l)) + " boxes, but " +
+                               std::to_string(arrays_[l].size()) + " arrays");
+        }
+        for (std::size_t b = 0; b < arrays_[l].size(); ++b) {
+            const BlockArray<dim, Real>& array = arrays_[l][b];
+            if (array.first == nullptr) continue;
+            const auto size = grid.box_size(l, b);
+            for (std::size_t d = 0; d < size.size(); ++d) {
+                const auto stride = array.stride[d];
+                const auto step = static_cast<std::ptrdiff_t>(sizeof(Real));
+                if (size[d] + more == 1 || stride >= step || stride <= -step) continue;
+                throw InvalidInput("the array of box " + std::to_string(b) + " of level " +
+                                   std::to_string(l) + " has the stride " + std::to_string(stride) +
+                                   " in direction " + std::to_string(d) +
+                                   ", less than a number of " + std::to_string(step) + " bytes");
+            }
+        }
+    }
+}
+
+template <int dim, class Real>
+auto BlockCells<dim, Real>::hangs_on(const Around& around, const Place& node) const
+    -> const BlockCell<dim>* {
+    const BlockCell<dim>* largest = nullptr;
+    for (const BlockCell<dim>& cell : around) {
+        if (cell.box < 0 || (largest != nullptr && largest->level <= cell.level)) continue;
+        const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(cell.level));
+        for (std::size_t d = 0; d < size_; ++d) {
+            if ((node[d] & (extent - 1)) != 0) largest = &cell;
+        }
+    }
+    return largest;
+}
+
+template <int dim, class Real>
+template <class ValueAt>
+double BlockCells<dim, Real>::interpolant(const BlockCell<dim>& leaf, const Place& node,
+                                          const ValueAt& at) const {
+    const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(leaf.level));
+    double sum = 0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t k = 0; k < std::size_t{1} << size_; ++k) {
+        double weight = 1;
+        Place corner = leaf.low;
+        for (std::size_t d = 0; d < size_; ++d) {
+            const double part = static_cast<double>(node[d] - leaf.low[d]) / extent;
+            weight *= (k >> d & 1U) != 0 ? part : 1 - part;
+            corner[d] += (k >> d & 1U) != 0 ? extent : 0;
+        }
+        if (weight == 0) continue;
+        const double value = at(corner);
+        sum += weight * value;
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    return std::isfinite(sum) ? std::clamp(sum, low, high) : sum;
+}
+
+/// Of leaves that have the node for a corner.
+template <int dim, class Real>
+template <class ValueOf>
+auto BlockCells<dim, Real>::mean(const Around& around, const ValueOf& of) const -> Mean {
+    double total = 0;
+    int count = 0;
+    std::array<double, static_cast<std::size_t>(1 << dim)> weight{};
+    for (std::size_t k = 0; k < around.size(); ++k) {
+        if (around[k].box < 0) continue;
+        weight[k] = 1.0 / reader_.grid().extent(static_cast<std::size_t>(around[k].level));
+        total += weight[k];
+        ++count;
+    }
+    Mean mean;
+    mean.offset = count / (2 * total);
+    mean.low = std::numeric_limits<double>::infinity();
+    mean.high = -mean.low;
+    for (std::size_t k = 0; k < around.size(); ++k) {
+        if (around[k].box < 0) continue;
+        const double value = of(around[k]);
+        mean.value += weight[k] / total * value;
+        mean.low = std::min(mean.low, value);
+        mean.high = std::max(mean.high, value);
+    }
+    // Equal values give that value, whatever the rounding of the weights.
+    if (std::isfinite(mean.value)) mean.value = std::clamp(mean.value, mean.low, mean.high);
+    return mean;
+}
+
+/// The mean lies as far inside from each wall. The next node inside lies as far as the largest leaf
+/// reaches, so it has all leaves around it for a corner, and the mean lies at most half-way to it.
+template <int dim, class Real>
+template <class ValueOf>
+auto BlockCells<dim, Real>::brought(const Place& node, const Around& around,
+                                    const ValueOf& of) const -> Mean {
+    Mean here = mean(around, of);
+    const BlockCell<dim>* largest = nullptr;
+    for (const BlockCell<dim>& cell : around) {
+        if (cell.box < 0) continue;
+        if (largest == nullptr || cell.level < largest->level) largest = &cell;
+    }
+    const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(largest->level));
+    const Place end = reader_.grid().finest_size();
+    Place next = node;
+    for (std::size_t d = 0; d < size_; ++d) {
+        if (node[d] == 0 && extent < end[d]) next[d] = extent;
+        if (node[d] == end[d] && extent < end[d]) next[d] = end[d] - extent;
+    }
+    if (next == node) return here;
+    const double inside = mean(reader_.grid().leaves_around(next, *largest), of).value;
+    const double slope = (here.value - inside) / (extent - here.offset);
+    if (std::isfinite(slope)) here.value += here.offset * slope;
+    return here;
+}
+
+template <int dim, class Real>
+class BlockCells<dim, Real>::Smooth {
+public:
+    explicit Smooth(const BlockCells& cells) : cells_{&cells} {}
+
+    bool is_missing = false;
+
+    double at(const Node& node) {
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (place_[i] == node.place) return value_[i];
+        }
+        const double value = cells_->smooth(node, *this);
+        if (count_ < value_.size()) {
+            place_[count_] = node.place;
+            value_[count_++] = value;
+        }
+        return value;
+    }
+
+private:
+    static constexpr std::size_t most = dim == 2 ? 9 : 27;  // around a node
+
+    const BlockCells* cells_;
+    std::size_t count_ = 0;
+    std::array<Place, most> place_;
+    std::array<double, most> value_;
+};
+
+template <int dim, class Real>
+double BlockCells<dim, Real>::cell_value(const BlockCell<dim>& cell, Smooth& known) const {
+    if (reader_.has(cell)) return static_cast<double>(reader_.read(cell));
+    known.is_missing = true;
+    return 0;
+}
+
+template <int dim, class Real>
+double BlockCells<dim, Real>::smooth(const Node& node, Smooth& known) const {
+    const Around around = reader_.grid().leaves_around(node.place, node.near);
+    if (const BlockCell<dim>* leaf = hangs_on(around, node.place)) {
+        return interpolant(*leaf, node.place, [&](const Place& x) {
+            return smooth({x, *leaf}, known);
+        });
+    }
+    return brought(node.place, around,
+                   [&](const BlockCell<dim>& cell) { return cell_value(cell, known); })
+        .value;
+}
+
+/// By what the value of a cell differs from the mean of its corners; 0 where one is not finite.
+template <int dim, class Real>
+double BlockCells<dim, Real>::residual(const BlockCell<dim>& cell, Smooth& known) const {
+    const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(cell.level));
+    double sum = 0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t k = 0; k < std::size_t{1} << size_; ++k) {
+        Node corner{cell.low, cell};
+        for (std::size_t d = 0; d < size_; ++d) {
+            corner.place[d] += (k >> d & 1U) != 0 ? extent : 0;
+        }
+        const double value = known.at(corner);
+        sum += value / static_cast<double>(std::size_t{1} << size_);
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    if (!std::isfinite(sum)) return 0;
+    return cell_value(cell, known) - std::clamp(sum, low, high);
+}
+
+template <int dim, class Real>
+double BlockCells<dim, Real>::value(const Node& node, Smooth& known) const {
+    if (rule_ == CellRule::smooth) return smooth(node, known);
+    const Around around = reader_.grid().leaves_around(node.place, node.near);
+    if (const BlockCell<dim>* leaf = hangs_on(around, node.place)) {
+        return interpolant(*leaf, node.place, [&](const Place& x) {
+            Smooth around_corner(*this);
+            const double at_corner = value({x, *leaf}, around_corner);
+            known.is_missing = known.is_missing || around_corner.is_missing;
+            return at_corner;
+        });
+    }
+    const Mean means = brought(node.place, around,
+                               [&](const BlockCell<dim>& cell) { return cell_value(cell, known); });
+    if (!std::isfinite(means.value)) return means.value;
+    const double more = brought(node.place, around, [&](const BlockCell<dim>& cell) {
+                            return residual(cell, known);
+                        }).value;
+    const double part = rule_ == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3;
+    return std::clamp(means.value + part * more, std::min(means.low, means.value),
+                      std::max(means.high, means.value));
+}
+
+template <int dim, class Real>
+bool BlockNodes<dim, Real>::write(const Place& node, const BlockCell<dim>& near, Real& out) const {
+    const BlockCell<dim>* finest = nullptr;
+    const auto around = reader_.grid().leaves_around(node, near);
+    for (const BlockCell<dim>& cell : around) {
+        if (cell.box < 0) continue;
+        const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(cell.level));
+        bool is_corner = true;
+        for (const std::int32_t x : node) is_corner = is_corner && (x & (extent - 1)) == 0;
+        if (!is_corner) continue;
+        if (finest == nullptr || cell.level > finest->level ||
+            (cell.level == finest->level && cell.box < finest->box)) {
+            finest = &cell;
+        }
+    }
+    if (!reader_.has(*finest)) return false;
+    const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(finest->level));
+    Place offset{};
+    for (std::size_t d = 0; d < offset.size(); ++d) {
+        offset[d] = (node[d] - finest->low[d]) / extent;
+    }
+    out = reader_.read(*finest, offset);
+    return true;
+}
+
+}  // namespace nestgrid

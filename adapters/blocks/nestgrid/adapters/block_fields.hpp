@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Fields on a BlockGrid, whose values stay where the solver has them: a pointer and a stride in
+// each direction for each box.
+//
+// Of cells that a finer level covers, and of ghost cells, nothing is ever read: they may hold
+// anything. An array of a box without a pointer is not here, as on another process: nodes that need
+// it have no value.
+#pragma once
+
+#include <cstring>
+
+#include <nestgrid/adapters/block_grid.hpp>
+#include <nestgrid/algorithms/cell_data.hpp>
+
+namespace nestgrid {
+
+/// Where the numbers of a box lie. They need not be aligned.
+/// \tparam Real float or double
+template <int dim, class Real>
+struct BlockArray {
+    const void* first = nullptr;  ///< of the first cell, or node, of the box; behind ghost cells
+    std::array<std::ptrdiff_t, static_cast<std::size_t>(dim)> stride{};  ///< in bytes
+};
+
+/// Those of all boxes, by level.
+template <int dim, class Real>
+using BlockArrays = std::vector<std::vector<BlockArray<dim, Real>>>;
+
+/// What an array has one number for.
+enum class BlockCentring : std::uint8_t { cells, nodes };
+
+/// An array whose numbers stand one behind the other, x fastest.
+/// \param ghosts layers of cells, or nodes, around those of the box
+///
+/// \throw InvalidInput where there are more or fewer numbers than that
+template <int dim, class Real>
+BlockArray<dim, Real> block_array(const BlockBox<dim>& box, std::span<const Real> values,
+                                  int ghosts = 0, BlockCentring centring = BlockCentring::cells) {
+    BlockArray<dim, Real> array;
+    std::size_t count = 1;
+    std::size_t first = 0;
+    for (std::size_t d = 0; d < array.stride.size(); ++d) {
+        array.stride[d] = static_cast<std::ptrdiff_t>(count * sizeof(Real));
+        first += count * static_cast<std::size_t>(ghosts);
+        const std::int64_t cells = std::int64_t{box.upper[d]} - box.lower[d] + 1;
+        const std::int64_t more = centring == BlockCentring::nodes ? 1 : 0;
+        count *= static_cast<std::size_t>(std::max<std::int64_t>(cells + more + 2 * ghosts, 0));
+    }
+    if (count != values.size()) {
+        throw InvalidInput("there are " + std::to_string(values.size()) + " values for a box " +
+                           detail::text_of_place(box.lower) + " to " +
+                           detail::text_of_place(box.upper) + " that has " + std::to_string(count) +
+                           " with its ghosts");
+    }
+    array.first = values.data() + first;
+    return array;
+}
+
+namespace detail {
+
+/// Reads numbers of boxes.
+template <int dim, class Real>
+class BlockReader {
+public:
+    /// \throw InvalidInput where there is not one array for each box, or numbers of one lie on each
+    /// other
+    BlockReader(const BlockGrid<dim>& grid, BlockArrays<dim, Real> arrays, BlockCentring centring);
+
+    const BlockGrid<dim>& grid() const { return *grid_; }
+    bool has(const BlockCell<dim>& cell) const { return array(cell).first != nullptr; }
+    /// \param offset from the cell or its first node
+    Real read(const BlockCell<dim>& cell, const BlockPlace<dim>& offset = {}) const {
+        const BlockArray<dim, Real>& a = array(cell);
+        std::ptrdiff_t bytes = 0;
+        for (std::size_t d = 0; d < offset.size(); ++d) {
+            bytes += a.stride[d] * (cell.place[d] + offset[d]);
+        }
+        Real value;
+        std::memcpy(&value, static_cast<const std::byte*>(a.first) + bytes, sizeof(Real));
+        return value;
+    }
+    /// Calls write(i, its finest place, a cell near it) for the nodes that are asked for. Returns
+    /// those for which it answers false.
+    template <class Write>
+    NodeMask at_corners(std::size_t i, const Write& write) const {
+        const auto e = grid_->coarse(i).element;
+        NodeMask missing = 0;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(1 << dim); ++k) {
+            if (!write(k, grid_->corner(e, k), BlockCell<dim>{})) missing |= NodeMask{1} << k;
+        }
+        return missing;
+    }
+    template <class Write>
+    NodeMask at_new_nodes(const typename BlockGrid<dim>::Element& e, NodeMask which,
+                          const Write& write) const {
+        NodeMask missing = 0;
+        const BlockCell<dim> near = grid_->cover(e);
+        for (std::size_t n = 0; n < static_cast<std::size_t>(BlockGrid<dim>::max_new_nodes); ++n) {
+            if ((which >> n & 1U) == 0) continue;
+            if (!write(n, grid_->new_node(e, n), near)) missing |= NodeMask{1} << n;
+        }
+        return missing;
+    }
+
+private:
+    const BlockArray<dim, Real>& array(const BlockCell<dim>& cell) const {
+        return arrays_[static_cast<std::size_t>(cell.level)][static_cast<std::size_t>(cell.box)];
+    }
+
+    const BlockGrid<dim>* grid_;
+    BlockArrays<dim, Real> arrays_;
+};
+
+}  // namespace detail
+
+/// Data of cells, whose value at a node is that of CellAverages (cell_data.hpp) without its tables:
+/// the mean of the leaves around the node by weights 1/size. At walls the mean lies beside the
+/// node, and a line through it and the next node inside is followed to the wall: linear functions
+/// are reproduced, and no value leaves the range of all cells by more than its length. A node that
+/// hangs has the interpolant.
+///
+/// Reads 2^dim cells a node; where the rule is sharp, up to 2^(3 dim).
+template <int dim, class Real>
+class BlockCells {
+public:
+    using value_type = Real;
+    using Element = typename BlockGrid<dim>::Element;
+
+    /// \param grid borrowed
+    ///
+    /// \throw InvalidInput where there is not one array for each box, or numbers of one lie on each
+    /// other
+    BlockCells(const BlockGrid<dim>& grid, BlockArrays<dim, Real> arrays,
+               CellRule rule = CellRule::smooth)
+        : reader_(grid, std::move(arrays), BlockCentring::cells), rule_{rule} {}
+
+    /// The value of the cell itself.
+    double leaf_value(const Element& leaf) const {
+        return static_cast<double>(reader_.read(reader_.grid().cell_of(leaf)));
+    }
+    NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
+        return reader_.at_corners(i, writer(out));
+    }
+    NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
+        return reader_.at_new_nodes(e, which, writer(out));
+    }
+
+private:
+    static constexpr auto size_ = static_cast<std::size_t>(dim);
+    using Place = detail::BlockPlace<dim>;
+    using Around = typename BlockGrid<dim>::Around;
+
+    struct Mean {
+        double value = 0;
+        double offset = 0;  ///< of the mean from a wall, in finest places
+        double low = 0;     ///< of the cells
+        double high = 0;
+    };
+    /// A node, and a cell near it.
+    struct Node {
+        Place place{};
+        BlockCell<dim> near;
+    };
+    /// The smooth values around a node, each computed once, and whether all cells are here.
+    class Smooth;
+
+    auto writer(std::span<Real> out) const {
+        return [this, out](std::size_t i, const Place& node, const BlockCell<dim>& near) {
+            Smooth known(*this);
+            out[i] = static_cast<Real>(value({node, near}, known));
+            return !known.is_missing;
+        };
+    }
+    double cell_value(const BlockCell<dim>& cell, Smooth& known) const;
+    /// The largest leaf that touches a node without having it for a corner, or null.
+    const BlockCell<dim>* hangs_on(const Around& around, const Place& node) const;
+    /// What the corners of a leaf say at a node within it.
+    template <class ValueAt>
+    double interpolant(const BlockCell<dim>& leaf, const Place& node, const ValueAt& at) const;
+    template <class ValueOf>
+    Mean mean(const Around& around, const ValueOf& of) const;
+    /// The mean, brought to the node where that lies in walls.
+    template <class ValueOf>
+    Mean brought(const Place& node, const Around& around, const ValueOf& of) const;
+    double smooth(const Node& node, Smooth& known) const;
+    double residual(const BlockCell<dim>& cell, Smooth& known) const;
+    double value(const Node& node, Smooth& known) const;
+
+    detail::BlockReader<dim, Real> reader_;
+    CellRule rule_;
+};
+
+/// Data at the nodes of each box. The value of a node is that of the finest leaf that has it.
+template <int dim, class Real>
+class BlockNodes {
+public:
+    using value_type = Real;
+    using Element = typename BlockGrid<dim>::Element;
+
+    /// \param grid borrowed
+    ///
+    /// \throw InvalidInput where there is not one array for each box, or numbers of one lie on each
+    /// other
+    BlockNodes(const BlockGrid<dim>& grid, BlockArrays<dim, Real> arrays)
+        : reader_(grid, std::move(arrays), BlockCentring::nodes) {}
+
+    NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
+        return reader_.at_corners(i, writer(out));
+    }
+    NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
+        return reader_.at_new_nodes(e, which, writer(out));
+    }
+
+private:
+    using Place = detail::BlockPlace<dim>;
+
+    auto writer(std::span<Real> out) const {
+        return [this, out](std::size_t i, const Place& node, const BlockCell<dim>& near) {
+            return write(node, near, out[i]);
+        };
+    }
+    bool write(const Place& node, const BlockCell<dim>& near, Real& out) const;
+
+    detail::BlockReader<dim, Real> reader_;
+};
+
+}  // namespace nestgrid
+
+#include <nestgrid/adapters/block_cells_steps.hpp>

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Definitions of what BlockGrid offers to fields. Included at the end of block_grid.hpp.
+#pragma once
+
+#include <algorithm>
+
+namespace nestgrid {
+
+template <int dim>
+std::uint64_t BlockGrid<dim>::leaf_count() const {
+    std::uint64_t count = 0;
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        const unsigned steps = l == 0 ? 0 : levels_[l].depth - levels_[l - 1].depth;
+        for (const auto& box : levels_[l].finder.boxes()) {
+            const auto cells = static_cast<std::uint64_t>(box.count());
+            count += cells - (l == 0 ? 0 : cells >> (steps * size_));
+        }
+    }
+    return count;
+}
+
+/// Each node counts in the box that it belongs to, where it lies on no coarser lattice.
+template <int dim>
+std::uint64_t BlockGrid<dim>::used_node_count() const {
+    std::uint64_t count = 1;
+    for (const std::int32_t n : cells_) count *= static_cast<std::uint64_t>(n) + 1;
+    for (std::size_t l = 1; l < levels_.size(); ++l) {
+        const std::int32_t ratio = std::int32_t{1} << (levels_[l].depth - levels_[l - 1].depth);
+        const auto& boxes = levels_[l].finder.boxes();
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            std::uint64_t all = 1;
+            std::uint64_t coarse = 1;
+            for (std::size_t d = 0; d < size_; ++d) {
+                const std::int32_t cells = boxes[b].high[d] - boxes[b].low[d];
+                all *= static_cast<std::uint64_t>(cells - 1);
+                coarse *= static_cast<std::uint64_t>(cells / ratio - 1);
+            }
+            count +=
+                all - coarse + owned_at_border(levels_[l], static_cast<std::int32_t>(b), ratio);
+        }
+    }
+    return count;
+}
+
+/// How many nodes on the border of a box belong to it and lie on no coarser lattice.
+template <int dim>
+std::uint64_t BlockGrid<dim>::owned_at_border(const Level& level, std::int32_t box,
+                                              std::int32_t ratio) const {
+    const auto& range = level.finder.boxes()[static_cast<std::size_t>(box)];
+    std::uint64_t count = 0;
+    const auto look = [&](const Place& node) {
+        bool is_coarse = true;
+        for (const std::int32_t x : node) is_coarse = is_coarse && x % ratio == 0;
+        if (!is_coarse && first_touching(level, node, box) == box) ++count;
+    };
+    // Each node with the first direction in which it is at an end.
+    for (std::size_t d = 0; d < size_; ++d) {
+        for (const std::int32_t end : {range.low[d], range.high[d]}) {
+            detail::CellRange<dim> side = range;
+            for (std::size_t e = 0; e < size_; ++e) {
+                if (e < d) ++side.low[e];
+                if (e > d) ++side.high[e];
+            }
+            side.low[d] = end;
+            side.high[d] = end + 1;
+            detail::for_each_place(side, look);
+        }
+    }
+    return count;
+}
+
+template <int dim>
+auto BlockGrid<dim>::box_size(std::size_t level, std::size_t box) const -> Place {
+    const auto& range = levels_[level].finder.boxes()[box];
+    Place size{};
+    for (std::size_t d = 0; d < size_; ++d) size[d] = range.high[d] - range.low[d];
+    return size;
+}
+
+template <int dim>
+auto BlockGrid<dim>::finest_size() const -> Place {
+    Place size = cells_;
+    for (std::int32_t& n : size) n <<= finest_depth() - levels_[0].depth;
+    return size;
+}
+
+template <int dim>
+auto BlockGrid<dim>::new_node(const Element& e, std::size_t n) const -> Place {
+    Place node{};
+    for (std::size_t d = 0; d < size_; ++d) {
+        node[d] = (2 * e.cell[d] + halves_[n][d]) << (finest_depth() - e.depth - 1);
+    }
+    return node;
+}
+
+template <int dim>
+auto BlockGrid<dim>::corner(const Element& e, std::size_t k) const -> Place {
+    Place node{};
+    for (std::size_t d = 0; d < size_; ++d) {
+        node[d] = (e.cell[d] + static_cast<std::int32_t>(k >> d & 1U))
+                  << (finest_depth() - e.depth);
+    }
+    return node;
+}
+
+template <int dim>
+BlockCell<dim> BlockGrid<dim>::cell_of(const Element& leaf) const {
+    const auto level = level_of_[leaf.depth];
+    const auto& finder = levels_[level].finder;
+    BlockCell<dim> cell{level, finder.find(leaf.cell), leaf.cell, leaf.cell};
+    const auto& box = finder.boxes()[static_cast<std::size_t>(cell.box)];
+    for (std::size_t d = 0; d < size_; ++d) {
+        cell.place[d] -= box.low[d];
+        cell.low[d] <<= finest_depth() - leaf.depth;
+    }
+    return cell;
+}
+
+/// Looks into the boxes that are guessed first, the finest before the others, and into finer levels
+/// from there on.
+/// \param cell finest, inside the domain
+/// \param guess a box of each level, or -1; those that are found are put there
+template <int dim>
+BlockCell<dim> BlockGrid<dim>::leaf_at(const Place& cell, std::span<std::int32_t> guess) const {
+    const auto at = [&](std::size_t l) {
+        Place place = cell;
+        for (std::int32_t& x : place) x >>= finest_depth() - levels_[l].depth;
+        return place;
+    };
+    const auto is_guessed = [&](std::size_t l) {
+        if (guess[l] < 0) return false;
+        return levels_[l].finder.boxes()[static_cast<std::size_t>(guess[l])].holds(at(l));
+    };
+    std::size_t level = levels_.size() - 1;
+    while (level > 0 && !is_guessed(level)) --level;
+    guess[level] = levels_[level].finder.find(at(level), guess[level]);
+    for (; level + 1 < levels_.size(); ++level) {
+        const std::int32_t finer = levels_[level + 1].finder.find(at(level + 1), -1);
+        if (finer < 0) break;
+        guess[level + 1] = finer;
+    }
+    const Place place = at(level);
+    BlockCell<dim> leaf{static_cast<std::int32_t>(level), guess[level], place, place};
+    const auto& range = levels_[level].finder.boxes()[static_cast<std::size_t>(leaf.box)];
+    for (std::size_t d = 0; d < size_; ++d) {
+        leaf.place[d] -= range.low[d];
+        leaf.low[d] <<= finest_depth() - levels_[level].depth;
+    }
+    return leaf;
+}
+
+template <int dim>
+BlockCell<dim> BlockGrid<dim>::first_leaf(const BlockCell<dim>& cell) const {
+    const auto l = static_cast<std::size_t>(cell.level);
+    std::array<std::int32_t, 32> guess;
+    std::fill_n(guess.begin(), levels_.size(), -1);
+    guess[l] = cell.box;
+    Place first = levels_[l].finder.boxes()[static_cast<std::size_t>(cell.box)].low;
+    for (std::size_t d = 0; d < size_; ++d) {
+        first[d] = (first[d] + cell.place[d]) << (finest_depth() - levels_[l].depth);
+    }
+    return leaf_at(first, guess);
+}
+
+/// Whether a node has a box all around it, with cells that are leaves and have it for a corner;
+/// these are written.
+template <int dim>
+bool BlockGrid<dim>::is_within(const Place& node, const BlockCell<dim>& near,
+                               Around& around) const {
+    const auto l = static_cast<std::size_t>(near.level);
+    const auto& box = levels_[l].finder.boxes()[static_cast<std::size_t>(near.box)];
+    const unsigned shift = finest_depth() - levels_[l].depth;
+    Place at = node;
+    for (std::size_t d = 0; d < size_; ++d) {
+        at[d] >>= shift;
+        if (at[d] << shift != node[d] || at[d] <= box.low[d] || at[d] >= box.high[d]) return false;
+    }
+    const Level* const next = l + 1 == levels_.size() ? nullptr : &levels_[l + 1];
+    for (std::size_t k = 0; k < around.size(); ++k) {
+        Place finer{};
+        around[k].level = near.level;
+        around[k].box = near.box;
+        for (std::size_t d = 0; d < size_; ++d) {
+            const std::int32_t cell = at[d] - ((k >> d & 1U) == 0 ? 1 : 0);
+            around[k].place[d] = cell - box.low[d];
+            around[k].low[d] = cell << shift;
+            if (next != nullptr) finer[d] = cell << (next->depth - levels_[l].depth);
+        }
+        if (next != nullptr && next->finder.find(finer) >= 0) return false;
+    }
+    return true;
+}
+
+template <int dim>
+auto BlockGrid<dim>::leaves_around(const Place& node, const BlockCell<dim>& near) const -> Around {
+    Around around;
+    if (near.box >= 0 && is_within(node, near, around)) return around;
+    const Place size = finest_size();
+    std::array<std::int32_t, 32> guess;  // a box of each level
+    std::fill_n(guess.begin(), levels_.size(), -1);
+    if (near.box >= 0) guess[static_cast<std::size_t>(near.level)] = near.box;
+    for (std::size_t k = 0; k < around.size(); ++k) {
+        Place cell = node;
+        bool is_inside = true;
+        for (std::size_t d = 0; d < size_; ++d) {
+            cell[d] -= (k >> d & 1U) == 0 ? 1 : 0;
+            is_inside = is_inside && 0 <= cell[d] && cell[d] < size[d];
+        }
+        if (!is_inside) continue;
+        around[k] = leaf_at(cell, guess);
+    }
+    return around;
+}
+
+}  // namespace nestgrid
