@@ -64,8 +64,8 @@ Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
     std::optional<Threshold> criterion;
     engine::together(shared, "isosurfaces", [&] {
         hierarchy.facts().require_dimension(dimension);
-        if (shared != nullptr && options.max_triangles != 0) {
-            engine::refuse_on_ranks("a number of triangles");
+        if (options.max_triangles != 0) {
+            hierarchy.facts().require_one_process("a number of triangles");
         }
         const auto levels =
             engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));

@@ -12,6 +12,7 @@ template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
                   const Criterion& criterion, const Bounds& bounds,
                   const IsosurfaceOptions& options, const Executor& executor) {
+    hierarchy.facts().require_one_process("a list of isolines");
     IsosurfaceOptions kept = options;
     kept.normals = kept.elements = kept.reference = false;
     auto drawn = isosurfaces<2>(hierarchy, values, criterion, bounds, kept, executor);

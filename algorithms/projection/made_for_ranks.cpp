@@ -39,16 +39,10 @@ void refuse_first(std::span<const Refused> all) {
 
 }  // namespace
 
-void refuse_on_ranks(const std::string& what) {
-    throw InvalidInput(what +
-                       " is not made for distributed grids yet (docs/distributed.md says what is): "
-                       "gather the grid on one process, or do without");
-}
-
 template <class Real>
 void require_made_for_parts(const Hierarchy<Real>& hierarchy, bool on_ranks) {
     if (on_ranks && hierarchy.facts().shared != nullptr) return;
-    if (hierarchy.facts().shared != nullptr) refuse_on_ranks("what is asked for");
+    hierarchy.facts().require_one_process("what is asked for");
     const std::size_t i = find_partly_elsewhere(hierarchy);
     if (i == hierarchy.coarse_count()) return;
     throw GridError(

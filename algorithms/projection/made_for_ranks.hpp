@@ -16,10 +16,7 @@
 
 namespace nestgrid::engine {
 
-/// \param what "a slice"
-///
-/// \throw InvalidInput
-[[noreturn]] void refuse_on_ranks(const std::string& what);
+using nestgrid::detail::refuse_on_ranks;
 
 /// \throw GridError where elements are elsewhere and the grid has no ranks
 /// \throw InvalidInput where it has, and the walk is not made for them

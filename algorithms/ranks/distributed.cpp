@@ -78,14 +78,16 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
     const engine::BeforeSharing before(grid, *shared);
     std::vector<engine::SharedNodes::Candidate> nodes;
     const auto asked = [&] {
-        return "a distributed grid of dimension " + std::to_string(grid.facts().dimension) +
-               " with nodes of more than " + std::to_string(most_sharers) + " ranks told to all";
+        return (grid.offers(Feature::own_keys) ? "a distributed grid with own keys, of dimension "
+                                               : "a distributed grid of dimension ") +
+               std::to_string(grid.facts().dimension) + " with nodes of more than " +
+               std::to_string(most_sharers) + " ranks told to all";
     };
     engine::together(shared.get(), asked, [&] {
         engine::require_drawn_on_ranks(grid);
         nodes = engine::nodes_of(before);
     });
-    shared->find(nodes, most_sharers);
+    shared->find(nodes, most_sharers, grid.offers(Feature::own_keys));
     shared->set_hanging(engine::hanging_across(before, *shared));
     return shared;
 }

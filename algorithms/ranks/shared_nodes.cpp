@@ -61,16 +61,22 @@ private:
 
 }  // namespace
 
-void SharedNodes::find(std::span<const Candidate> candidates, std::size_t most_sharers) {
+void SharedNodes::find(std::span<const Candidate> candidates, std::size_t most_sharers,
+                       bool places) {
     const int size = ranks_->size();
     Outbox question(size);
     for (const Candidate& node : candidates) {
         const std::uint64_t home = hash(node.key + 1) % static_cast<std::uint64_t>(size);
-        put(question.to(static_cast<int>(home)), node);
+        Bytes& out = question.to(static_cast<int>(home));
+        put(out, node.key);
+        if (places) put(out, node.place);
     }
     Home home;
     question.send(*ranks_, [&](int rank, Reader& in) {
-        while (in.more()) home.add(rank, in.get<Candidate>());
+        while (in.more()) {
+            const auto key = in.get<NodeKey>();
+            home.add(rank, {key, places ? in.get<std::uint64_t>() : 0});
+        }
     });
     together(this, "shared nodes", [&] { home.check(); });
     Outbox answer(size);

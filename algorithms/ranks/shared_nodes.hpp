@@ -28,7 +28,7 @@ public:
     /// A node that this rank has.
     struct Candidate {
         NodeKey key;
-        std::uint64_t place;  ///< a hash of where it lies, or 0: the same on all ranks
+        std::uint64_t place;  ///< a hash of where it lies, the same on all ranks
     };
 
     SharedNodes(Ranks& ranks, std::uint64_t epoch) : ranks_{&ranks}, epoch_{epoch} {}
@@ -36,9 +36,10 @@ public:
     /// Finds out which other ranks have the same nodes. Collective.
     /// \param candidates at least all nodes that others may have, each once
     /// \param most_sharers nodes that more ranks have are common
+    /// \param places whether places are compared
     ///
     /// \throw GridError on all ranks where one key is at two places
-    void find(std::span<const Candidate> candidates, std::size_t most_sharers);
+    void find(std::span<const Candidate> candidates, std::size_t most_sharers, bool places);
 
     Ranks& ranks() const { return *ranks_; }
     /// The state of the grid for which they were found.

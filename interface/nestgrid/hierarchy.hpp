@@ -109,11 +109,17 @@ struct HierarchyFacts {
     bool offers(Feature feature) const { return (features & static_cast<unsigned>(feature)) != 0; }
     /// \throw InvalidInput where the dimension is another one
     void require_dimension(int wanted) const;
+    /// Refuses what is not made for distributed grids. \param what "a slice"
+    /// \throw InvalidInput where processes share nodes
+    void require_one_process(const std::string& what) const;
     /// Drops what only a grid that is on one process can promise, where parts may be elsewhere.
     void drop_promises_of_whole_grids();
 };
 
 namespace detail {
+
+/// \throw InvalidInput that says that something is not made for distributed grids
+[[noreturn]] void refuse_on_ranks(const std::string& what);
 
 /// \throw GridError that names the rule, which has more children than the grid promises
 [[noreturn]] void throw_too_many_children(const Rule& rule, std::size_t most);

@@ -12,6 +12,10 @@ void HierarchyFacts::require_dimension(int wanted) const {
                        std::to_string(wanted));
 }
 
+void HierarchyFacts::require_one_process(const std::string& what) const {
+    if (shared != nullptr) detail::refuse_on_ranks(what);
+}
+
 void HierarchyFacts::drop_promises_of_whole_grids() {
     knows_stars = knows_star_positions = fills_rows = false;
     knows_patches = bisects_means = gradients_at_nodes = false;
@@ -23,6 +27,12 @@ void HierarchyFacts::drop_promises_of_whole_grids() {
 }
 
 namespace detail {
+
+void refuse_on_ranks(const std::string& what) {
+    throw InvalidInput(what +
+                       " is not made for distributed grids yet (docs/distributed.md says what is): "
+                       "gather the grid on one process, or do without");
+}
 
 void throw_too_many_children(const Rule& rule, std::size_t most) {
     throw GridError("the rule '" + rule.name + "' has " + std::to_string(rule.children.size()) +

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/distributed.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <ranks/shared_nodes.hpp>
 #include <walk/hanging_nodes.hpp>
@@ -183,6 +184,7 @@ private:
             take(result);
         }
         take(isosurface(grid, field, isovalues[1], Exact(), indicator, {}, executor));
+        take(isoband(grid, field, isovalues[0], isovalues[1], s, indicator, {}, executor));
     }
 
     void draw_whole(bool own_keys) {

@@ -5,6 +5,7 @@
 // docs/distributed.md lists the same.
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
+#include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/discontinuous_data.hpp>
@@ -13,6 +14,7 @@
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/holes.hpp>
+#include <nestgrid/algorithms/isolines.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/node_levels.hpp>
@@ -22,6 +24,7 @@
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/slice.hpp>
+#include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
@@ -92,6 +95,7 @@ const std::vector<Refused<3>> in_space{
     {"vertices at nodes", [](const auto& s) { s.draw({.at_nodes = true}); }},
     {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
     {"bounds of positions", [](const auto& s) { s.draw({.position_bounds = &s.indicator}); }},
+    {"volume", [](const auto& s) { volume_between(s.grid, s.field, 0.25, 0.5, s.indicator); }},
     {"other criteria", [](const auto& s) { s.draw(Nowhere(), s.indicator); }},
     {"other bounds", [](const auto& s) { s.draw(Exact(), Wide()); }},
     {"unsaturated criteria",
@@ -147,6 +151,11 @@ const std::vector<Refused<3>> in_space{
 };
 
 const std::vector<Refused<2>> in_plane{
+    {"isolines", [](const auto& s) { isolines(s.grid, s.field, std::array{0.5}, s.indicator); }},
+    {"number of triangles of a graph",
+     [](const auto& s) {
+         count_triangles(s.grid, s.field, Threshold(&s.indicator, 0.1), s.indicator, 100);
+     }},
     {"height field", [](const auto& s) { height_field(s.grid, s.field, 1.0, s.indicator); }},
     {"shading", [](const auto& s) { shading(s.grid, s.field, s.indicator); }},
     {"isolines with normals", [](const auto& s) { s.draw({.normals = true}); }},

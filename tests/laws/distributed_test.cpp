@@ -101,7 +101,7 @@ void on_family(const char* name, const Mark_& mark, Runs& all) {
     std::size_t leaves = 0;
     for (auto& grid : Family::grids()) {
         std::mt19937 random(++seed);
-        refine<Family>(grid, random, dim == 3 ? 120 : 60, mark);
+        refine<Family>(grid, random, dim == 3 ? 250 : 100, mark);
         const Whole whole(grid);
         leaves += whole.leaves;
         for (const Data data : all_data) {

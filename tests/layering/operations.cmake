@@ -4,7 +4,7 @@ cmake_policy(SET CMP0007 NEW)
 cmake_policy(SET CMP0057 NEW)
 file(READ ${source}/interface/nestgrid/optional.hpp text)
 string(REGEX MATCH "^.*#pragma once" comment "${text}")
-set(type "(void|bool|int|unsigned|Point|Hidden|NodeMask|std::size_t|std::uint64_t|std::array<NodeKey, 2>)")
+set(type "(void|bool|int|unsigned|Point|Hidden|Presence|NodeMask|std::size_t|std::uint64_t|std::array<NodeKey, 2>)")
 string(REGEX MATCHALL "${type} [a-z_]+\\(" described "${comment}")
 list(TRANSFORM described REPLACE ".* ([a-z_]+)\\(" "\\1")
 

@@ -16,6 +16,7 @@
 
 namespace nestgrid {
 
+/// The processes of a distributed grid, of which this is one.
 class Ranks {
 public:
     using Bytes = std::vector<std::byte>;

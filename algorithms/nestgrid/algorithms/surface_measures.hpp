@@ -52,6 +52,7 @@ template <class Real>
 double volume_between(const Hierarchy<Real>& hierarchy, double low, double high,
                       const HierarchicalIndicator& indicator, double threshold = 0) {
     if (!(low <= high)) throw InvalidInput("the lower isovalue is not below the upper one");
+    hierarchy.facts().require_one_process("a volume between isovalues");
     Coarse coarse;
     Family family;
     hierarchy.coarse(hierarchy.open().get(), 0, coarse, family);

@@ -17,6 +17,7 @@
 
 namespace nestgrid {
 
+/// The processes of a communicator.
 class MpiRanks final : public Ranks {
 public:
     /// Collective. \param communicator whose ranks are those of the grid; it is copied
