@@ -180,7 +180,6 @@ private:
             for (const Split& split : level) raise_corners(split);
             end = begin;
         }
-        // Nodes of the coarse grid are new nodes of nothing.
     }
 
     /// Once for each node, when all finer nodes are done.
@@ -196,9 +195,10 @@ private:
         }
     }
 
-    /// An element that stops differs from U by at most `below` the corners that S holds at, by
-    /// `off` at these, which below + off <= bound; their residual moves by at most 5 / 2 of that.
-    /// With the triangles, which leave the fit by twice the residual, that is 6 bound + 2 residual.
+    /// On an element that stops, U differs from the interpolant of its true corner values by at
+    /// most `below`, and those from P_S U by the offsets of the corners that S holds at: by at most
+    /// `bound` in all. The triangles leave P_S U by twice its affine residual, which is that of the
+    /// true values, moved by at most 5 / 2 bound. Together that is 6 bound + 2 residual.
     void put_stop(const Split& split) {
         std::array<double, max_box_corners> u;
         for (std::size_t k = 0; k < corners_; ++k) u[k] = value(split.node[k]);
