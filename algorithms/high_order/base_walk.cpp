@@ -68,7 +68,7 @@ BoxSplitKeys split_keys_of(const BoxKeys& corners, const Rule& rule) {
 std::vector<HalvedPart> halved_parts(const Rule& rule) {
     const std::vector<Point> nodes = reference_nodes(rule);
     std::vector<HalvedPart> parts;
-    for (std::size_t n = static_cast<std::size_t>(rule.corner_count()); n < nodes.size(); ++n) {
+    for (auto n = static_cast<std::size_t>(rule.corner_count()); n < nodes.size(); ++n) {
         HalvedPart part;
         for (std::size_t d = 0; d < topology(rule.parent).dimension; ++d) {
             if (nodes[n][d] == 0.5) part.span |= 1U << d;

@@ -79,9 +79,15 @@ std::size_t HighOrder::memory_bytes() const {
 }
 
 VirtualRefinement::VirtualRefinement(const HighOrder& data, const VirtualOptions& options)
-    : Hierarchy<double>(engine::facts_of(*data.data_)),
-      base_{data.base_},
-      elements_{std::make_shared<const engine::VirtualElements>(data.data_, options)} {}
+    : Hierarchy<double>(engine::facts_of(*data.data_)) {
+    struct Kept {
+        std::shared_ptr<const void> base;  // outlives the elements
+        engine::VirtualElements elements;
+    };
+    const std::shared_ptr<const Kept> kept(
+        new Kept{data.base_, engine::VirtualElements(data.data_, options)});
+    elements_ = {kept, &kept->elements};
+}
 
 const Criterion& VirtualRefinement::criterion() const { return elements_->criterion(); }
 const Bounds& VirtualRefinement::bounds() const { return elements_->data().nodes; }
