@@ -19,8 +19,10 @@ const Hierarchy<Real>& checked(const Hierarchy<Real>& base) {
         throw InvalidInput(
             "the field tells no polynomials: data of higher degree need degree() and evaluate()");
     }
-    if (base.offers(Feature::hidden)) {
-        throw InvalidInput("leaves of higher degree are not drawn beside hidden elements yet");
+    for (const Feature feature : {Feature::hidden, Feature::masked, Feature::outside}) {
+        if (!base.offers(feature)) continue;
+        throw InvalidInput(
+            "leaves of higher degree are not drawn beside hidden or masked elements");
     }
     return base;
 }
@@ -51,8 +53,7 @@ HierarchyFacts facts_of(const HighOrderData& data) {
     facts.features = static_cast<unsigned>(Feature::constrained) |
                      static_cast<unsigned>(Feature::outside) |
                      (base.features & (static_cast<unsigned>(Feature::boundary_faces) |
-                                       static_cast<unsigned>(Feature::new_positions) |
-                                       static_cast<unsigned>(Feature::masked)));
+                                       static_cast<unsigned>(Feature::new_positions)));
     facts.decodes = true;  // what is below an element depends on P_S U at its corners
     facts.only_shape = base.only_shape;
     return facts;
