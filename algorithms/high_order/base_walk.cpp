@@ -68,7 +68,7 @@ BoxSplitKeys split_keys_of(const BoxKeys& corners, const Rule& rule) {
 std::vector<HalvedPart> halved_parts(const Rule& rule) {
     const std::vector<Point> nodes = reference_nodes(rule);
     std::vector<HalvedPart> parts;
-    for (std::size_t n = static_cast<std::size_t>(rule.corner_count()); n < nodes.size(); ++n) {
+    for (auto n = static_cast<std::size_t>(rule.corner_count()); n < nodes.size(); ++n) {
         HalvedPart part;
         for (std::size_t d = 0; d < topology(rule.parent).dimension; ++d) {
             if (nodes[n][d] == 0.5) part.span |= 1U << d;
@@ -115,7 +115,6 @@ void BaseWalk::for_each(const Function& function) const {
                                std::string(topology(coarse.shape).name) +
                                "; data of higher degree are drawn on quadrilaterals and hexahedra");
         }
-        if ((family.split | family.leaves) == 0) continue;
         BaseElement e{family.members.data(), {}, coarse_path(i), i};
         for (std::size_t k = 0; k < std::size_t{1} << dimension_; ++k) {
             e.key[k] = coarse_key(coarse.ids[k]);
@@ -141,7 +140,6 @@ void BaseWalk::visit(Way& way, std::size_t level) const {
                  family);
     const BoxSplitKeys keys = split_keys_of(e.key, *rule_);
     for (std::size_t c = 0; c < rule_->children.size(); ++c) {
-        if (((family.split | family.leaves) >> c & 1U) == 0) continue;
         BaseElement child{&family.members[c], {}, child_path(e.path, c), c};
         for (std::size_t k = 0; k < std::size_t{1} << dimension_; ++k) {
             child.key[k] = keys[rule_->children[c].corner[k]];

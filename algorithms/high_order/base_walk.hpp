@@ -61,7 +61,7 @@ constexpr NodeKey child_path(NodeKey father, std::size_t child) {
 }
 constexpr NodeKey coarse_path(std::size_t i) { return nestgrid::detail::mix(NodeKey{i}); }
 
-/// Calls a function for every element that is not masked, fathers first.
+/// Calls a function for every element, fathers first.
 class BaseWalk {
 public:
     /// \param way the elements on the way down, the one at hand last

@@ -19,8 +19,10 @@ const Hierarchy<Real>& checked(const Hierarchy<Real>& base) {
         throw InvalidInput(
             "the field tells no polynomials: data of higher degree need degree() and evaluate()");
     }
-    if (base.offers(Feature::hidden)) {
-        throw InvalidInput("leaves of higher degree are not drawn beside hidden elements yet");
+    for (const Feature feature : {Feature::hidden, Feature::masked, Feature::outside}) {
+        if (!base.offers(feature)) continue;
+        throw InvalidInput(
+            "leaves of higher degree are not drawn beside hidden or masked elements");
     }
     return base;
 }
@@ -51,8 +53,7 @@ HierarchyFacts facts_of(const HighOrderData& data) {
     facts.features = static_cast<unsigned>(Feature::constrained) |
                      static_cast<unsigned>(Feature::outside) |
                      (base.features & (static_cast<unsigned>(Feature::boundary_faces) |
-                                       static_cast<unsigned>(Feature::new_positions) |
-                                       static_cast<unsigned>(Feature::masked)));
+                                       static_cast<unsigned>(Feature::new_positions)));
     facts.decodes = true;  // what is below an element depends on P_S U at its corners
     facts.only_shape = base.only_shape;
     return facts;
@@ -79,9 +80,15 @@ std::size_t HighOrder::memory_bytes() const {
 }
 
 VirtualRefinement::VirtualRefinement(const HighOrder& data, const VirtualOptions& options)
-    : Hierarchy<double>(engine::facts_of(*data.data_)),
-      base_{data.base_},
-      elements_{std::make_shared<const engine::VirtualElements>(data.data_, options)} {}
+    : Hierarchy<double>(engine::facts_of(*data.data_)) {
+    struct Kept {
+        std::shared_ptr<const void> base;  // outlives the elements
+        engine::VirtualElements elements;
+    };
+    const std::shared_ptr<const Kept> kept(
+        new Kept{data.base_, engine::VirtualElements(data.data_, options)});
+    elements_ = {kept, &kept->elements};
+}
 
 const Criterion& VirtualRefinement::criterion() const { return elements_->criterion(); }
 const Bounds& VirtualRefinement::bounds() const { return elements_->data().nodes; }

@@ -295,6 +295,10 @@ std::size_t LeafRecords::memory_bytes() const {
 }
 
 void LeafRecords::finish() {
+    leaves_.shrink_to_fit();
+    nets_.shrink_to_fit();
+    records_.shrink_to_fit();
+    record_nets_.shrink_to_fit();
     corners_ = {};
     owner_ = {};
     record_number_ = {};

@@ -86,17 +86,10 @@ private:
 
     void add_split(std::span<const BaseElement> way) {
         const BoxSplitKeys keys = split_keys_of(way.back().key, *rule_);
-        Split split{{}, way.back().member->outside, static_cast<int>(way.size())};
+        Split split{{}, static_cast<int>(way.size())};
         const std::size_t count = corners_ + rule_->new_nodes.size();
         for (std::size_t n = 0; n < count; ++n) {
-            // A node of masked elements alone has the number of no leaf's corner.
-            const auto fresh = static_cast<std::uint32_t>(nodes_->nodes_.size());
-            const auto [at, is_new] = nodes_->number_.insert(keys[n], fresh);
-            split.node[n] = *at;
-            if (is_new) {
-                nodes_->nodes_.emplace_back();
-                nodes_->values_.resize(nodes_->values_.size() + records_->components(), 0.0);
-            }
+            split.node[n] = *nodes_->number_.find(keys[n]);  // a corner of a leaf
             if (n < corners_) continue;
             RealNode& made = node(split.node[n]);
             const HalvedPart& part = halved_[n - corners_];
@@ -180,7 +173,6 @@ private:
             for (const Split& split : level) raise_corners(split);
             end = begin;
         }
-        // Nodes of the coarse grid are new nodes of nothing.
     }
 
     /// Once for each node, when all finer nodes are done.
@@ -196,9 +188,10 @@ private:
         }
     }
 
-    /// An element that stops differs from U by at most `below` the corners that S holds at, by
-    /// `off` at these, which below + off <= bound; their residual moves by at most 5 / 2 of that.
-    /// With the triangles, which leave the fit by twice the residual, that is 6 bound + 2 residual.
+    /// On an element that stops, U differs from the interpolant of its true corner values by at
+    /// most `below`, and those from P_S U by the offsets of the corners that S holds at: by at most
+    /// `bound` in all. The triangles leave P_S U by twice its affine residual, which is that of the
+    /// true values, moved by at most 5 / 2 bound. Together that is 6 bound + 2 residual.
     void put_stop(const Split& split) {
         std::array<double, max_box_corners> u;
         for (std::size_t k = 0; k < corners_; ++k) u[k] = value(split.node[k]);
@@ -210,9 +203,6 @@ private:
         for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
             RealNode& made = node(split.node[corners_ + n]);
             raise(made.stop, 6 * below + 2 * residual);
-            if ((split.outside >> n & 1U) != 0) {
-                made.stop = std::numeric_limits<float>::infinity();
-            }
         }
     }
 
@@ -246,6 +236,8 @@ private:
 RealNodes::RealNodes(const Hierarchy<double>& base, const BaseWalk& walk, LeafRecords& records)
     : records_{&records}, epoch_{base.epoch()} {
     Preroll(*this, walk, records).run();
+    nodes_.shrink_to_fit();
+    values_.shrink_to_fit();
 }
 
 double RealNodes::offset_bound(NodeKey key) const {

@@ -63,7 +63,6 @@ public:
 private:
     struct Split {
         std::array<std::uint32_t, 27> node;  // corners first
-        NodeMask outside;
         int level;
     };
     struct Leaf {

@@ -86,7 +86,6 @@ void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& 
     Places& places = VirtualElements::places(family, 1);
     data_->base->coarse(own.base.get(), i, coarse, places.base);
     const Member& base = places.base.members[0];
-    if ((places.base.split | places.base.leaves) == 0) return;
     ElementState& state = places.states[0];
     state = {base.element, base.rule, {}, coarse_path(i), coarse.corners};
     std::vector<double> u(corners_);
@@ -100,7 +99,7 @@ void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& 
     describe(own, e, u.data(), family, 0);
 }
 
-/// Nodes of masked elements alone have no value.
+/// Values at the corners of a coarse element.
 NodeMask VirtualElements::coarse_values(Task* task, std::size_t i, std::span<double> out) const {
     auto& own = static_cast<OpenTask&>(*task);
     Coarse coarse;
@@ -154,10 +153,6 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
             at_corners[k] = u[rule_->children[c].corner[k]];
             state.x[k] = x[rule_->children[c].corner[k]];
         }
-        if (e.leaf == VirtualElement::no_leaf &&
-            ((places.base.split | places.base.leaves) >> c & 1U) == 0) {
-            continue;  // masked
-        }
         set_child(e, c, places.base, child, state);
         describe(own, child, at_corners.data(), family, c);
     }
@@ -209,7 +204,6 @@ void VirtualElements::describe_split(const VirtualElement& e, Member& member) co
         if (node == nullptr) continue;
         const bool flat = node->hangs && (node->beta <= flat_ || node->shift >= depth_);
         member.constrained |= NodeMask{flat} << n;
-        if (std::isinf(node->stop)) member.outside |= NodeMask{1} << n;
     }
 }
 

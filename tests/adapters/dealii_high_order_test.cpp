@@ -8,9 +8,9 @@
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/hp/fe_collection.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/vector.h>
-#include <deal.II/numerics/vector_tools.h>
 
 #include <nestgrid/adapters/dealii.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
@@ -46,7 +46,10 @@ struct Problem {
     dealii::DoFHandler<dim> dofs{triangulation};
     DoubleVector values;
 
-    Problem(const dealii::FiniteElement<dim>& fe, bool ball) {
+    Problem(const dealii::FiniteElement<dim>& fe, bool ball)
+        : Problem(dealii::hp::FECollection<dim>(fe), ball) {}
+    /// Degrees at random, where there are several.
+    Problem(const dealii::hp::FECollection<dim>& elements, bool ball) {
         if (ball) {
             dealii::GridGenerator::hyper_ball(triangulation);
         } else {
@@ -60,14 +63,37 @@ struct Problem {
             }
             triangulation.execute_coarsening_and_refinement();
         }
-        dofs.distribute_dofs(fe);
+        if (elements.size() > 1) {
+            for (const auto& cell : dofs.active_cell_iterators()) {
+                cell->set_active_fe_index(static_cast<unsigned>(random() % elements.size()));
+            }
+            dofs.distribute_dofs(elements);
+        } else {
+            dofs.distribute_dofs(elements[0]);
+        }
         values.reinit(dofs.n_dofs());
-        dealii::VectorTools::interpolate(dealii::MappingQ1<dim>(), dofs,
-                                         Waves<dim>(fe.n_components()), values);
+        interpolate();
         dealii::AffineConstraints<double> constraints;
         dealii::DoFTools::make_hanging_node_constraints(dofs, constraints);
         constraints.close();
         constraints.distribute(values);
+    }
+
+    /// Values at the nodes of every cell.
+    void interpolate() {
+        for (const auto& cell : dofs.active_cell_iterators()) {
+            const auto& fe = cell->get_fe();
+            const Waves<dim> waves(fe.n_components());
+            std::vector<dealii::types::global_dof_index> dof(fe.n_dofs_per_cell());
+            cell->get_dof_indices(dof);
+            for (unsigned i = 0; i < dof.size(); ++i) {
+                const auto [component, in_base] = fe.system_to_component_index(i);
+                const auto base = fe.system_to_base_index(i).first.first;
+                const auto x = dealii::MappingQ1<dim>().transform_unit_to_real_cell(
+                    cell, fe.base_element(base).unit_support_point(in_base));
+                values(dof[i]) = waves.value(x, component);
+            }
+        }
     }
 };
 
@@ -100,6 +126,31 @@ TEST(DealiiHighOrder, SolutionsAreClosedAndWithinTheTolerance) {
 TEST(DealiiHighOrder, NodesOnManifoldsStayThere) {
     expect_within(Problem<3>(dealii::FE_Q<3>(3), true), 0.05);
     expect_within(Problem<2>(dealii::FE_Q<2>(3), true), 0.01);
+}
+
+/// Elements of several degrees jump where these meet, by deal.II's own shape functions.
+template <int dim>
+void expect_closed_hp(double tolerance) {
+    dealii::hp::FECollection<dim> elements;
+    for (unsigned degree = 2; degree <= 6; ++degree) elements.push_back(dealii::FE_Q<dim>(degree));
+    const Problem<dim> problem(elements, false);
+    const DealiiGrid<dim> grid(problem.triangulation);
+    const DealiiField<dim, DoubleVector> field(grid, problem.dofs, problem.values);
+    const auto violation = check_grid(grid, field);
+    EXPECT_FALSE(violation.has_value()) << (violation ? violation->sentence : "");
+    const HighOrder data(grid, field);
+    EXPECT_EQ(data.greatest_degree(), 6);
+    const VirtualRefinement fine(data, {.tolerance = tolerance, .depth = 5});
+    const auto result =
+        isosurface<dim>(fine, 0.3, fine.criterion(), fine.bounds(), {.verify = true});
+    EXPECT_GT(result.surface.simplices.size(), 100U);
+    expect_closed(result.surface);
+    EXPECT_LE(result.error_bound, (tolerance + data.jump()) * (1 + 1e-6));
+}
+
+TEST(DealiiHighOrder, DegreesMayDifferFromCellToCell) {
+    expect_closed_hp<3>(0.1);
+    expect_closed_hp<2>(0.02);
 }
 
 TEST(DealiiHighOrder, ComponentsOfSystemsAreToldApart) {

@@ -421,9 +421,9 @@ TEST(Dealii, RefusesWhatItCannotRead) {
     const DoubleVector of_cells(discontinuous.n_dofs());
     expect_refused([&] { Field(grid, discontinuous, of_cells); }, "no nodal values at vertices");
     DoFHandler<3> hp(*p.triangulation);
-    hp.distribute_dofs(dealii::hp::FECollection<3>(FE_Q<3>(1), FE_Q<3>(2)));
+    hp.distribute_dofs(dealii::hp::FECollection<3>(FE_Q<3>(1), dealii::FE_DGQ<3>(2)));
     const DoubleVector of_hp(hp.n_dofs());
-    expect_refused([&] { Field(grid, hp, of_hp); }, "hp elements");
+    expect_refused([&] { Field(grid, hp, of_hp); }, "no nodal values at vertices");
 
     Triangulation<3> anisotropic;
     dealii::GridGenerator::hyper_cube(anisotropic);

@@ -45,11 +45,6 @@ TEST(Refusals, OfDealii) {
         Field(grid, other.dofs, values);
     });
     rows.add("a component that is not there", [&] { Field(grid, problem.dofs, values, {2}); });
-    rows.add("hp elements", [&] {
-        dealii::DoFHandler<3> hp(problem.triangulation);
-        hp.distribute_dofs(dealii::hp::FECollection<3>(dealii::FE_Q<3>(1), dealii::FE_Q<3>(2)));
-        Field(grid, hp, Vector(hp.n_dofs()));
-    });
     rows.add("discontinuous elements", [&] {
         dealii::DoFHandler<3> jumps(problem.triangulation);
         jumps.distribute_dofs(dealii::FE_DGQ<3>(1));

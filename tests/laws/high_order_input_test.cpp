@@ -164,8 +164,16 @@ struct OtherField {
     }
 };
 
+/// A grid some of which is hidden.
+struct HidingWorld : DegreeWorld<3> {
+    using DegreeWorld<3>::DegreeWorld;
+    Hidden hidden(const Element&) const { return Hidden::not_at_all; }
+};
+
 TEST_F(HighOrderInput, OtherGridsAndFieldsAreRefused) {
     expect_refused([&] { const HighOrder data(world, Plain()); }, "need degree() and evaluate()");
+    const HidingWorld hiding({.least_degree = 2, .greatest_degree = 2}, cubic);
+    expect_refused([&] { const HighOrder data(hiding, Wrong(hiding)); }, "beside hidden or masked");
     OtherGrid grid;
     grid.shape = Shape::tetrahedron;
     expect_refused([&] { const HighOrder data(grid, OtherField()); },

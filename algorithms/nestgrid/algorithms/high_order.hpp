@@ -45,6 +45,7 @@ private:
     std::shared_ptr<const engine::HighOrderData> data_;
 };
 
+/// How finely leaves are divided.
 struct VirtualOptions {
     double tolerance = 0;  ///< in the units of the data; at least 1e-12 of their range
     int depth = 8;         ///< leaves are halved at most this many times, 1 to 16
@@ -73,7 +74,6 @@ public:
     void corner_gradients(Task*, const Handle&, std::span<Point>) const override {}
 
 private:
-    std::shared_ptr<const void> base_;
     std::shared_ptr<const engine::VirtualElements> elements_;
 };
 

@@ -41,22 +41,24 @@ public:
                    Grid::max_new_nodes>
             dof;
         grid_->for_each_new_node(e, [&](std::size_t n, const auto& child, unsigned corner) {
-            const DofCell c(&grid_->triangulation(), child->level(), child->index(), dofs_);
-            for (std::size_t i = 0; i < offset_.size(); ++i) {
-                dof[n][i] = c->vertex_dof_index(corner, offset_[i]);
-            }
+            dof[n] =
+                dofs_at({&grid_->triangulation(), child->level(), child->index(), dofs_}, corner);
         });
         for (std::size_t n = 0; which >> n != 0; ++n) {
             if ((which >> n & 1U) == 0) continue;
-            for (std::size_t i = 0; i < offset_.size(); ++i) {
-                out[n * offset_.size() + i] = (*values_)(dof[n][i]);
+            for (std::size_t c = 0; c < dof[n].size(); ++c) {
+                out[n * dof[n].size() + c] = (*values_)(dof[n][c]);
             }
         }
         return 0;
     }
 
-    /// The greatest degree of the components, the same on all leaves.
-    int degree(const typename Grid::Element& /*leaf*/) const { return degree_; }
+    /// The greatest degree of the components on a leaf.
+    int degree(const typename Grid::Element& leaf) const {
+        return elements_[DofCell(&grid_->triangulation(), leaf.level, leaf.index, dofs_)
+                             ->active_fe_index()]
+            .degree;
+    }
     /// Values at points of the reference element. Where these are the nodes of the components,
     /// entries of the vector are copied.
     void evaluate(const typename Grid::Element& leaf, std::span<const Point> reference,
@@ -65,9 +67,26 @@ public:
 private:
     using DofCell = typename dealii::DoFHandler<dim, spacedim>::cell_iterator;
 
+    using Dofs = std::array<dealii::types::global_dof_index, component_count>;
+
+    /// Degrees of freedom of the components at a vertex. Of hp elements a cell that is refined has
+    /// none: its child at the vertex, and so on, has.
+    Dofs dofs_at(DofCell c, unsigned corner) const {
+        unsigned element = 0;
+        if (elements_.size() > 1) {
+            while (c->has_children()) c = c->child(corner);
+            element = c->active_fe_index();
+        }
+        Dofs dofs;
+        for (std::size_t i = 0; i < dofs.size(); ++i) {
+            dofs[i] = c->vertex_dof_index(corner, elements_[element].offset[i], element);
+        }
+        return dofs;
+    }
     void put(const DofCell& c, unsigned corner, std::span<value_type> out, std::size_t n) const {
-        for (std::size_t i = 0; i < offset_.size(); ++i) {
-            out[n * offset_.size() + i] = (*values_)(c->vertex_dof_index(corner, offset_[i]));
+        const Dofs dofs = dofs_at(c, corner);
+        for (std::size_t i = 0; i < dofs.size(); ++i) {
+            out[n * dofs.size() + i] = (*values_)(dofs[i]);
         }
     }
 
@@ -77,19 +96,27 @@ private:
         Point at{0, 0, 0};
     };
 
-    void find_nodes(std::size_t component, unsigned of_element);
+    /// What the components are of one finite element.
+    struct Components {
+        std::array<unsigned, component_count> offset{};  // among the degrees of freedom of a vertex
+        std::array<std::vector<Node>, component_count> nodes{};  // first direction fastest
+        int degree = 1;
+    };
+
+    Components find(const dealii::FiniteElement<dim, spacedim>& fe) const;
+    std::vector<Node> find_nodes(const dealii::FiniteElement<dim, spacedim>& fe, unsigned component,
+                                 unsigned of_element) const;
     static bool are_at(std::span<const Node> nodes, std::span<const Point> places);
-    dealii::Point<dim> to_unit_cell(const Point& x) const;
+    static dealii::Point<dim> to_unit_cell(const dealii::FiniteElement<dim, spacedim>& fe,
+                                           const Point& x);
 
     const Grid* grid_;
     const dealii::DoFHandler<dim, spacedim>* dofs_;
     const Vector* values_;
     dealii::types::global_dof_index count_;  // of degrees of freedom
     detail::MadeFor made_for_;
-    std::array<unsigned, component_count> offset_{};  // among the degrees of freedom of a vertex
-    int degree_ = 1;
-    std::array<std::vector<Node>, component_count> nodes_{};  // first direction fastest
     std::array<unsigned, component_count> which_{};
+    std::vector<Components> elements_;  // one, or those of the hp collection
 };
 
 template <int dim, class Vector, int component_count, int spacedim>
@@ -100,52 +127,58 @@ DealiiField<dim, Vector, component_count, spacedim>::DealiiField(
     if (&dofs.get_triangulation() != &grid.triangulation()) {
         throw InvalidInput("the degrees of freedom are those of another triangulation");
     }
-    if (dofs.has_hp_capabilities()) {
-        throw InvalidInput("degrees of freedom of hp elements are not supported");
-    }
     if (values.size() != dofs.n_dofs()) {
         throw InvalidInput("the vector has " + std::to_string(values.size()) + " entries for " +
                            std::to_string(dofs.n_dofs()) + " degrees of freedom");
     }
-    const auto& fe = dofs.get_fe();
     which_ = which;
-    const unsigned per_vertex = fe.n_dofs_per_vertex();
-    for (std::size_t c = 0; c < which.size(); ++c) {
-        if (which[c] >= fe.n_components()) {
-            throw InvalidInput("the finite element has " + std::to_string(fe.n_components()) +
-                               " components and no number " + std::to_string(which[c]));
-        }
-        bool found = false;
-        for (unsigned i = 0; i < per_vertex && !found; ++i) {
-            // A node of the component at the vertex itself.
-            if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != which[c]) continue;
-            const unsigned base = fe.system_to_base_index(i).first.first;
-            found = fe.base_element(base).has_support_points();
-            offset_[c] = i;
-        }
-        if (!found) {
-            throw InvalidInput("component " + std::to_string(which[c]) + " of " + fe.get_name() +
-                               " has no nodal values at vertices");
-        }
-        find_nodes(c, fe.system_to_base_index(offset_[c]).first.first);
-    }
+    const auto& collection = dofs.get_fe_collection();
+    for (unsigned i = 0; i < collection.size(); ++i) elements_.push_back(find(collection[i]));
 }
 
-/// Lists the degrees of freedom of a component. It is one of the base element with this number.
+/// \throw InvalidInput where a component has no nodes at vertices
 template <int dim, class Vector, int component_count, int spacedim>
-void DealiiField<dim, Vector, component_count, spacedim>::find_nodes(std::size_t component,
-                                                                     unsigned of_element) {
-    const auto& fe = dofs_->get_fe();
-    degree_ = std::max(degree_, static_cast<int>(fe.base_element(of_element).degree));
-    std::vector<Node>& nodes = nodes_[component];
-    for (unsigned i = 0; i < fe.n_dofs_per_cell(); ++i) {
-        if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != which_[component]) {
-            continue;
+auto DealiiField<dim, Vector, component_count, spacedim>::find(
+    const dealii::FiniteElement<dim, spacedim>& fe) const -> Components {
+    Components result;
+    const unsigned per_vertex = fe.n_dofs_per_vertex();
+    for (std::size_t c = 0; c < which_.size(); ++c) {
+        if (which_[c] >= fe.n_components()) {
+            throw InvalidInput("the finite element has " + std::to_string(fe.n_components()) +
+                               " components and no number " + std::to_string(which_[c]));
         }
+        bool found = false;
+        unsigned base = 0;
+        for (unsigned i = 0; i < per_vertex && !found; ++i) {
+            // A node of the component at the vertex itself.
+            if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != which_[c]) continue;
+            base = fe.system_to_base_index(i).first.first;
+            found = fe.base_element(base).has_support_points();
+            result.offset[c] = i;
+        }
+        if (!found) {
+            throw InvalidInput("component " + std::to_string(which_[c]) + " of " + fe.get_name() +
+                               " has no nodal values at vertices");
+        }
+        result.nodes[c] = find_nodes(fe, which_[c], base);
+        result.degree = std::max(result.degree, static_cast<int>(fe.base_element(base).degree));
+    }
+    return result;
+}
+
+/// The degrees of freedom of a component, which is one of the base element with this number.
+template <int dim, class Vector, int component_count, int spacedim>
+auto DealiiField<dim, Vector, component_count, spacedim>::find_nodes(
+    const dealii::FiniteElement<dim, spacedim>& fe, unsigned component, unsigned of_element) const
+    -> std::vector<Node> {
+    std::vector<Node> nodes;
+    const auto& places = fe.base_element(of_element).get_unit_support_points();
+    for (unsigned i = 0; i < fe.n_dofs_per_cell(); ++i) {
+        if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != component) continue;
         Node node{i, {0, 0, 0}};
-        const unsigned in_base = fe.system_to_base_index(i).second;
-        const auto& places = fe.base_element(of_element).get_unit_support_points();
-        for (unsigned d = 0; d < dim; ++d) node.at[d] = places[in_base][d];
+        for (unsigned d = 0; d < dim; ++d) {
+            node.at[d] = places[fe.system_to_base_index(i).second][d];
+        }
         nodes.push_back(node);
     }
     std::ranges::sort(nodes, [](const Node& a, const Node& b) {
@@ -154,6 +187,7 @@ void DealiiField<dim, Vector, component_count, spacedim>::find_nodes(std::size_t
         }
         return false;
     });
+    return nodes;
 }
 
 template <int dim, class Vector, int component_count, int spacedim>
@@ -167,9 +201,9 @@ bool DealiiField<dim, Vector, component_count, spacedim>::are_at(std::span<const
 /// The base of deal.II's pyramid is twice as long, and its apex lies above the middle.
 template <int dim, class Vector, int component_count, int spacedim>
 dealii::Point<dim> DealiiField<dim, Vector, component_count, spacedim>::to_unit_cell(
-    const Point& x) const {
+    const dealii::FiniteElement<dim, spacedim>& fe, const Point& x) {
     dealii::Point<dim> to;
-    const bool pyramid = dofs_->get_fe().reference_cell() == dealii::ReferenceCells::Pyramid;
+    const bool pyramid = fe.reference_cell() == dealii::ReferenceCells::Pyramid;
     for (unsigned d = 0; d < dim; ++d) to[d] = pyramid && d < 2 ? 2 * x[d] - (1 - x[2]) : x[d];
     return to;
 }
@@ -178,13 +212,14 @@ template <int dim, class Vector, int component_count, int spacedim>
 void DealiiField<dim, Vector, component_count, spacedim>::evaluate(
     const typename Grid::Element& leaf, std::span<const Point> reference,
     std::span<value_type> out) const {
-    const auto& fe = dofs_->get_fe();
     const DofCell cell(&grid_->triangulation(), leaf.level, leaf.index, dofs_);
+    const auto& fe = cell->get_fe();
+    const Components& of_cell = elements_[cell->active_fe_index()];
     std::vector<dealii::types::global_dof_index> dof(fe.n_dofs_per_cell());
     cell->get_dof_indices(dof);
-    const std::size_t stride = nodes_.size();
+    const std::size_t stride = which_.size();
     for (std::size_t c = 0; c < stride; ++c) {
-        const std::vector<Node>& nodes = nodes_[c];
+        const std::vector<Node>& nodes = of_cell.nodes[c];
         if (are_at(nodes, reference)) {
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 out[i * stride + c] = (*values_)(dof[nodes[i].dof]);
@@ -192,7 +227,7 @@ void DealiiField<dim, Vector, component_count, spacedim>::evaluate(
             continue;
         }
         for (std::size_t i = 0; i < reference.size(); ++i) {
-            const dealii::Point<dim> at = to_unit_cell(reference[i]);
+            const dealii::Point<dim> at = to_unit_cell(fe, reference[i]);
             double sum = 0;
             for (const Node& node : nodes) {
                 sum += fe.shape_value_component(node.dof, at, which_[c]) *
