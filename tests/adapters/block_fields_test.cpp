@@ -3,6 +3,7 @@
 //
 // Fields on blocks: linear functions, agreement with CellAverages, any layout in memory.
 #include <walk/for_each_element.hpp>
+#include <walk/hanging_nodes.hpp>
 
 #include "block_samples.hpp"
 #include "solver_laws.hpp"

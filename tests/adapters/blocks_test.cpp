@@ -4,6 +4,7 @@
 // Block-structured grids: the contract, keys and hanging nodes that follow from boxes, and all that
 // is refused.
 #include <nestgrid/check_grid.hpp>
+#include <walk/for_each_element.hpp>
 
 #include "block_samples.hpp"
 #include "changed_laws.hpp"

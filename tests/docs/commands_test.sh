@@ -9,6 +9,7 @@
 #   build/release/docs/examples/figures is run, and makes a figure that the same page shows
 #   mpirun -n N build/release/...       likewise, as the next
 #   other programs of build/release     are programs of this build, with a test or benchmark of their own
+#   build/release/tests/tools/make_plotfiles is run
 #   build/python/bin/python SCRIPT      is run with the package of this build, if there is one and a
 #                                       display, and makes a figure that the same page shows,
 #                                       unless it is a benchmark, which has a test of its own
@@ -153,6 +154,7 @@ check() {
         grep -q "add_test(NAME example.$file \|^foreach.*\b$file\b" "$source/docs/examples/CMakeLists.txt" ||
             fail "$page: no test runs $1"
         ;;
+    build/release/tests/tools/make_plotfiles) run "$build/${1#build/release/}" "${@:2}" ;;
     build/release/tests/benchmarks/*)
         [ -s "$source/tests/benchmarks/${1##*/}.cpp" ] || fail "$page: there is no $1"
         ;;
