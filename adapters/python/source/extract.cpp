@@ -47,7 +47,7 @@ Isosurface<3> draw_one(const Hierarchy<Real>& hierarchy, double isovalue, const 
     CollapseOptions kept;
     Isosurface<3> whole;
     Isosurface<3> drawn;
-    if (request.keeps_distance) {
+    if (request.keeps_distance && threshold > 0) {
         whole =
             draw(Exact{},
                  {.elements = false, .at_nodes = options.at_nodes, .progress = options.progress});
@@ -109,6 +109,31 @@ auto criterion_at(const Criteria& criteria) {
     return [&criteria](double threshold) { return criteria.at(threshold); };
 }
 
+/// Finds the threshold of an isosurface with a number of triangles, or the error or the distance
+/// within which its edges are collapsed.
+template <class Real>
+TriangleBudget find_budget(const Hierarchy<Real>& hierarchy, double isovalue,
+                           const Criteria& criteria, std::uint64_t max_triangles,
+                           const SurfaceRequest& request, const Call& call) {
+    const auto at = criterion_at(criteria);
+    const auto& bounds = criteria.bounds();
+    const IsosurfaceOptions options = options_of(request, call);
+    if (!request.collapses) {
+        return find_threshold<3>(hierarchy, isovalue, at, bounds, max_triangles, options,
+                                 call.executor());
+    }
+    if (!request.keeps_distance) {
+        return find_collapse_error(hierarchy, isovalue, at, bounds, max_triangles, options,
+                                   call.executor());
+    }
+    const Surface<3> whole =
+        isosurface<3>(hierarchy, isovalue, Exact{}, bounds,
+                      {.elements = false, .progress = options.progress}, call.executor())
+            .surface;
+    return find_collapse_distance(hierarchy, isovalue, whole, at, bounds, max_triangles, options,
+                                  call.executor());
+}
+
 }  // namespace
 
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
@@ -119,14 +144,8 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
                                 call.work());
         TriangleBudget search{.threshold = projection.least_threshold()};
         if (projection.max_triangles > 0) {
-            const auto find = [&](const auto& function) {
-                return function(hierarchy, isovalue, criterion_at(criteria), criteria.bounds(),
-                                projection.max_triangles, options_of(request, call),
-                                call.executor());
-            };
-            search = request.collapses
-                         ? find([](const auto&... a) { return find_collapse_error(a...); })
-                         : find([](const auto&... a) { return find_threshold<3>(a...); });
+            search =
+                find_budget(hierarchy, isovalue, criteria, projection.max_triangles, request, call);
         }
         return drawn_of(draw_one(hierarchy, isovalue, criteria, search.threshold, request, call),
                         search);
