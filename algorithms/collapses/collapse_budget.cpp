@@ -226,7 +226,7 @@ TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double i
     return found_by(search, [&] {
         const double first = first_distance(whole, max_triangles);
         search.run(
-            whole.simplices.size(), [&] { return first; }, first / 8,
+            whole.simplices.size(), [&] { return first; }, first / 4,
             engine::Box::around(whole.vertices).diameter());
     });
 }

@@ -74,7 +74,7 @@ TriangleBudget find_collapse_error(const Grid& grid, const Field& field, double 
 
 /// The least distance such that the isosurface that isosurface_within() draws with half of it, and
 /// that is then collapsed within it, has at most max_triangles. It is the `threshold` of the
-/// result; where that is 0, all data have no more triangles. Less than about a fiftieth of the
+/// result; where that is 0, all data have no more triangles. Less than about a thirtieth of the
 /// edges of so many triangles is not tried.
 /// \param whole the isosurface of all data
 /// \param criterion_at of a distance, such as a Threshold on slope_deviations() (cut_indicator.hpp)
