@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include <distances/box_tree.hpp>
 #include <levels/bfloat16_search.hpp>
 #include <levels/draw.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/frontier.hpp>
 
@@ -23,13 +27,13 @@ using engine::octave;
 
 constexpr int guesses = 6;         // trials, before intervals are halved and steps doubled
 constexpr double aim = 0.95;       // part of the number that a trial is to have
-constexpr double steepness = 1.2;  // triangles are about error^-steepness
+constexpr double steepness = 1.2;  // triangles are about amount^-steepness
 constexpr int least_step = 8;      // of codes, beyond what was tried
 constexpr int most_step = 4 * octave;
-constexpr int octaves_tried = 24;   // below the range of the data
+constexpr int octaves_tried = 24;   // of errors, below the greatest one
 constexpr std::uint64_t taken = 8;  // triangles that collapses make one of, about
 
-/// An error by its bfloat16 code, and the triangles that it leaves.
+/// An error or a distance by its bfloat16 code, and the triangles that it leaves.
 struct Trial {
     int code;
     std::uint64_t triangles;
@@ -60,43 +64,40 @@ int next_code(const std::optional<Trial>& beyond, const std::optional<Trial>& wi
     return beyond ? tried.code + step : tried.code - step;
 }
 
-/// Tries errors, and keeps the last one that fits.
-template <class Real>
-class CollapseTrials {
+/// Tries amounts, be they errors or distances, and keeps the last one that fits.
+class AmountSearch {
 public:
-    CollapseTrials(const Hierarchy<Real>& hierarchy, double isovalue,
-                   const MakeCriterion& criterion_at, const SearchBounds& bounds,
-                   std::uint64_t max_triangles, IsosurfaceOptions options, const Executor& executor)
-        : hierarchy_{hierarchy},
-          isovalue_{isovalue},
-          criterion_at_{criterion_at},
-          bounds_{bounds},
-          options_{std::move(options)},
-          executor_{executor},
-          levels_{engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1))} {
+    /// Draws and collapses within an amount, adds the triangles that it drew to a number, and
+    /// returns how many are left.
+    using Collapse = std::function<std::uint64_t(double amount, std::uint64_t& drawn)>;
+
+    AmountSearch(Collapse collapse, std::uint64_t max_triangles) : collapse_{std::move(collapse)} {
         best_.max_triangles = max_triangles;
-        options_.normals = options_.cap = options_.elements = options_.reference = false;
     }
 
-    /// \throw InvalidInput where no error keeps within the number
-    void run() {
-        const std::uint64_t all = drawn(0, std::numeric_limits<std::uint64_t>::max()).value();
+    /// \param all the triangles of all data
+    /// \param first first() is the amount to begin with, where these are too many
+    /// \param least_amount that is tried
+    /// \param greatest amount at which the surface is as coarse as it gets
+    /// \throw InvalidInput where no amount keeps within the number
+    template <class First>
+    void run(std::uint64_t all, const First& first, double least_amount, double greatest) {
         if (all <= best_.max_triangles) {
             best_.triangles = all;
             return;
         }
         best_.next_triangles = all;
-        const int greatest = code_of(2 * bounds_.range);
-        const int least = std::max(1, greatest - octaves_tried * octave);
-        int code = std::clamp(code_of(first_error(all)), least, greatest);
+        const int most = code_of(greatest);
+        const int least = std::max(1, code_of(least_amount));
+        int code = std::clamp(code_of(first()), least, most);
         while (true) {
             attempt(code);
             const int next_below = beyond_ ? beyond_->code + 1 : least;
             if (within_ && (best_.end() == BudgetEnd::filled || within_->code <= next_below))
                 return;
-            if (!within_ && code == greatest) break;
+            if (!within_ && code == most) break;
             const auto number = static_cast<double>(best_.max_triangles);
-            code = std::clamp(next_code(beyond_, within_, number, best_.trials), least, greatest);
+            code = std::clamp(next_code(beyond_, within_, number, best_.trials), least, most);
         }
         throw InvalidInput("even the coarsest surface has more than " +
                            std::to_string(best_.max_triangles) +
@@ -108,54 +109,67 @@ public:
     }
 
 private:
-    static int code_of(double error) { return bfloat16_above(float_above(error)); }
+    static int code_of(double amount) { return bfloat16_above(float_above(amount)); }
 
-    /// How many triangles are drawn at a threshold, or nothing where there are more than `most`.
-    std::optional<std::uint64_t> drawn(double threshold, std::uint64_t most) const {
-        return engine::count_simplices<3>(levels_, *criterion_at_(threshold), bounds_.bounds, most,
-                                          options_, executor_);
-    }
-    /// An error at which so many triangles are drawn that collapses may leave the number.
-    double first_error(std::uint64_t all) const {
-        const std::uint64_t most = taken * best_.max_triangles;
-        const double least = std::ldexp(bounds_.range, all > most ? -octaves_tried : -5);
-        double error = bounds_.range;
-        while (error > least && (all <= most || drawn(collapse_start * error, most))) error /= 2;
-        return error;
-    }
     void attempt(int code) {
-        const double error = bfloat16_value(static_cast<std::uint16_t>(code));
-        Isosurface<3> result =
-            isosurface<3>(hierarchy_, isovalue_, *criterion_at_(collapse_start * error), bounds_.bounds,
-                          options_, executor_);
-        if (result.cancelled) throw engine::Cancelled{};
-        Surface<3>& surface = result.surface;
-        best_.extracted += surface.simplices.size();
+        const double amount = bfloat16_value(static_cast<std::uint16_t>(code));
+        const std::uint64_t triangles = collapse_(amount, best_.extracted);
         ++best_.trials;
-        collapse(surface, hierarchy_, isovalue_, bounds_.bounds, {.error = error}, executor_);
-        const std::uint64_t triangles = surface.simplices.size();
         if (triangles <= best_.max_triangles) {
             within_ = {code, triangles};
-            best_.threshold = error;
+            best_.threshold = amount;
             best_.triangles = triangles;
         } else {
             beyond_ = {code, triangles};
-            best_.next_threshold = error;
+            best_.next_threshold = amount;
             best_.next_triangles = triangles;
         }
     }
 
-    const Hierarchy<Real>& hierarchy_;
-    double isovalue_;
-    const MakeCriterion& criterion_at_;
-    SearchBounds bounds_;
-    IsosurfaceOptions options_;
-    const Executor& executor_;
-    engine::Levels<Real> levels_;
+    Collapse collapse_;
     TriangleBudget best_;
-    std::optional<Trial> beyond_;  // the greatest error that exceeds the number
+    std::optional<Trial> beyond_;  // the greatest amount that exceeds the number
     std::optional<Trial> within_;  // the least one that keeps within it
 };
+
+/// \param run searches, and throws Cancelled where progress ends that
+template <class Run>
+TriangleBudget found_by(AmountSearch& search, const Run& run) {
+    try {
+        run();
+        return search.best(false);
+    } catch (const engine::Cancelled&) {
+        return search.best(true);
+    }
+}
+
+/// Options of surfaces whose triangles alone are counted.
+IsosurfaceOptions of_trials(IsosurfaceOptions options) {
+    options.normals = options.cap = options.elements = options.reference = false;
+    return options;
+}
+
+/// \throw engine::Cancelled where progress has ended the drawing
+Surface<3>& complete(Isosurface<3>& drawn) {
+    if (drawn.cancelled) throw engine::Cancelled{};
+    return drawn.surface;
+}
+
+/// An error at which so many triangles are drawn that collapses may leave the number.
+/// \param drawn drawn(error, most): the triangles at collapse_start of it, if they are no more
+template <class DrawnAt>
+double first_error(const DrawnAt& drawn, double range, std::uint64_t all, std::uint64_t max) {
+    const std::uint64_t most = taken * max;
+    const double least = std::ldexp(range, all > most ? -octaves_tried : -5);
+    double error = range;
+    while (error > least && (all <= most || drawn(collapse_start * error, most))) error /= 2;
+    return error;
+}
+
+/// A part of the length of an edge where that many triangles are of one size.
+double first_distance(const Surface<3>& whole, std::uint64_t max_triangles) {
+    return 0.2 * std::sqrt(surface_report(whole).area / static_cast<double>(max_triangles));
+}
 
 }  // namespace
 
@@ -164,14 +178,57 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
                                    const MakeCriterion& criterion_at, const SearchBounds& bounds,
                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
                                    const Executor& executor) {
-    CollapseTrials<Real> trials(hierarchy, isovalue, criterion_at, bounds, max_triangles, options,
-                                executor);
-    try {
-        trials.run();
-        return trials.best(false);
-    } catch (const engine::Cancelled&) {
-        return trials.best(true);
-    }
+    const IsosurfaceOptions of_trial = of_trials(options);
+    const auto collapse_within = [&](double error, std::uint64_t& triangles) {
+        Isosurface<3> result =
+            isosurface<3>(hierarchy, isovalue, *criterion_at(collapse_start * error), bounds.bounds,
+                          of_trial, executor);
+        Surface<3>& surface = complete(result);
+        triangles += surface.simplices.size();
+        collapse(surface, hierarchy, isovalue, bounds.bounds, {.error = error}, executor);
+        return surface.simplices.size();
+    };
+    AmountSearch search(collapse_within, max_triangles);
+    return found_by(search, [&] {
+        const auto levels =
+            engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
+        const auto drawn = [&](double threshold, std::uint64_t most) {
+            return engine::count_simplices<3>(levels, *criterion_at(threshold), bounds.bounds, most,
+                                              of_trial, executor);
+        };
+        const std::uint64_t all = drawn(0, std::numeric_limits<std::uint64_t>::max()).value();
+        const auto first = [&] { return first_error(drawn, bounds.range, all, max_triangles); };
+        const double greatest = 2 * bounds.range;
+        search.run(all, first, std::ldexp(greatest, -octaves_tried), greatest);
+    });
+}
+
+template <class Real>
+TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double isovalue,
+                                      const Surface<3>& whole, const MakeAlsoFine& criterion_at,
+                                      const Bounds& bounds, std::uint64_t max_triangles,
+                                      const IsosurfaceOptions& options, const Executor& executor) {
+    const IsosurfaceOptions of_trial = of_trials(options);
+    const auto collapse_within = [&](double distance, std::uint64_t& triangles) {
+        const double first = distance / 2;
+        Isosurface<3> result = isosurface_within(
+                                   hierarchy, isovalue, {whole, first},
+                                   [&](const Indicator& fine) { return criterion_at(first, fine); },
+                                   bounds, of_trial, executor)
+                                   .isosurface;
+        Surface<3>& surface = complete(result);
+        triangles += surface.simplices.size();
+        collapse(surface, hierarchy, isovalue, bounds, {.nearness = Nearness{whole, distance}},
+                 executor);
+        return surface.simplices.size();
+    };
+    AmountSearch search(collapse_within, max_triangles);
+    return found_by(search, [&] {
+        const double first = first_distance(whole, max_triangles);
+        search.run(
+            whole.simplices.size(), [&] { return first; }, first / 4,
+            engine::Box::around(whole.vertices).diameter());
+    });
 }
 
 template TriangleBudget find_collapse_error(const Hierarchy<float>&, double, const MakeCriterion&,
@@ -180,5 +237,11 @@ template TriangleBudget find_collapse_error(const Hierarchy<float>&, double, con
 template TriangleBudget find_collapse_error(const Hierarchy<double>&, double, const MakeCriterion&,
                                             const SearchBounds&, std::uint64_t,
                                             const IsosurfaceOptions&, const Executor&);
+template TriangleBudget find_collapse_distance(const Hierarchy<float>&, double, const Surface<3>&,
+                                               const MakeAlsoFine&, const Bounds&, std::uint64_t,
+                                               const IsosurfaceOptions&, const Executor&);
+template TriangleBudget find_collapse_distance(const Hierarchy<double>&, double, const Surface<3>&,
+                                               const MakeAlsoFine&, const Bounds&, std::uint64_t,
+                                               const IsosurfaceOptions&, const Executor&);
 
 }  // namespace nestgrid::detail

@@ -90,7 +90,7 @@ public:
         const double first = collapses ? part * kept : kept;
         const AnyCriterion criterion = criteria_.at(first);
         Projected<Isosurface<3>> drawn;
-        if (!projection.keeps_distance) {
+        if (!projection.keeps_distance || kept == 0) {
             as_isosurface(drawn) = by(criterion, options_);
             if (collapses && !drawn.cancelled) collapse_into(drawn, {.error = kept});
             return drawn;
@@ -142,7 +142,16 @@ TriangleBudget find_isosurface(const Hierarchy<Real>& hierarchy, double isovalue
         return find_threshold<2>(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(),
                                  most, options, executor);
     }
-    if (criteria.projection().collapse) {
+    const Projection& projection = criteria.projection();
+    if (projection.collapse && projection.keeps_distance) {
+        const Surface<3> whole =
+            isosurface<3>(hierarchy, isovalue, Exact{}, criteria.bounds(),
+                          {.elements = false, .progress = options.progress}, executor)
+                .surface;
+        return find_collapse_distance(hierarchy, isovalue, whole, criteria_at(criteria),
+                                      criteria.bounds(), most, options, executor);
+    }
+    if (projection.collapse) {
         return find_collapse_error(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(),
                                    most, options, executor);
     }

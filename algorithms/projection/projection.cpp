@@ -18,7 +18,7 @@ void Projection::check() const {
             "edges are collapsed within a threshold or a number of triangles: neither is given");
     }
     if (collapse && lens) throw InvalidInput("edges are collapsed without a lens");
-    if (keeps_distance && !threshold) {
+    if (keeps_distance && !threshold && !(collapse && max_triangles > 0)) {
         throw InvalidInput("a distance is to be kept, but there is no threshold that says which");
     }
     if (!(slice_distance >= 0) || !std::isfinite(slice_distance)) {

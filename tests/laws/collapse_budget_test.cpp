@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Collapses to a number of triangles keep within it, at an error that is about the least one.
+// Collapses to a number of triangles keep within it, at an error, or a distance, that is about the
+// least one.
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection.hpp>
@@ -30,6 +31,19 @@ auto thresholds_of(const HierarchicalIndicator& deviations) {
     return [&](double threshold) { return Threshold(&deviations, threshold); };
 }
 
+/// What was found for a number of triangles is what collapses leave, and the next lesser amount
+/// that is known of leaves more.
+template <class Triangles>
+void expect_least(const TriangleBudget& found, std::uint64_t number, const Triangles& left_at) {
+    EXPECT_GT(found.threshold, 0);
+    EXPECT_LE(found.triangles, number);
+    EXPECT_EQ(found.triangles, left_at(found.threshold));
+    if (found.end() == BudgetEnd::filled || found.next_threshold == 0) return;
+    EXPECT_LT(found.next_threshold, found.threshold);
+    EXPECT_EQ(found.next_triangles, left_at(found.next_threshold));
+    EXPECT_GT(found.next_triangles, number);
+}
+
 template <class Family>
 class CollapseBudgets : public testing::Test {};
 TYPED_TEST_SUITE(CollapseBudgets, Families);
@@ -56,14 +70,44 @@ TYPED_TEST(CollapseBudgets, AreKeptAtTheLeastError) {
                 EXPECT_GT(collapsed_triangles(h, 0.0, deviations, 2 * range), number);
                 return;
             }
-            EXPECT_GT(found.threshold, 0);
-            EXPECT_LE(found.triangles, number);
-            EXPECT_EQ(found.triangles, collapsed_triangles(h, 0.0, deviations, found.threshold));
-            if (found.end() == BudgetEnd::filled || found.next_threshold == 0) return;
-            EXPECT_LT(found.next_threshold, found.threshold);
-            EXPECT_EQ(found.next_triangles,
-                      collapsed_triangles(h, 0.0, deviations, found.next_threshold));
-            EXPECT_GT(found.next_triangles, number);
+            expect_least(found, number, [&](double error) {
+                return collapsed_triangles(h, 0.0, deviations, error);
+            });
+        });
+    }
+}
+
+TYPED_TEST(CollapseBudgets, AreKeptAtTheLeastDistance) {
+    if constexpr (TypeParam::Grid::dimension == 3) {
+        for_each_field_at_sphere<TypeParam>(1, 8, [](const auto& grid, const auto& samples) {
+            const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
+            const auto h = erase(grid, field);
+            const HierarchicalIndicator deviations(h, NodeError::deviation);
+            const Surface<3> whole = isosurface<3>(h, 0.0, Exact{}, deviations).surface;
+            const std::size_t all = whole.simplices.size();
+            if (all < 60) return;
+            const auto at = [&](double distance) { return Threshold(&deviations, distance); };
+            const auto left_at = [&](double distance) {
+                auto surface =
+                    isosurface_within(h, 0.0, {whole, distance / 2}, at(distance / 2), deviations)
+                        .isosurface.surface;
+                collapse(surface, h, 0.0, deviations, {.nearness = Nearness{whole, distance}});
+                return surface.simplices.size();
+            };
+            const auto search = [&](std::uint64_t number) {
+                return find_collapse_distance(h, 0.0, whole, at, deviations, number);
+            };
+            EXPECT_EQ(search(all).threshold, 0);
+            EXPECT_EQ(search(all).triangles, all);
+            const std::uint64_t number = all / 3;
+            TriangleBudget found;
+            try {
+                found = search(number);
+            } catch (const InvalidInput&) {  // what is left is many small parts
+                EXPECT_GT(left_at(2), number);
+                return;
+            }
+            expect_least(found, number, left_at);
         });
     }
 }
@@ -100,6 +144,21 @@ TEST(CollapseBudgets, AreFilledInFewTrials) {
             EXPECT_LE(found.triangles, number);
             EXPECT_LE(found.trials, 10);
         }
+    }
+}
+
+TEST(CollapseBudgets, AreFilledByDistancesInFewTrials) {
+    const Samples n{17, 17, 17};
+    for (const auto& [i, number] : {std::pair{0U, 100U}, {1U, 600U}}) {
+        const Sampled sampled(sampled_fields(n)[i], n);
+        const Surface<3> whole =
+            isosurface(sampled.grid, sampled.field, sampled.data.isovalue).surface;
+        const TriangleBudget found =
+            find_collapse_distance(sampled.grid, sampled.field, sampled.data.isovalue, whole,
+                                   thresholds_of(sampled.deviations), sampled.deviations, number);
+        EXPECT_TRUE(found.end() == BudgetEnd::filled || found.next_triangles > number);
+        EXPECT_LE(found.triangles, number);
+        EXPECT_LE(found.trials, 8);
     }
 }
 

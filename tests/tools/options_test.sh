@@ -210,9 +210,9 @@ refused 1 'collapse needs an --error, a --distance or --max-triangles' isosurfac
 for option in --cap --at-nodes '--lens ball:5,5,5,4' '--box 0,9,0,9,0,9'; do
     refused 2 'collapse excludes|excludes --collapse' isosurface $raw --value 130 --error 9 --collapse $option
 done
-for option in '--threshold 1' '--max-triangles 900 --indicator visual'; do
-    refused 2 'collapse excludes|excludes --collapse' isosurface $raw --value 130 --collapse $option
-done
+refused 2 'collapse excludes|excludes --collapse' isosurface $raw --value 130 --collapse --threshold 1
+refused 1 'collapse keeps an error: leave out --indicator' isosurface $raw --value 130 --collapse --max-triangles 900 --indicator visual
+effect isosurface "$raw --value 130 --max-triangles 300 --collapse" --indicator slope
 effect isosurface "$raw --value 130 --distance 6" --collapse
 effect isosurface "$raw --value 130 --max-triangles 300" --collapse
 effect slice "$raw --sphere 9,9,9,4 --error 30 --collapse" --distance 1

@@ -39,16 +39,28 @@ FineBox fine_box(const IsosurfaceArguments& o) {
     return box;
 }
 
+bool is_by_slope(const IsosurfaceArguments& o) { return o.surface.projection.indicator == "slope"; }
+
 /// How many options ask for an error, be it the least one of collapses to a number of triangles.
 std::size_t errors_asked(const IsosurfaceArguments& o) {
     const CLI::App& command = *o.surface.command;
-    return command.count("--error") + (o.collapses ? command.count("--max-triangles") : 0);
+    const bool least = o.collapses && !is_by_slope(o);
+    return command.count("--error") + (least ? command.count("--max-triangles") : 0);
 }
 
 /// \throw nestgrid::InvalidInput for options that do not go together
 void check(const IsosurfaceArguments& o) {
-    if (o.collapses && o.surface.command->count("--distance") + errors_asked(o) == 0) {
+    const CLI::App& command = *o.surface.command;
+    const bool keeps =
+        command.count("--distance") + command.count("--error") + command.count("--max-triangles") >
+        0;
+    if (o.collapses && !keeps) {
         throw InvalidInput("--collapse needs an --error, a --distance or --max-triangles to keep");
+    }
+    if (o.collapses && command.count("--indicator") > 0 && !is_by_slope(o)) {
+        throw InvalidInput(
+            "--collapse keeps an error: leave out --indicator, or take slope for the least "
+            "distance");
     }
     if (!o.box.empty() && o.surface.projection.blend != 1) {
         throw InvalidInput("--box has two thresholds: leave out --blend");
@@ -70,8 +82,7 @@ DrawingRequest request_of(const IsosurfaceArguments& o) {
         request.cuts = o.cuts == "finest" ? nestgrid::Cuts::finest : nestgrid::Cuts::linear;
     }
     if (!o.box.empty()) request.box = fine_box(o);
-    request.keeps_distances =
-        o.keeps_distances || (o.collapses && o.surface.command->count("--distance") > 0);
+    request.keeps_distances = o.keeps_distances || (o.collapses && is_by_slope(o));
     request.measures = o.measures;
     return request;
 }
@@ -127,7 +138,7 @@ void run_isosurface(IsosurfaceArguments& o, Report& report) {
     check(o);
     DrawingRequest request = request_of(o);
     nestgrid::Projection& projection = o.surface.projection;
-    if (o.collapses && !o.surface.budgets.empty()) projection.indicator = "deviation";
+    if (o.collapses && !is_by_slope(o)) projection.indicator = "deviation";
     request.look = [&](const InputField& field) {
         check_for(o, field);
         if (errors_asked(o) > 0 && suits_cuts(field)) projection.indicator = "cut";
@@ -202,8 +213,9 @@ Command add_isosurface(CLI::App& program) {
         ->needs(isosurface->get_option("--distance"));
     isosurface->add_flag("--collapse", o->collapses,
                          "take edges away while the --error, or the --distance there and back, is "
-                         "kept, or down to --max-triangles of the least error: some times fewer "
-                         "triangles, some times the time");
+                         "kept, or down to --max-triangles of the least error, or of the least "
+                         "distance with --indicator slope: some times fewer triangles, some "
+                         "times the time");
     isosurface->add_flag("--cap", o->cap, "close the surface along the boundary of the volume")
         ->group("Surface");
     isosurface
@@ -222,8 +234,7 @@ Command add_isosurface(CLI::App& program) {
         ->check(CLI::IsMember({"linear", "finest"}))
         ->group("Surface")
         ->excludes("--at-nodes");
-    for (const char* const other :
-         {"--cap", "--at-nodes", "--threshold", "--indicator", "--elements"}) {
+    for (const char* const other : {"--cap", "--at-nodes", "--threshold", "--elements"}) {
         isosurface->get_option("--collapse")->excludes(other);
     }
     isosurface

@@ -120,9 +120,10 @@ private:
     /// \param counting whether elements are told, where no share of the work is known
     IsosurfaceOptions isosurface_options(bool counting) const {
         const std::string& indicator = options_.projection.indicator;
+        const bool keeps_error = indicator == "deviation" || indicator == "cut";
         const bool finest =
             indicator == "slope" || (!options_.budgets.empty() && !request_.collapses &&
-                                     indicator != "deviation" && request_.by.empty());
+                                     !keeps_error && request_.by.empty());
         IsosurfaceOptions options{.cuts = request_.cuts.value_or(finest ? nestgrid::Cuts::finest
                                                                         : nestgrid::Cuts::linear),
                                   .normals = request_.normals,
@@ -156,6 +157,10 @@ private:
         if (in_plane()) {
             return nestgrid::find_threshold<2>(hierarchy_, isovalue, criteria_at(), bounds(),
                                                budget, options, executor_);
+        }
+        if (request_.collapses && request_.keeps_distances) {
+            return nestgrid::find_collapse_distance(hierarchy_, isovalue, whole(), criteria_at(),
+                                                    bounds(), budget, options, executor_);
         }
         if (request_.collapses) {
             return nestgrid::find_collapse_error(hierarchy_, isovalue, criteria_at(), bounds(),
@@ -283,7 +288,7 @@ private:
             d.result = {lines, {}, lines.counts};
             d.result.surface_error = lines.surface_error;
             d.result.stack_bytes = lines.stack_bytes;
-        } else if (request_.keeps_distances) {
+        } else if (request_.keeps_distances && threshold > 0) {
             auto within = nestgrid::isosurface_within(hierarchy_, isovalue, {whole, threshold},
                                                       criterion, bounds(), options, executor_);
             d.far_points = within.points;

@@ -47,7 +47,7 @@ struct DrawingRequest {
     bool normals = true;    ///< of isosurfaces
     bool at_nodes = false;  ///< IsosurfaceOptions::at_nodes
     /// Where edges are cut; nothing: on their finest pieces where numbers of triangles are asked
-    /// for, but for deviations and collapses, whose error linear cuts keep.
+    /// for, but for errors and collapses, which linear cuts keep.
     std::optional<nestgrid::Cuts> cuts{};
     std::optional<FineBox> box{};
     std::optional<nestgrid::LensRequest> lens{};

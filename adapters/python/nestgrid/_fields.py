@@ -120,15 +120,16 @@ class Field:
                   farther from the surface of all data, and none of that from what is drawn. Some
                   times the time
         collapse  whether to take edges away while error, or distance there and back, is kept, or
-                  down to max_triangles of the least error, one of which must be given: some times
-                  fewer triangles, some times the time
+                  down to max_triangles of the least error, or by indicator="slope" of the least
+                  distance: one of these must be given. Some times fewer triangles, some times the
+                  time
         cap       whether to close the surface along the boundary of the domain, around what is at
                   least the level
         at_nodes  whether to draw no slivers around nodes at which the field has the value
         cuts      where edges of coarse elements are cut: "linear" between their ends, which keeps
                   the error that is asked for; "finest" where the finest data have the value, which
                   lies nearer to the data (not at nodes, nor on octrees). None: "finest" where
-                  max_triangles or distance is given, but for the indicator "deviation"
+                  max_triangles or distance is given, but for the indicators "deviation" and "cut"
 
         Raises InvalidInput where an argument makes no sense, a value is not finite, or even the
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
@@ -138,19 +139,24 @@ class Field:
         )
         if collapse:
             kept = error is not None or distance is not None or max_triangles is not None
-            if not kept or cap or at_nodes or lens is not None or indicator != "offset":
+            nearest = max_triangles is not None and indicator == "slope"
+            other = indicator != "offset" and not nearest
+            if not kept or cap or at_nodes or lens is not None or other:
                 raise InvalidInput(
                     "collapse needs an error, a distance or max_triangles, and neither cap, "
-                    "at_nodes, lens nor indicator"
+                    "at_nodes, lens nor indicator, but for slope beside max_triangles"
                 )
         if distance_field and (distance is None or lens is not None):
             raise InvalidInput("distance_field needs a distance, and no lens")
         if cuts is None:
             nearer = distance is not None or (max_triangles is not None and not collapse)
-            finest = nearer and indicator != "deviation"
+            by_slope = collapse and indicator == "slope"
+            finest = by_slope or (nearer and indicator not in ("deviation", "cut"))
         else:
             finest = cuts == "finest"
-        keeps_distance = distance_field or (collapse and distance is not None)
+        keeps_distance = distance_field or (
+            collapse and (distance is not None or indicator == "slope")
+        )
         options = (normals, cap, elements, at_nodes, finest, collapse, keeps_distance)
         return Surface._of(
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
@@ -378,7 +384,8 @@ def _surface_projection(
 ) -> _nestgrid.Projection:
     """The projection of an isosurface, which has an error and a distance of its own."""
     if collapse and max_triangles is not None and (threshold, error, distance) == (None,) * 3:
-        return _nestgrid.Projection(None, max_triangles, "error", blend, None)
+        least: Literal["error", "slope"] = "slope" if indicator == "slope" else "error"
+        return _nestgrid.Projection(None, max_triangles, least, blend, None)
     if error is None and distance is None:
         return _projection(threshold, max_triangles, indicator, blend, lens, None)
     name = "distance" if error is None else "error"

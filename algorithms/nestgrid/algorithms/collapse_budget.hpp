@@ -1,19 +1,21 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The least error at which an isosurface can be collapsed (collapse.hpp) to a number of triangles.
+// The least error, or distance, at which an isosurface can be collapsed (collapse.hpp) to a number
+// of triangles.
 //
-// Errors are searched among bfloat16 numbers. Each trial draws with a part of the error
-// (collapse_start) and collapses within it; the next one is interpolated between those that exceed the
-// number and those that keep within it.
-// Promise: the surface of the error that is found keeps within the number, and has nine tenths of
-// it, or the next lesser bfloat16 number has more triangles.
-// Not promised: that no lesser error keeps within the number, as triangles get fewer with the error
-// on the whole, but not at each step.
+// Both are searched among bfloat16 numbers. Each trial draws with a part of the number
+// (collapse_start of an error, half of a distance) and collapses within it; the next one is
+// interpolated between those that leave too many triangles and those that do not.
+// Promise: the surface of the number that is found has no more triangles than it may, and nine
+// tenths of them, or the next lesser bfloat16 number leaves more.
+// Not promised: that no lesser number is enough, as triangles get fewer with it on the whole, but
+// not at each step.
 // Cost: mostly three to five surfaces and their collapses.
 #pragma once
 
 #include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
 namespace nestgrid {
@@ -27,15 +29,25 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
                                    const Executor& executor);
 
+/// Makes the criterion of a distance that also draws finely wherever an indicator is 1, and not 0.
+using MakeAlsoFine =
+    std::function<std::unique_ptr<const Criterion>(double distance, const Indicator& fine)>;
+
+/// Defined for float and double.
+template <class Real>
+TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double isovalue,
+                                      const Surface<3>& whole, const MakeAlsoFine& criterion_at,
+                                      const Bounds& bounds, std::uint64_t max_triangles,
+                                      const IsosurfaceOptions& options, const Executor& executor);
+
 }  // namespace detail
 
-/// The least error such that the isosurface that is drawn with collapse_start of it, and then collapsed
-/// within it, has at most max_triangles. It is the `threshold` of the result; where that is 0, all
-/// data have no more triangles, and nothing is to be collapsed.
-/// \param criterion_at of an error, such as a Threshold on deviations
-/// \param bounds of the same grid and field, for collapse(), too
-/// \param options of the surface without a cap; progress is told while surfaces are drawn
-/// \throw InvalidInput where collapses leave more triangles at any error, and as isosurface()
+/// The least error such that the isosurface that is drawn with collapse_start of it, and then
+/// collapsed within it, has at most max_triangles. It is the `threshold` of the result; where that
+/// is 0, all data have no more triangles, and nothing is to be collapsed. \param criterion_at of an
+/// error, such as a Threshold on deviations \param bounds of the same grid and field, for
+/// collapse(), too \param options of the surface without a cap; progress is told while surfaces are
+/// drawn \throw InvalidInput where collapses leave more triangles at any error, and as isosurface()
 template <class Real, MakesCriterion Make, RangedBounds Ranged>
 TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isovalue,
                                    const Make& criterion_at, const Ranged& bounds,
@@ -58,6 +70,41 @@ TriangleBudget find_collapse_error(const Grid& grid, const Field& field, double 
                                    const Executor& executor = SequentialExecutor{}) {
     return find_collapse_error(erase(grid, field), isovalue, criterion_at, bounds, max_triangles,
                                options, executor);
+}
+
+/// The least distance such that the isosurface that isosurface_within() draws with half of it, and
+/// that is then collapsed within it, has at most max_triangles. It is the `threshold` of the
+/// result; where that is 0, all data have no more triangles. Less than about a thirtieth of the
+/// edges of so many triangles is not tried.
+/// \param whole the isosurface of all data
+/// \param criterion_at of a distance, such as a Threshold on slope_deviations() (cut_indicator.hpp)
+/// \param bounds of the same grid and field
+/// \param options of the surface without a cap, as for isosurface_within()
+/// \throw InvalidInput where collapses leave more triangles at any distance, and as
+///        isosurface_within()
+template <class Real, MakesCriterion Make>
+TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double isovalue,
+                                      const Surface<3>& whole, const Make& criterion_at,
+                                      const Bounds& bounds, std::uint64_t max_triangles,
+                                      const IsosurfaceOptions& options = {},
+                                      const Executor& executor = SequentialExecutor{}) {
+    hierarchy.facts().require_dimension(3);
+    const detail::MakeAlsoFine also_fine = [&](double distance, const Indicator& fine) {
+        using Both = decltype(criterion_at(distance) && Threshold(&fine, 0.5));
+        return std::make_unique<const Both>(criterion_at(distance) && Threshold(&fine, 0.5));
+    };
+    return detail::find_collapse_distance(hierarchy, isovalue, whole, also_fine, bounds,
+                                          max_triangles, options, executor);
+}
+template <class Grid, class Field, MakesCriterion Make>
+    requires(!detail::AnyHierarchy<Grid>)
+TriangleBudget find_collapse_distance(const Grid& grid, const Field& field, double isovalue,
+                                      const Surface<3>& whole, const Make& criterion_at,
+                                      const Bounds& bounds, std::uint64_t max_triangles,
+                                      const IsosurfaceOptions& options = {},
+                                      const Executor& executor = SequentialExecutor{}) {
+    return find_collapse_distance(erase(grid, field), isovalue, whole, criterion_at, bounds,
+                                  max_triangles, options, executor);
 }
 
 }  // namespace nestgrid

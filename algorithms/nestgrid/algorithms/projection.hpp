@@ -37,7 +37,7 @@ struct Projection {
     double blend = 1;
     std::optional<LensRequest> lens{};
     /// Whether edges are taken away as long as the threshold stays the error that is kept
-    /// (collapse.hpp). Then max_triangles asks for the least such error.
+    /// (collapse.hpp). Then max_triangles asks for the least such error, or distance.
     bool collapse = false;
     /// Whether the threshold is a distance, which an isosurface and that of all data keep there and
     /// back (isosurface_within.hpp), in units of length.

@@ -380,6 +380,14 @@ def test_a_distance_is_kept_there_and_back():
     assert farthest(collapsed.vertices, whole) <= 1 + 1e-6
     assert len(collapsed.triangles) < len(kept.triangles) / 4
     assert collapsed.report()["open_edges"] == 0
+    nearest = volume.isosurface(
+        0.4, max_triangles=len(kept.triangles) // 4, indicator="slope", collapse=True
+    )
+    assert 0 < len(nearest.triangles) <= len(kept.triangles) // 4
+    assert farthest(whole.vertices, nearest) <= nearest.threshold * (1 + 1e-6)
+    assert farthest(nearest.vertices, whole) <= nearest.threshold * (1 + 1e-6)
+    everything = volume.isosurface(0.4, max_triangles=10**6, indicator="slope", collapse=True)
+    assert everything.threshold == 0 and len(everything.triangles) > len(kept.triangles)
     for wrong in ({}, {"distance": 1, "lens": nestgrid.Lens(nestgrid.ball((8, 8, 8), 2), 1)}):
         with refused("distance_field needs a distance"):
             volume.isosurface(0.4, distance_field=True, **wrong)
@@ -398,6 +406,7 @@ def test_indicators_of_one_surface(gyroid):
     for indicator in ("cut", "slope"):
         surface = volume.isosurface(0.5, max_triangles=3000, indicator=indicator)
         assert 2000 < len(surface.triangles) <= 3000
+        assert np.isfinite(surface.surface_error) == (indicator == "cut")
         with refused("indicator"):
             volume.slice(plane=((16, 16, 16), (1, 2, 3)), threshold=0.1, indicator=indicator)
 
