@@ -124,7 +124,7 @@ void Triangulation<Real>::extract(const View& view) {
         return drawn_.surface.forget_element();
     }
     drawn_.surface.add_extracted(1);
-    drawn_.surface.add_limited(view.member->limited ? 1 : 0);
+    drawn_.surface.add_limited(view.inner_bounds().limited ? 1 : 0);
     raise_error_bound(view);
 }
 
@@ -132,9 +132,8 @@ void Triangulation<Real>::extract(const View& view) {
 /// what its triangles leave out.
 template <class Real>
 void Triangulation<Real>::raise_error_bound(const View& view) {
-    if (view.is_leaf() && view.member->error > 0) {
-        return drawn_.surface.raise_error_bound(static_cast<double>(view.member->error));
-    }
+    const float told = view.is_leaf() ? view.inner_bounds().error : 0;
+    if (told > 0) return drawn_.surface.raise_error_bound(static_cast<double>(told));
     std::array<double, max_corners> u{};
     for (std::size_t i = 0; i < view.corner_count(); ++i) u[i] = polygon_.u(i);
     const Extent corners = Extent::of(std::span(u).first(view.corner_count()));

@@ -83,6 +83,7 @@ void VirtualElements::set_leaf(VirtualElement& e, const Member& member) const {
 void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const {
     auto& own = static_cast<OpenTask&>(*task);
     family.begin(1);
+    family.inner.resize(family.members.size());
     Places& places = VirtualElements::places(family, 1);
     data_->base->coarse(own.base.get(), i, coarse, places.base);
     const Member& base = places.base.members[0];
@@ -135,6 +136,7 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
         if ((which >> n & 1U) == 0) u[corners_ + n] = interpolate(rule_->new_nodes[n], u.data(), 1);
     }
     family.begin(corners_);
+    family.inner.resize(family.members.size());
     Places& places = VirtualElements::places(family, corners_);
     if (e.leaf == VirtualElement::no_leaf) {
         data_->base->enter(own.base.get(), e.state->base, *e.state->rule, 0, nullptr, wanted,
@@ -185,12 +187,12 @@ void VirtualElements::describe(OpenTask& task, const VirtualElement& e, const do
     nestgrid::detail::set_handle(member.element, e);
     member.rule = nullptr;
     member.constrained = member.outside = 0;
-    member.beyond = member.error = 0;
-    member.limited = false;
+    InnerBounds& inner = family.inner[number];
+    inner = {};
     if (e.leaf == VirtualElement::no_leaf) {
         describe_split(e, member);
     } else {
-        describe_leaf(task, e, u, member);
+        describe_leaf(task, e, u, member, inner);
     }
     (member.rule == nullptr ? family.leaves : family.split) |= NodeMask{1} << number;
 }
@@ -209,7 +211,7 @@ void VirtualElements::describe_split(const VirtualElement& e, Member& member) co
 
 /// A leaf, or an element below one.
 void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, const double* u,
-                                    Member& member) const {
+                                    Member& member, InnerBounds& inner) const {
     if (linear_) return;  // values at corners say all
     const LeafPolynomial& leaf = records_->leaves()[e.leaf];
     const double* const net = net_of(task, e);
@@ -220,15 +222,15 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
     const bool exceeds = static_cast<double>(float_above(error)) > allowed;
     const bool flat = looked.flat == rule_->all();
     if (flat && (!exceeds || e.level >= depth_)) {
-        member.error = float_above(error);
-        member.limited = exceeds;
+        inner.error = float_above(error);
+        inner.limited = exceeds;
         return;
     }
     member.rule = rule_;
     member.constrained = looked.flat;
     member.outside = rule_->all();
     const auto [lo, hi] = std::minmax_element(corners.begin(), corners.end());
-    member.beyond = float_above(
+    inner.beyond = float_above(
         std::max({0.0, looked.facts.greatest - *hi, *lo - looked.facts.least}) + least_beyond_);
 }
 

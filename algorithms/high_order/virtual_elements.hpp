@@ -110,8 +110,8 @@ private:
     void describe(OpenTask& task, const VirtualElement& e, const double* u, Family& family,
                   std::size_t member) const;
     void describe_split(const VirtualElement& e, Member& member) const;
-    void describe_leaf(OpenTask& task, const VirtualElement& e, const double* u,
-                       Member& member) const;
+    void describe_leaf(OpenTask& task, const VirtualElement& e, const double* u, Member& member,
+                       InnerBounds& inner) const;
     // One leaf and its parts (leaf_parts.cpp).
     Looked look(const VirtualElement& e, const double* net) const;
     bool is_flat(const NetFacts& facts, int level) const;

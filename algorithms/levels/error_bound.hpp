@@ -79,7 +79,10 @@ double projected_away(const ElementView<Real>& view, const std::array<NodeKey, m
 template <class Real>
 double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& search, Real below) {
     const ElementView<Real>& view = element.view();
-    if (view.is_leaf() && view.member->error > 0) return static_cast<double>(view.member->error);
+    if (view.is_leaf()) {
+        const float told = view.inner_bounds().error;
+        if (told > 0) return static_cast<double>(told);
+    }
     const Topology& t = view.topology();
     const double bound =
         projected_away(view, element.keys(), static_cast<double>(below), search.bounds(), search);

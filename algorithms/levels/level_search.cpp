@@ -135,7 +135,7 @@ auto LevelSearch<Real>::look(const View& view, const Split& split, bool caps,
     // P_S U of an element that is walked lies within U's own range there, but for `beyond`.
     const Real bound = rule == nullptr ? Real(0)
                                        : std::max(bound_of(*rule, split.keys),
-                                                  static_cast<Real>(view.member->beyond));
+                                                  static_cast<Real>(view.inner_bounds().beyond));
     bool interest = looks_at(view, split, 0, bound, caps);
     for (std::size_t component = 1; !interest && component <= last_component_; ++component) {
         interest = looks_at(view, split, component, bound, caps);

@@ -39,6 +39,7 @@ struct ElementView {
     std::size_t corner_count() const { return topology().corners; }
     bool is_leaf() const { return member->rule == nullptr; }
     const Handle& element() const { return member->element; }
+    InnerBounds inner_bounds() const { return family->inner_bounds(*member); }
 };
 
 }  // namespace nestgrid::engine

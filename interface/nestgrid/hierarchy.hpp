@@ -50,21 +50,26 @@ struct Member {
     std::uint32_t first_key = 0;  ///< in Family::keys, where the grid has keys of its own
     Hidden hidden = Hidden::not_at_all;
     Presence presence = Presence::here;
-    bool limited = false;  ///< a leaf that a limit on depth kept from being divided
-    float beyond = 0;  ///< how far U may leave the range of P_S U at the corners, besides Bounds
+};
+
+/// What is known of data inside an element besides Bounds, where these are of higher degree.
+struct InnerBounds {
+    float beyond = 0;  ///< how far U may leave the range of P_S U at the corners
     /// On a leaf: how far U may be from what is drawn of P_S U at its corners, triangles included;
     /// 0 where these say all.
     float error = 0;
+    bool limited = false;  ///< a leaf that a limit on depth kept from being divided
 };
 
 /// The children of one element, or one coarse element. Members that are neither split nor leaves
 /// are masked, elsewhere, or were not asked for; nothing of them is set but handle and presence.
 struct Family {
     std::vector<Member> members;
-    NodeMask split = 0;         ///< members that are split, one bit each
-    NodeMask leaves = 0;        ///< members that are not, likewise
-    NodeMask hidden = 0;        ///< members that are hidden wholly, likewise
-    std::vector<NodeKey> keys;  ///< of the new nodes of all members that are split
+    NodeMask split = 0;              ///< members that are split, one bit each
+    NodeMask leaves = 0;             ///< members that are not, likewise
+    NodeMask hidden = 0;             ///< members that are hidden wholly, likewise
+    std::vector<NodeKey> keys;       ///< of the new nodes of all members that are split
+    std::vector<InnerBounds> inner;  ///< one for each member, or none where Bounds say all
     /// Where handles point to, for elements that do not fit into them.
     std::shared_ptr<void> elements;
 
@@ -73,6 +78,11 @@ struct Family {
         if (members.size() < count) members.resize(count);
         keys.clear();
         split = leaves = hidden = 0;
+    }
+    /// \param member of this family
+    InnerBounds inner_bounds(const Member& member) const {
+        return inner.empty() ? InnerBounds{}
+                             : inner[static_cast<std::size_t>(&member - members.data())];
     }
     std::span<const NodeKey> new_keys(const Member& member) const {
         return std::span(keys).subspan(member.first_key, member.rule->new_nodes.size());
