@@ -11,6 +11,8 @@
 
 #include "block_samples.hpp"
 
+// Names are those of AMReX.
+// NOLINTBEGIN(readability-identifier-naming)
 namespace nestgrid_test::stand_in {
 
 template <class T>
@@ -51,7 +53,7 @@ public:
     const Box& box() const { return box_; }
     const Real* dataPtr(int n = 0) const { return &numbers_[size() * static_cast<std::size_t>(n)]; }
     Real& operator()(const std::array<int, 3>& cell, int n) {
-        std::size_t at = static_cast<std::size_t>(n);
+        auto at = static_cast<std::size_t>(n);
         for (std::size_t d = 3; d-- > 0;) {
             at = at * static_cast<std::size_t>(box_.high[d] - box_.low[d] + 1) +
                  static_cast<std::size_t>(cell[d] - box_.low[d]);
@@ -178,3 +180,4 @@ private:
 };
 
 }  // namespace nestgrid_test::stand_in
+// NOLINTEND(readability-identifier-naming)
