@@ -116,22 +116,35 @@ const OfDegree& of_degree(int degree) {
     return all[static_cast<std::size_t>(degree - 1)];
 }
 
+/// Halves one line of coefficients in place: it becomes the upper half.
+inline void halve_line(double* line, Index count, double* lower) {
+    lower[0] = line[0];
+    for (Index k = 1; k < count; ++k) {
+        for (Index i = 0; i < count - k; ++i) line[i] = (line[i] + line[i + 1]) / 2;
+        lower[k] = line[0];
+    }
+}
+
+/// The same of `stride` lines side by side.
+inline void halve_lines(double* lines, Index count, Index stride, double* lower) {
+    for (Index i = 0; i < stride; ++i) lower[i] = lines[i];
+    for (Index k = 1; k < count; ++k) {
+        const Index left = stride * (count - k);
+        for (Index i = 0; i < left; ++i) lines[i] = (lines[i] + lines[i + stride]) / 2;
+        for (Index i = 0; i < stride; ++i) lower[k * stride + i] = lines[i];
+    }
+}
+
 /// Halves along one direction. `lower` and `upper` may each be the net itself, but not both.
 void halve(const double* net, const Lines& lines, double* lower, double* upper) {
-    std::array<double, (max_degree + 1) * (max_degree + 1) * (max_degree + 1)> scratch;
+    if (upper != net) std::copy_n(net, lines.outer * lines.block(), upper);
     for (Index o = 0; o < lines.outer; ++o) {
-        const double* const from = net + o * lines.block();
-        double* const a = lower + o * lines.block();
-        double* const b = scratch.data();
-        std::copy_n(from, lines.block(), b);
-        std::copy_n(b, lines.stride, a);
-        for (Index k = 1; k < lines.count; ++k) {
-            for (Index i = 0; i < lines.stride * (lines.count - k); ++i) {
-                b[i] = (b[i] + b[i + lines.stride]) / 2;
-            }
-            std::copy_n(b, lines.stride, a + k * lines.stride);
+        const Index at = o * lines.block();
+        if (lines.stride == 1) {
+            halve_line(upper + at, lines.count, lower + at);
+        } else {
+            halve_lines(upper + at, lines.count, lines.stride, lower + at);
         }
-        std::copy_n(b, lines.block(), upper + o * lines.block());
     }
 }
 
@@ -169,17 +182,19 @@ double distance_from_affine(const double* net, int degree, int dimension,
                             std::span<const double> affine) {
     const Index n = degree + 1;
     const Index rows = static_cast<Index>(net_size(degree, dimension)) / n;
+    const double step = 1.0 / degree;
+    const double first = affine[1] * step;
     double greatest = 0;
     for (Index row = 0; row < rows; ++row) {
-        double base = affine[0];
+        double base = affine[0] - affine[1] / 2;
         Index left = row;
         for (int d = 1; d < dimension; ++d, left /= n) {
             base += affine[static_cast<std::size_t>(d) + 1] *
-                    (static_cast<double>(left % n) / degree - 0.5);
+                    (static_cast<double>(left % n) * step - 0.5);
         }
         for (Index i = 0; i < n; ++i) {
-            const double at = base + affine[1] * (static_cast<double>(i) / degree - 0.5);
-            greatest = std::max(greatest, std::abs(net[row * n + i] - at));
+            const double off = net[row * n + i] - base - first * static_cast<double>(i);
+            greatest = std::max(greatest, std::abs(off));
         }
     }
     return greatest;
@@ -233,11 +248,7 @@ double net_value(const double* net, int degree, int dimension, std::span<const d
         const double t = at[static_cast<std::size_t>(d)];
         size /= n;
         for (std::size_t row = 0; row < size; ++row) {
-            double* const c = left.data() + row * n;
-            for (std::size_t k = n - 1; k > 0; --k) {
-                for (std::size_t i = 0; i < k; ++i) c[i] = (1 - t) * c[i] + t * c[i + 1];
-            }
-            left[row] = c[0];
+            left[row] = line_value(left.data() + row * n, degree, t);
         }
     }
     return left[0];

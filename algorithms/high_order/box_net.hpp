@@ -72,6 +72,15 @@ void halve_all(const double* net, int degree, int dimension, double* halves);
 /// Replaces a net by its lower (0) or upper (1) half along one direction.
 void keep_half(double* net, int degree, int dimension, int direction, unsigned half);
 
+/// The value of a net in one direction at a point of [0, 1], by de Casteljau's means; exact at the
+/// ends. The net is used up.
+inline double line_value(double* net, int degree, double at) {
+    if (at == 0 || at == 1) return net[at == 0 ? 0 : degree];
+    for (int left = degree; left > 0; --left) {
+        for (int i = 0; i < left; ++i) net[i] = (1 - at) * net[i] + at * net[i + 1];
+    }
+    return net[0];
+}
 /// u at a point of the unit box.
 double net_value(const double* net, int degree, int dimension, std::span<const double> at);
 

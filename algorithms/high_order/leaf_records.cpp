@@ -211,8 +211,7 @@ int LeafRecords::restrict_record(const RecordPlace& of, unsigned span, const Box
             }
             continue;
         }
-        // Directions before the one at hand that are spanned come first: their rows are taken
-        // apart.
+        // Along the direction at hand each line becomes its value.
         const double t = std::ldexp(static_cast<double>(x), -total);
         const std::size_t n = record.degree + std::size_t{1};
         const std::size_t rows = net_size(record.degree, left) / n;
@@ -222,7 +221,7 @@ int LeafRecords::restrict_record(const RecordPlace& of, unsigned span, const Box
             std::array<double, max_degree + 1> line;
             const double* const from = net.data() + (direction == 0 ? r * n : r);
             for (std::size_t k = 0; k < n; ++k) line[k] = from[k * stride];
-            result[r] = net_value(line.data(), record.degree, 1, std::span(&t, 1));
+            result[r] = line_value(line.data(), record.degree, t);
         }
         std::copy_n(result.begin(), rows, net.begin());
         --left;

@@ -6,7 +6,6 @@
 #include <deal.II/fe/fe_dgq.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_generator.h>
-#include <deal.II/hp/fe_collection.h>
 #include <deal.II/lac/vector.h>
 
 #include <nestgrid/adapters/dealii.hpp>

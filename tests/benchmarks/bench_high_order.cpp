@@ -139,6 +139,9 @@ Drawing subdivided(const Problem& problem, unsigned n, const std::string& name) 
     out.add_data_vector(problem.values, "u");
     out.build_patches(n);
     const double built = seconds();
+    dealii::DataOutBase::VtkFlags flags;
+    flags.compression_level = dealii::DataOutBase::VtkFlags::no_compression;
+    out.set_flags(flags);
     std::stringstream file;
     out.write_vtu(file);
     vtkNew<vtkXMLUnstructuredGridReader> reader;
@@ -191,7 +194,7 @@ double run(unsigned degree, bool quick) {
     const std::string name = "q" + std::to_string(degree);
     print(name + "_cells", problem.triangulation.n_active_cells());
     std::vector<Drawing> uniform;
-    for (const unsigned n : {1U, 2U, 3U, 4U, 6U}) {
+    for (const unsigned n : {1U, 2U, 4U}) {
         if (quick && n > 2) break;
         uniform.push_back(subdivided(problem, n, name + "_uniform_" + std::to_string(n)));
     }
