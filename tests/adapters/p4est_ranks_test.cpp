@@ -3,8 +3,10 @@
 //
 // Surfaces of forests that p8est distributes over MPI, refined and repartitioned several times: the
 // pieces of all ranks, gathered, are the surface of the same forest on one process. Run under
-// mpirun; prints what it compared, and returns 1 where something differs.
+// mpirun; prints what it compared, and returns 1 where something differs. With the argument "die"
+// one rank ends without a word, and MPI ends the others.
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 
@@ -278,9 +280,52 @@ int refuse_without_ranks(Ranks& ranks) {
     return wrong;
 }
 
+/// A field that fails on the last rank.
+struct BrokenField : KeyedField {
+    BrokenField(const Grid& of, bool does) : KeyedField(of, false), fails{does} {}
+    NodeMask new_values(const Grid::Element& e, NodeMask which, std::span<double> out) const {
+        if (fails) throw std::runtime_error("the disk is gone");
+        return KeyedField::new_values(e, which, out);
+    }
+    bool fails;
+};
+
+/// One rank fails, or asks for something else: all end with one sentence, and none waits.
+int end_together(Ranks& ranks) {
+    p8est_connectivity_t* const cube = p8est_connectivity_new_unitcube();
+    int wrong = 0;
+    {
+        const Forest forest(MPI_COMM_WORLD, cube, 3, false);
+        const Grid mine(forest.get());
+        const Distributed grid(mine, ranks);
+        const int last = ranks.size() - 1;
+        const auto expect = [&](const std::string& sentence, const auto& draws) {
+            try {
+                draws();
+                ++wrong;
+            } catch (const std::exception& e) {
+                wrong += std::string(e.what()).find(sentence) == std::string::npos ? 1 : 0;
+            }
+        };
+        expect("rank " + std::to_string(last) + ": the disk is gone", [&] {
+            const DistributedField broken(grid, BrokenField(mine, ranks.rank() == last));
+            const HierarchicalIndicator indicator(grid, broken);
+        });
+        const DistributedField field(grid, KeyedField(mine, false));
+        const HierarchicalIndicator indicator(grid, field);
+        expect(last == 0 ? "isovalue" : "all ranks must ask for the same", [&] {
+            const double other = last == 0 ? std::nan("") : 0.125;
+            isosurface(grid, field, ranks.rank() == last ? other : 0.0, indicator);
+        });
+    }
+    p8est_connectivity_destroy(cube);
+    if (wrong != 0) std::printf("rank %d does not end with the others\n", ranks.rank());
+    return wrong;
+}
+
 int run() {
     MpiRanks ranks(MPI_COMM_WORLD);
-    int wrong = refuse_without_ranks(ranks);
+    int wrong = refuse_without_ranks(ranks) + end_together(ranks);
     struct Shape {
         const char* name;
         p8est_connectivity_t* connectivity;
@@ -307,6 +352,11 @@ int main(int argc, char** argv) {
     MPI_Init(&argc, &argv);
     sc_init(MPI_COMM_WORLD, 0, 0, nullptr, SC_LP_ERROR);
     p4est_init(nullptr, SC_LP_ERROR);
+    if (argc > 1 && std::string(argv[1]) == "die") {
+        MpiRanks ranks(MPI_COMM_WORLD);
+        if (ranks.rank() == ranks.size() - 1) std::raise(SIGKILL);
+        ranks.gather({});
+    }
     const int failed = run();
     MPI_Finalize();
     return failed;

@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include <nestgrid/algorithms/hanging_nodes.hpp>
+
 #include "p4est_laws.hpp"
 #include "probe_laws.hpp"
 
@@ -287,8 +289,9 @@ TEST(P4estGrid, RefusesADistributedForestWithoutRanks) {
         part.global_first_position = positions.data();
     }
     const P4estGrid<3> grid(&part);
-    EXPECT_NE(refusal<GridError>([&] { derive_hanging_nodes(grid); })
-                  .find("are on other processes, and the grid does not say how to reach them"),
+    EXPECT_NE(refusal<GridError>([&] {
+                  derive_hanging_nodes(grid);
+              }).find("are on other processes, and the grid does not say how to reach them"),
               std::string::npos);
 }
 

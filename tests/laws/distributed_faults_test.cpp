@@ -232,6 +232,9 @@ TEST(DistributedFaults, OwnKeysAreNotGlobal) {
                    {"ranks ", "have a node at two places under one key"});
 }
 
+/// What a walk knows of an element has not grown: the presence lies behind `hidden`.
+static_assert(sizeof(void*) != 8 || sizeof(Member) == sizeof(Handle) + 32);
+
 TEST(DistributedFaults, GridWithoutRanks) {
     OctreeGrid<3> grid = UnbalancedOctree::grids()[0];
     const Whole whole(grid);
