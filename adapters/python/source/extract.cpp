@@ -195,12 +195,18 @@ Drawn draw_height_field(const Source& source, std::optional<double> scale, doubl
     return call.with(source.field(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(2);
         const Criteria criteria(source.prerolls(), projection, {}, call.work());
-        const double error = projection.least_threshold();
-        const double first = request.collapses ? error / 2 : error;
+        TriangleBudget search{.threshold = projection.least_threshold()};
+        const double half = search.threshold / 2;
         const ShadingOptions options{
-            .flatness = request.collapses ? std::min(flatness, first) : flatness,
+            .flatness = request.collapses ? std::min(flatness, half) : flatness,
             .elements = request.elements,
             .progress = progress_of(call)};
+        if (projection.max_triangles > 0) {
+            search = find_shading_threshold(hierarchy, criterion_at(criteria), criteria.bounds(),
+                                            projection.max_triangles, options, call.executor());
+        }
+        const double error = search.threshold;
+        const double first = request.collapses ? half : error;
         const AnyCriterion s = criteria.at(first);
         Shading result =
             scale ? height_field(hierarchy, *scale, s, criteria.bounds(), options, call.executor())
@@ -216,7 +222,7 @@ Drawn draw_height_field(const Source& source, std::optional<double> scale, doubl
                      result.counts,
                      error,
                      std::numeric_limits<double>::infinity(),
-                     {},
+                     search.max_triangles > 0 ? search.reason() : std::string(),
                      result.cancelled};
     });
 }
