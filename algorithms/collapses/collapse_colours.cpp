@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <nestgrid/algorithms/normals.hpp>
 #include <nestgrid/error.hpp>
@@ -74,8 +75,8 @@ public:
     template <class Real>
     ColourChecks(const Surface<3>& surface, const Hierarchy<Real>& hierarchy,
                  std::span<const double> errors, const Bounds& bounds,
-                 const std::optional<Nearness>& nearness)
-        : nearness_{nearness} {
+                 std::optional<Nearness> nearness)
+        : nearness_{std::move(nearness)} {
         using Drawn = engine::FieldCheck::Drawn;
         const Surface<3>& along = nearness_ ? nearness_->whole : surface;
         leaves_ = engine::NearLeaves::find_along(hierarchy, along, errors,

@@ -137,8 +137,10 @@ class Measuring {
 public:
     Measuring(Leaves& leaves, std::span<const Corners> corners,
               std::span<ElementDeviations::Entry> entries)
-        : leaves_{&leaves}, corners_{corners}, entries_{entries} {
-        leaves.for_each_coarse([&](const At& at) { measure(at, {}, 0); });
+        : leaves_{&leaves}, corners_{corners}, entries_{entries} {}
+
+    void run() {
+        leaves_->for_each_coarse([&](const At& at) { measure(at, {}, 0); });
     }
 
 private:
@@ -217,7 +219,7 @@ ElementDeviations::ElementDeviations(const DiscontinuousData& data) : epoch_{dat
     Gathering gathered(leaves, entries_);
     least_ = gathered.least;
     greatest_ = gathered.greatest;
-    Measuring(leaves, gathered.corners, entries_);
+    Measuring(leaves, gathered.corners, entries_).run();
     entries_.shrink_to_fit();
 }
 

@@ -294,6 +294,7 @@ class Field:
         self,
         scale: float | None = 1,
         threshold: float | None = None,
+        max_triangles: int | None = None,
         *,
         flatness: float = math.inf,
         indicator: Indicator = "offset",
@@ -311,10 +312,11 @@ class Field:
                   triangles get a vertex in their middle
         collapse  whether to take edges away while error, which must be given, is kept
 
-        Raises InvalidInput also for a field of dimension 3.
+        Raises InvalidInput also for a field of dimension 3, and where even the coarsest triangles
+        are more than max_triangles.
         """
         _require_error(collapse, error, lens)
-        projection = _projection(threshold, None, indicator, blend, lens, error)
+        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
         options = (scale, flatness, elements, collapse)
         return Surface._of(
             _nestgrid.height_field(self._source, *options, projection, threads), self

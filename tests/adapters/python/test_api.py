@@ -335,6 +335,13 @@ def test_collapsed_colours_keep_their_place_and_error() -> None:
         volume.slice(plane=((16, 16, 16), (1, 2, 3)), collapse=True)
     with refused("collapse needs an error"):
         picture.height_field(collapse=True)
+    for scale in (None, 2.5):
+        budget = picture.height_field(scale, max_triangles=300)
+        assert 0 < len(budget.triangles) <= 300 and budget.threshold > 0
+        again = picture.height_field(scale, budget.threshold)
+        assert np.array_equal(again.vertices, budget.vertices)
+    with refused("even the coarsest"):
+        picture.height_field(max_triangles=1)
 
 
 def test_a_distance_that_is_asked_for_is_kept_about():
