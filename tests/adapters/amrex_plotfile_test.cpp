@@ -108,6 +108,7 @@ TEST(AmrexPlotfile, SaysWhatIsWrong) {
     add("spherical coordinates", "Header", "\n0\n0\n0 1", "\n2\n0\n0 1");
     add("a path out of the folder", "Header", "Level_1/", "../");
     add("another number of boxes", "Level_1/Cell_H", "(1 0\n", "(2 0\n");
+    add("more boxes than a file holds", "Header", "\n0 1 0\n", "\n0 999999999999 0\n");
     add("an empty box", "Level_1/Cell_H", "((2,2,2) (5,5,5)", "((2,2,2) (5,1,5)");
     add("data of faces", "Level_1/Cell_H", "(5,5,5) (0,0,0)", "(5,5,5) (1,0,0)");
     add("records without headers", "Level_0/Cell_H", "1\n1\n1\n", "2\n1\n1\n");
