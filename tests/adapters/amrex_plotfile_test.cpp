@@ -130,6 +130,9 @@ TEST(AmrexPlotfile, SaysWhatIsWrong) {
     put(name / "Header",
         replaced(content(name / "Header"), "((0,0,0) (7,7,7)", "((0,0,0) (8,7,7)"));
     rows.add("domains that do not fit together", [&] { AmrexPlotfile(name).blocks<3>(); });
+    put(name / "Header",
+        replaced(content(name / "Header"), "((0,0,0) (8,7,7)", "((8,0,0) (15,7,7)"));
+    rows.add("a domain that begins elsewhere", [&] { AmrexPlotfile(name).blocks<3>(); });
 }
 
 /// Reads and draws what is there; a sentence where it is refused.
