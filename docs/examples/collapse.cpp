@@ -30,7 +30,8 @@ int main() {
     constexpr double error = 0.02;
     const HierarchicalIndicator deviations(grid, field, NodeError::deviation);
     auto surface =
-        isosurface(grid, field, isovalue, deviations, {.threshold = collapse_start * error}).surface;
+        isosurface(grid, field, isovalue, deviations, {.threshold = collapse_start * error})
+            .surface;
     const std::size_t drawn = surface.simplices.size();
     const Collapsed collapsed =
         collapse(surface, grid, field, isovalue, deviations, {.error = error});

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Small plotfiles for the tests of the program, in the folder of the argument: three of a ball that
-// moves, on one grid of three levels, one on another grid, one of fewer cells, and one in the plane.
+// moves, on one grid of three levels, one on another grid, one of fewer cells, and one in the
+// plane.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>

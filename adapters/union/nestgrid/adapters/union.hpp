@@ -42,10 +42,11 @@ class UnionFrame;
 /// \tparam Field on it
 template <class Grid, class Field>
 class Union {
-    static_assert(!may_offer<Grid>(Feature::masked) && !may_offer<Grid>(Feature::hidden) &&
-                      !may_offer<Grid>(Feature::outside) && !may_offer<Grid>(Feature::presence),
-                  "A union takes no grids with masked, hidden or outside elements, nor any of which "
-                  "parts may be on other processes.");
+    static_assert(
+        !may_offer<Grid>(Feature::masked) && !may_offer<Grid>(Feature::hidden) &&
+            !may_offer<Grid>(Feature::outside) && !may_offer<Grid>(Feature::presence),
+        "A union takes no grids with masked, hidden or outside elements, nor any of which "
+        "parts may be on other processes.");
 
 public:
     using Real = typename Field::value_type;
