@@ -246,8 +246,9 @@ void expect_refused_after_change(MadeOnce<Grid, Field>& before, const Grid& grid
             expect_changed(name + " by " + of, use);
         }
     }
+    const Exact all;  // the uses borrow it
     for (const auto& [of, bounds] : before.bounds()) {
-        for (const auto& [name, use] : drawings<dimension>(now, Exact{}, *bounds)) {
+        for (const auto& [name, use] : drawings<dimension>(now, all, *bounds)) {
             expect_changed(name + " within the bounds of a " + of, use);
         }
     }
@@ -268,8 +269,9 @@ void expect_usable(const Grid& grid, const Field& field) {
         const auto uses = drawings<dimension>(now, *criterion, made.indicator());
         for (const auto& [name, use] : uses) EXPECT_NO_THROW(use()) << name << " by " << of;
     }
+    const Exact all;  // the uses borrow it
     for (const auto& [of, bounds] : made.bounds()) {
-        const auto uses = drawings<dimension>(now, Exact{}, *bounds);
+        const auto uses = drawings<dimension>(now, all, *bounds);
         for (const auto& [name, use] : uses) EXPECT_NO_THROW(use()) << name << " in " << of;
     }
     for (const auto& [name, use] : drawings_by<dimension>(now, made.indicator())) {
