@@ -70,7 +70,8 @@ TriangleBudget threshold_of(const Projection& projection, const Find& find) {
     return {.threshold = projection.least_threshold()};
 }
 
-/// An isosurface in space that keeps a distance, or an error; then fewer triangles, which do.
+/// An isosurface in space that keeps a distance, or an error; then fewer triangles, which do. The
+/// isosurface of all data, from which distances are kept, is drawn once.
 template <class Real>
 class KeptIsosurface {
 public:
@@ -82,8 +83,31 @@ public:
           options_{options},
           executor_{executor} {}
 
+    /// The threshold that the projection gives, or the one with its number of triangles.
+    TriangleBudget find() {
+        const Projection& projection = criteria_.projection();
+        return threshold_of(projection, [&] {
+            const auto search = [&](const auto& function) {
+                return function(criteria_at(criteria_), bounds(), projection.max_triangles,
+                                options_, executor_);
+            };
+            if (!projection.collapse) {
+                return search([&](const auto&... how) {
+                    return find_threshold<3>(hierarchy_, isovalue_, how...);
+                });
+            }
+            if (!projection.keeps_distance) {
+                return search([&](const auto&... how) {
+                    return find_collapse_error(hierarchy_, isovalue_, how...);
+                });
+            }
+            return search([&](const auto&... how) {
+                return find_collapse_distance(hierarchy_, isovalue_, whole().surface, how...);
+            });
+        });
+    }
     /// \param kept the error, or the distance
-    Projected<Isosurface<3>> draw(double kept) const {
+    Projected<Isosurface<3>> draw(double kept) {
         const Projection& projection = criteria_.projection();
         const bool collapses = projection.collapse && kept > 0;
         const double part = projection.keeps_distance ? 0.5 : collapse_start;
@@ -95,20 +119,18 @@ public:
             if (collapses && !drawn.cancelled) collapse_into(drawn, {.error = kept});
             return drawn;
         }
-        Isosurface<3> whole =
-            by(Exact{},
-               {.elements = false, .at_nodes = options_.at_nodes, .progress = options_.progress});
-        if (whole.cancelled) {
-            as_isosurface(drawn) = std::move(whole);
+        if (whole().cancelled) {
+            as_isosurface(drawn) = whole();
             return drawn;
         }
-        IsosurfaceWithin within = isosurface_within(hierarchy_, isovalue_, {whole.surface, first},
-                                                    criterion, bounds(), options_, executor_);
+        const Surface<3>& all = whole().surface;
+        IsosurfaceWithin within = isosurface_within(hierarchy_, isovalue_, {all, first}, criterion,
+                                                    bounds(), options_, executor_);
         as_isosurface(drawn) = std::move(within.isosurface);
         drawn.far_points = within.points;
         if (collapses && !drawn.cancelled) {
             CollapseOptions near;
-            near.nearness.emplace(Nearness{whole.surface, kept});
+            near.nearness.emplace(Nearness{all, kept});
             collapse_into(drawn, near);
         }
         return drawn;
@@ -118,6 +140,15 @@ private:
     static Isosurface<3>& as_isosurface(Projected<Isosurface<3>>& drawn) { return drawn; }
     const Bounds& bounds() const { return criteria_.bounds(); }
 
+    /// The isosurface of all data.
+    const Isosurface<3>& whole() {
+        if (!whole_) {
+            whole_ = by(
+                Exact{},
+                {.elements = false, .at_nodes = options_.at_nodes, .progress = options_.progress});
+        }
+        return *whole_;
+    }
     Isosurface<3> by(const Criterion& criterion, const IsosurfaceOptions& options) const {
         return isosurface<3>(hierarchy_, isovalue_, criterion, bounds(), options, executor_);
     }
@@ -131,33 +162,8 @@ private:
     const Criteria& criteria_;
     const IsosurfaceOptions& options_;
     const Executor& executor_;
+    std::optional<Isosurface<3>> whole_;
 };
-
-template <class Real>
-TriangleBudget find_isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
-                               const Criteria& criteria, const IsosurfaceOptions& options,
-                               const Executor& executor) {
-    const std::uint64_t most = criteria.projection().max_triangles;
-    if (hierarchy.facts().dimension == 2) {
-        return find_threshold<2>(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(),
-                                 most, options, executor);
-    }
-    const Projection& projection = criteria.projection();
-    if (projection.collapse && projection.keeps_distance) {
-        const Surface<3> whole =
-            isosurface<3>(hierarchy, isovalue, Exact{}, criteria.bounds(),
-                          {.elements = false, .progress = options.progress}, executor)
-                .surface;
-        return find_collapse_distance(hierarchy, isovalue, whole, criteria_at(criteria),
-                                      criteria.bounds(), most, options, executor);
-    }
-    if (projection.collapse) {
-        return find_collapse_error(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(),
-                                   most, options, executor);
-    }
-    return find_threshold<3>(hierarchy, isovalue, criteria_at(criteria), criteria.bounds(), most,
-                             options, executor);
-}
 
 void check_isosurface(const Projection& projection, const IsosurfaceOptions& options,
                       int dimension) {
@@ -261,19 +267,22 @@ Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const Executor& executor = work.executor;
         const Criteria criteria(prerolls, projection, std::span(&isovalue, 1), work);
-        const TriangleBudget search = threshold_of(projection, [&] {
-            return find_isosurface(hierarchy, isovalue, criteria, options, executor);
-        });
         Projected<Isosurface<dimension>> drawn;
         if constexpr (dimension == 3) {
-            drawn = KeptIsosurface(hierarchy, isovalue, criteria, options, executor)
-                        .draw(search.threshold);
+            KeptIsosurface surface(hierarchy, isovalue, criteria, options, executor);
+            const TriangleBudget search = surface.find();
+            drawn = surface.draw(search.threshold);
+            drawn.search = search;
         } else {
+            drawn.search = threshold_of(projection, [&] {
+                return find_threshold<2>(hierarchy, isovalue, criteria_at(criteria),
+                                         criteria.bounds(), projection.max_triangles, options,
+                                         executor);
+            });
             static_cast<Isosurface<2>&>(drawn) =
-                isosurface<2>(hierarchy, isovalue, criteria.at(search.threshold), criteria.bounds(),
-                              options, executor);
+                isosurface<2>(hierarchy, isovalue, criteria.at(drawn.search.threshold),
+                              criteria.bounds(), options, executor);
         }
-        drawn.search = search;
         return drawn;
     });
 }
