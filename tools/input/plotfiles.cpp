@@ -15,7 +15,6 @@
 namespace {
 
 using nestgrid::AmrexPlotfile;
-using nestgrid::BlockArray;
 using nestgrid::BlockCell;
 using nestgrid::BlockGrid;
 namespace fs = std::filesystem;
@@ -80,13 +79,8 @@ private:
 
 template <int dim, class Real>
 double number_at(const nestgrid::BlockArrays<dim, Real>& arrays, const BlockCell<dim>& cell) {
-    const BlockArray<dim, Real>& array =
-        arrays[static_cast<std::size_t>(cell.level)][static_cast<std::size_t>(cell.box)];
-    const auto* at = static_cast<const std::byte*>(array.first);
-    for (std::size_t d = 0; d < array.stride.size(); ++d) at += array.stride[d] * cell.place[d];
-    Real value;
-    std::memcpy(&value, at, sizeof(Real));
-    return static_cast<double>(value);
+    const auto& of_level = arrays[static_cast<std::size_t>(cell.level)];
+    return static_cast<double>(of_level[static_cast<std::size_t>(cell.box)].at(cell.place));
 }
 
 /// Whether a leaf has no number.

@@ -80,7 +80,7 @@ double BlockCells<dim, Real>::interpolant(const BlockCell<dim>& leaf, const Plac
     return std::isfinite(sum) ? std::clamp(sum, low, high) : sum;
 }
 
-/// Of leaves that have the node for a corner.
+/// The mean of leaves around a node, all of which have it for a corner.
 template <int dim, class Real>
 template <class ValueOf>
 auto BlockCells<dim, Real>::mean(const Around& around, const ValueOf& of) const -> Mean {

@@ -16,19 +16,28 @@
 
 namespace nestgrid {
 
-/// Where the numbers of a box lie. They need not be aligned.
+/// The memory of the numbers of one box, which need not be aligned.
 /// \tparam Real float or double
 template <int dim, class Real>
 struct BlockArray {
     const void* first = nullptr;  ///< of the first cell, or node, of the box; behind ghost cells
     std::array<std::ptrdiff_t, static_cast<std::size_t>(dim)> stride{};  ///< in bytes
+
+    /// The number of a cell or node, counted from the first one of the box.
+    Real at(const detail::BlockPlace<dim>& place) const {
+        std::ptrdiff_t bytes = 0;
+        for (std::size_t d = 0; d < stride.size(); ++d) bytes += stride[d] * place[d];
+        Real value;
+        std::memcpy(&value, static_cast<const std::byte*>(first) + bytes, sizeof(Real));
+        return value;
+    }
 };
 
-/// Those of all boxes, by level.
+/// The arrays of all boxes, by level and number of the box.
 template <int dim, class Real>
 using BlockArrays = std::vector<std::vector<BlockArray<dim, Real>>>;
 
-/// What an array has one number for.
+/// Whether an array has one number for each cell of its box, or for each node.
 enum class BlockCentring : std::uint8_t { cells, nodes };
 
 /// An array whose numbers stand one behind the other, x fastest.
@@ -72,14 +81,9 @@ public:
     bool has(const BlockCell<dim>& cell) const { return array(cell).first != nullptr; }
     /// \param offset from the cell or its first node
     Real read(const BlockCell<dim>& cell, const BlockPlace<dim>& offset = {}) const {
-        const BlockArray<dim, Real>& a = array(cell);
-        std::ptrdiff_t bytes = 0;
-        for (std::size_t d = 0; d < offset.size(); ++d) {
-            bytes += a.stride[d] * (cell.place[d] + offset[d]);
-        }
-        Real value;
-        std::memcpy(&value, static_cast<const std::byte*>(a.first) + bytes, sizeof(Real));
-        return value;
+        BlockPlace<dim> place = cell.place;
+        for (std::size_t d = 0; d < offset.size(); ++d) place[d] += offset[d];
+        return array(cell).at(place);
     }
     /// Calls write(i, its finest place, a cell near it) for the nodes that are asked for. Returns
     /// those for which it answers false.
