@@ -3,6 +3,7 @@
 //
 // Surfaces of block-structured data: closed whatever the boxes, planes without a crease, balls of
 // second order.
+#include "ball_at_wall.hpp"
 #include "block_samples.hpp"
 #include "closedness.hpp"
 
@@ -166,25 +167,10 @@ TEST(BlockSurfaces, OfPlanesHaveNoCrease) {
 std::array<double, 3> errors_of_ball(int n, int ratio, CellRule rule = CellRule::smooth) {
     const Blocks<3> blocks = half_refined(n, {ratio});
     const BlockGrid<3> grid(blocks);
-    const Point centre{0.2, 0.5, 0.5};
-    const double radius = 0.4;
-    const BlockData<3> data(blocks, [&](const Point& x) { return norm(x - centre) - radius; });
+    const BallAtWall ball;
+    const BlockData<3> data(blocks, ball);
     const BlockCells<3, double> field(grid, data.arrays(), rule);
-    const auto surface = isosurface(grid, field, 0).surface;
-    std::array<double, 3> sum{};  // area, volume, distance
-    const Point in_wall{0, 0.5, 0.5};
-    for (const auto& [a, b, c] : surface.simplices) {
-        const Point& x = surface.vertices[a];
-        const Point normal = cross(surface.vertices[b] - x, surface.vertices[c] - x);
-        sum[0] += norm(normal) / 2;
-        sum[1] += dot(x - in_wall, normal) / 6;
-        sum[2] = std::max(sum[2], std::abs(norm(x - centre) - radius));
-    }
-    const double height = radius + centre[0];
-    const double pi = std::acos(-1.0);
-    return {std::abs(sum[0] / (2 * pi * radius * height) - 1),
-            std::abs(std::abs(sum[1]) * 3 / (pi * height * height * (3 * radius - height)) - 1),
-            sum[2]};
+    return ball.errors_of(isosurface(grid, field, 0).surface);
 }
 
 TEST(BlockSurfaces, OfBallsAreOfSecondOrder) {

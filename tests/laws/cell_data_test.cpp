@@ -9,6 +9,7 @@
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <walk/for_each_element.hpp>
 
+#include "ball_at_wall.hpp"
 #include "element_in.hpp"
 #include "families.hpp"
 #include "refusal.hpp"
@@ -255,25 +256,9 @@ TEST(CellData, DrawPlanesWithoutACrease) {
 std::array<double, 3> errors_of_ball(int n, CellRule rule = CellRule::smooth) {
     const OctreeGrid<3> grid = half_refined(n, 1);
     const Cells cells(grid);
-    const Point centre{0.2, 0.5, 0.5};
-    const double radius = 0.4;
-    const CellAverages field(
-        grid, cells.data([&](const Point& x) { return norm(x - centre) - radius; }), rule);
-    const auto surface = isosurface(grid, field, 0).surface;
-    std::array<double, 3> sum{};  // area, volume, distance
-    const Point in_wall{0, 0.5, 0.5};
-    for (const auto& [a, b, c] : surface.simplices) {
-        const Point& x = surface.vertices[a];
-        const Point normal = cross(surface.vertices[b] - x, surface.vertices[c] - x);
-        sum[0] += norm(normal) / 2;
-        sum[1] += dot(x - in_wall, normal) / 6;
-        sum[2] = std::max(sum[2], std::abs(norm(x - centre) - radius));
-    }
-    const double height = radius + centre[0];
-    const double pi = std::acos(-1.0);
-    return {std::abs(sum[0] / (2 * pi * radius * height) - 1),
-            std::abs(std::abs(sum[1]) * 3 / (pi * height * height * (3 * radius - height)) - 1),
-            sum[2]};
+    const BallAtWall ball;
+    const CellAverages field(grid, cells.data(ball), rule);
+    return ball.errors_of(isosurface(grid, field, 0).surface);
 }
 
 TEST(CellData, DrawBallsOfSecondOrderAtWallsAndChangesOfLevel) {
