@@ -31,6 +31,7 @@ constexpr double steepness = 1.2;  // triangles are about amount^-steepness
 constexpr int least_step = 8;      // of codes, beyond what was tried
 constexpr int most_step = 4 * octave;
 constexpr int octaves_tried = 24;   // of errors, below the greatest one
+constexpr int octaves_begun = 6;    // below it, where nothing is known
 constexpr std::uint64_t taken = 8;  // triangles that collapses make one of, about
 
 /// An error or a distance by its bfloat16 code, and the triangles that it leaves.
@@ -166,6 +167,10 @@ double first_error(const DrawnAt& drawn, double range, std::uint64_t all, std::u
     return error;
 }
 
+/// Twice the range of the data, at which nothing but the shape is left to be kept, or any error
+/// where the data are constant.
+double greatest_error(double range) { return range > 0 ? 2 * range : 1; }
+
 /// A part of the length of an edge where that many triangles are of one size.
 double first_distance(const Surface<3>& whole, std::uint64_t max_triangles) {
     return 0.2 * std::sqrt(surface_report(whole).area / static_cast<double>(max_triangles));
@@ -198,7 +203,7 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
         };
         const std::uint64_t all = drawn(0, std::numeric_limits<std::uint64_t>::max()).value();
         const auto first = [&] { return first_error(drawn, bounds.range, all, max_triangles); };
-        const double greatest = 2 * bounds.range;
+        const double greatest = greatest_error(bounds.range);
         search.run(all, first, std::ldexp(greatest, -octaves_tried), greatest);
     });
 }
@@ -245,3 +250,28 @@ template TriangleBudget find_collapse_distance(const Hierarchy<double>&, double,
                                                const IsosurfaceOptions&, const Executor&);
 
 }  // namespace nestgrid::detail
+
+namespace nestgrid {
+
+TriangleBudget find_collapse_error(const TryCollapse& within, double range,
+                                   std::uint64_t max_triangles) {
+    const auto attempt = [&](double error) {
+        const std::optional<CollapseTrial> trial = within(error);
+        if (!trial) throw engine::Cancelled{};
+        return *trial;
+    };
+    const auto collapse_within = [&](double error, std::uint64_t& triangles) {
+        const CollapseTrial trial = attempt(error);
+        triangles += trial.drawn;
+        return trial.left;
+    };
+    detail::AmountSearch search(collapse_within, max_triangles);
+    return detail::found_by(search, [&] {
+        const double greatest = detail::greatest_error(range);
+        search.run(
+            attempt(0).left, [&] { return std::ldexp(greatest, -detail::octaves_begun); },
+            std::ldexp(greatest, -detail::octaves_tried), greatest);
+    });
+}
+
+}  // namespace nestgrid

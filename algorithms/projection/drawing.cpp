@@ -33,13 +33,6 @@ void refuse_budget(const Projection& projection, const char* drawing) {
                            drawing);
     }
 }
-void refuse_collapse_in_budget(const Projection& projection) {
-    if (projection.collapse && projection.max_triangles > 0) {
-        throw InvalidInput(
-            "edges are collapsed within a number of triangles on isosurfaces only: give the error "
-            "of the colours");
-    }
-}
 void refuse_distance(const Projection& projection) {
     if (projection.keeps_distance) {
         throw InvalidInput("distances are kept by isosurfaces in space only");
@@ -47,7 +40,7 @@ void refuse_distance(const Projection& projection) {
 }
 void refuse_slice_distance(const Projection& projection) {
     if (projection.slice_distance > 0) {
-        throw InvalidInput("the distance of a slice is asked for, but none is drawn");
+        throw InvalidInput("the distance of a slice without a cap is asked for, but none is drawn");
     }
 }
 
@@ -188,67 +181,95 @@ void collapse_colours_of(Projected<Result>& drawn, const Hierarchy<Real>& hierar
     drawn.collapsed->hand_to(drawn, surface_error);
 }
 
+/// Draws within the threshold that the projection gives, or the least one with its number of
+/// triangles.
+/// \param within within(threshold, drawn) draws, and collapses where the projection says so; it
+///        sets `drawn` to the triangles that there were before
+/// \param find finds the threshold where nothing is collapsed
+template <class Within, class Find>
+auto draw_within(const Criteria& criteria, const Within& within, const Find& find) {
+    const Projection& projection = criteria.projection();
+    const TriangleBudget search = threshold_of(projection, [&] {
+        if (!projection.collapse) return find();
+        const TryCollapse attempt = [&](double error) -> std::optional<CollapseTrial> {
+            CollapseTrial trial;
+            const auto drawn = within(error, trial.drawn);
+            if (drawn.cancelled) return std::nullopt;
+            trial.left = drawn.surface.simplices.size();
+            return trial;
+        };
+        const double range = criteria.bounds().greatest() - criteria.bounds().least();
+        return find_collapse_error(attempt, range, projection.max_triangles);
+    });
+    std::uint64_t begun = 0;
+    auto drawn = within(search.threshold, begun);
+    drawn.search = search;
+    return drawn;
+}
+
 template <class Real>
 Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
                             const Criteria& criteria, const IsosurfaceOptions& options,
                             const Executor& executor) {
     const Projection& projection = criteria.projection();
     const Bounds& bounds = criteria.bounds();
-    Projected<Slice> drawn;
-    drawn.search = threshold_of(projection, [&] {
+    const auto within = [&](double error, std::uint64_t& begun) {
+        const bool collapses = projection.collapse && error > 0;
+        const double first = collapses ? colour_start * error : error;
+        // Only a slice of all data is as near to its function as the grid allows.
+        const bool moves = collapses && projection.slice_distance > 0;
+        const AnyCriterion criterion = moves ? AnyCriterion(Exact{}) : criteria.at(first);
+        Projected<Slice> drawn{slice(hierarchy, function, criterion, bounds, options, executor)};
+        begun = drawn.surface.simplices.size();
+        if (!collapses || drawn.cancelled) return drawn;
+        refine_colours(drawn.surface, hierarchy, first, criterion, bounds);
+        ColourCollapseOptions kept{.errors = {error}};
+        Surface<3> whole;
+        if (moves) {
+            whole = drawn.surface;
+            kept.nearness.emplace(Nearness{whole, projection.slice_distance});
+        }
+        collapse_colours_of(drawn, hierarchy, bounds, kept, drawn.surface_error, executor);
+        return drawn;
+    };
+    return draw_within(criteria, within, [&] {
         return find_threshold(hierarchy, function, criteria_at(criteria), bounds,
                               projection.max_triangles, options, executor);
     });
-    const double error = drawn.search.threshold;
-    const bool collapses = projection.collapse && error > 0;
-    const double first = collapses ? colour_start * error : error;
-    // Only a slice of all data is as near to its function as the grid allows.
-    const bool moves = collapses && projection.slice_distance > 0;
-    const AnyCriterion criterion = moves ? AnyCriterion(Exact{}) : criteria.at(first);
-    static_cast<Slice&>(drawn) = slice(hierarchy, function, criterion, bounds, options, executor);
-    if (!collapses || drawn.cancelled) return drawn;
-    refine_colours(drawn.surface, hierarchy, first, criterion, bounds);
-    ColourCollapseOptions kept{.errors = {error}};
-    Surface<3> whole;
-    if (moves) {
-        whole = drawn.surface;
-        kept.nearness.emplace(Nearness{whole, projection.slice_distance});
-    }
-    collapse_colours_of(drawn, hierarchy, bounds, kept, drawn.surface_error, executor);
-    return drawn;
 }
 
 /// \param scale nothing: in the plane
 template <class Real>
 Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<double> scale,
-                                const Criteria& criteria, ShadingOptions options,
+                                const Criteria& criteria, const ShadingOptions& options,
                                 const Executor& executor) {
     const Projection& projection = criteria.projection();
     const Bounds& bounds = criteria.bounds();
-    Projected<Shading> drawn;
-    drawn.search = threshold_of(projection, [&] {
+    const auto within = [&](double error, std::uint64_t& begun) {
+        const bool collapses = projection.collapse && error > 0;
+        const double first = collapses ? colour_start * error : error;
+        ShadingOptions flat = options;
+        if (collapses) flat.flatness = std::min(flat.flatness, first);
+        const AnyCriterion s = criteria.at(first);
+        Projected<Shading> drawn{scale ? height_field(hierarchy, *scale, s, bounds, flat, executor)
+                                       : shading(hierarchy, s, bounds, flat, executor)};
+        begun = drawn.surface.simplices.size();
+        if (!collapses || drawn.cancelled) return drawn;
+        double no_surface_error = 0;
+        collapse_colours_of(drawn, hierarchy, bounds,
+                            {.errors = {error}, .scale = scale.value_or(0)}, no_surface_error,
+                            executor);
+        return drawn;
+    };
+    return draw_within(criteria, within, [&] {
         return find_shading_threshold(hierarchy, criteria_at(criteria), bounds,
                                       projection.max_triangles, options, executor);
     });
-    const double error = drawn.search.threshold;
-    const bool collapses = projection.collapse && error > 0;
-    const double first = collapses ? colour_start * error : error;
-    if (collapses) options.flatness = std::min(options.flatness, first);
-    const AnyCriterion s = criteria.at(first);
-    static_cast<Shading&>(drawn) =
-        scale ? height_field(hierarchy, *scale, s, bounds, options, executor)
-              : shading(hierarchy, s, bounds, options, executor);
-    if (!collapses || drawn.cancelled) return drawn;
-    double no_surface_error = 0;
-    collapse_colours_of(drawn, hierarchy, bounds, {.errors = {error}, .scale = scale.value_or(0)},
-                        no_surface_error, executor);
-    return drawn;
 }
 
 Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
                           const Projection& projection, const ShadingOptions& options,
                           const Work& work) {
-    refuse_collapse_in_budget(projection);
     refuse_distance(projection);
     refuse_slice_distance(projection);
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
@@ -294,8 +315,8 @@ template Projected<Isosurface<3>> isosurface<3>(Prerolls&, double, const Project
 Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
                        const Projection& projection, const IsosurfaceOptions& options,
                        const Work& work) {
-    refuse_collapse_in_budget(projection);
     refuse_distance(projection);
+    if (options.cap) refuse_slice_distance(projection);
     return with_field(prerolls, work, 3, [&](const auto& hierarchy) {
         if (projection.draws_everything()) {
             IsosurfaceOptions everything = options;
@@ -310,7 +331,7 @@ Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
 
 Projected<Slice> boundary_surface(Prerolls& prerolls, const Projection& projection,
                                   const IsosurfaceOptions& options, const Work& work) {
-    refuse_collapse(projection, "the boundary");
+    refuse_slice_distance(projection);
     return slice(prerolls, detail::Everywhere{}, projection, detail::capped(options), work);
 }
 

@@ -145,6 +145,47 @@ TYPED_TEST(Drawing, KeepsWithinANumberOfTriangles) {
     });
 }
 
+/// The error that is told keeps the number, which is nearly used up or is exceeded at the error
+/// before it.
+template <class Result>
+void expect_fits(const Result& drawn, std::uint64_t most) {
+    EXPECT_LE(drawn.surface.simplices.size(), most);
+    EXPECT_EQ(drawn.search.triangles, drawn.surface.simplices.size());
+    EXPECT_EQ(drawn.search.max_triangles, most);
+    const bool filled = 10 * drawn.search.triangles >= 9 * most;
+    EXPECT_TRUE(filled || drawn.search.next_triangles > most);
+    ASSERT_TRUE(drawn.collapsed);
+    EXPECT_LE(drawn.collapsed->error, drawn.search.threshold);
+}
+
+TYPED_TEST(Drawing, CollapsesColoursToANumberOfTriangles) {
+    std::size_t fitting = 0;
+    for_each_drawn<TypeParam>(44, [&](const auto&, Prerolls& prerolls, auto dimension) {
+        if (fitting > 0) return;  // one field is enough
+        const auto fit = [&](const auto& draw) {
+            const std::uint64_t all = draw(Projection{.threshold = 0}).surface.simplices.size();
+            const std::uint64_t most = all - all / 4;
+            if (most == all) return;
+            try {
+                expect_fits(draw({.max_triangles = most, .indicator = "error", .collapse = true}),
+                            most);
+                ++fitting;
+            } catch (const InvalidInput& refused) {
+                EXPECT_NE(std::string(refused.what()).find("coarsest"), std::string::npos);
+            }
+        };
+        if constexpr (dimension == 3) {
+            const Plane plane({0.4, 0.5, 0.5}, {1, 2, 3});
+            fit([&](const Projection& p) { return slice(prerolls, plane, p); });
+            fit([&](const Projection& p) { return boundary_surface(prerolls, p); });
+        } else {
+            fit([&](const Projection& p) { return shading(prerolls, p); });
+            fit([&](const Projection& p) { return height_field(prerolls, 0.5, p); });
+        }
+    });
+    EXPECT_GT(fitting, 0U);
+}
+
 TEST(Drawing, RefusesWhatMakesNoSense) {
     const LatticeBisection<3> grid({.samples = {5, 5, 5}});
     std::vector<float> values(125);
@@ -167,11 +208,19 @@ TEST(Drawing, RefusesWhatMakesNoSense) {
     const Plane plane({2, 2, 2}, {0, 0, 1});
     expect_refused([&] { slice(prerolls, plane, {.threshold = 1, .slice_distance = 1}); },
                    "whose edges are collapsed");
-    expect_refused([&] { slice(prerolls, plane, {.max_triangles = 9, .collapse = true}); },
-                   "on isosurfaces only");
+    expect_refused(
+        [&] {
+            slice(prerolls, plane, {.threshold = 1, .collapse = true, .slice_distance = 1},
+                  {.cap = true});
+        },
+        "without a cap");
+    expect_refused(
+        [&] {
+            boundary_surface(prerolls, {.threshold = 1, .collapse = true, .slice_distance = 1});
+        },
+        "without a cap");
     expect_refused([&] { slice(prerolls, plane, {.threshold = 1, .keeps_distance = true}); },
                    "isosurfaces in space");
-    expect_refused([&] { boundary_surface(prerolls, collapsed); }, "the boundary");
     expect_refused([&] { isoband<3>(prerolls, 1, 2, collapsed); }, "bands");
     expect_refused([&] { isoband<3>(prerolls, 1, 2, {.max_triangles = 9}); }, "bands");
     expect_refused([&] { isosurface<2>(prerolls, 2, {}); }, "dimension 3, not 2");

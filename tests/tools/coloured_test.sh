@@ -194,6 +194,11 @@ for what in "slice v.vti --axis z --at 9.3" "boundary v.vti" "surface ramp.pgm" 
         fail "$what --collapse: $(value error_bound)"
     case $what in height*) ;; *) expect area "$area" ;; esac
 done
+for what in 'slice v.vti --axis z --at 9.3' 'boundary v.vti' 'slice v.vti --sphere 5,12,17,4 --distance 0.8'; do
+    run $what --max-triangles 300 --collapse -o few.vtp
+    [ "$(value triangles)" -le 300 ] || fail "$what --max-triangles 300: $(value triangles) triangles"
+done
+refused 1 'needs an --error or --max-triangles' slice v.vti --axis z --at 9.3 --collapse -o x.vtp
 # A curved slice may move: fewer triangles, within a distance.
 run slice v.vti --sphere 5,12,17,4 --error 5% --collapse
 drawn=$(value triangles)

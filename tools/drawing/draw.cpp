@@ -260,9 +260,10 @@ void add_colour_options(CLI::App& command, DrawingOptions& options, const std::s
 void add_collapse_option(CLI::App& command, DrawingOptions& options) {
     CLI::Option* const collapse =
         command.add_flag("--collapse", options.collapses,
-                         "take edges away while the --error is kept, in place: some times fewer "
-                         "triangles, some times the time");
-    for (const char* const other : {"--threshold", "--max-triangles", "--outlines", "--lens",
+                         "take edges away while the --error is kept, in place, or down to "
+                         "--max-triangles of the least error: some times fewer triangles, some "
+                         "times the time");
+    for (const char* const other : {"--threshold", "--indicator", "--outlines", "--lens",
                                     "--colour-tolerance", "--with-isosurface", "--elements"}) {
         if (CLI::Option* const option = command.get_option_no_throw(other)) {
             collapse->excludes(option);
@@ -274,8 +275,12 @@ void draw(DrawingOptions& options, const DrawingRequest& request, Report& report
     check(options.surface);
     check(options.time);
     check_film(options.time, options.surface);
-    if (request.collapses && !request.isovalue && options.surface.command->count("--error") == 0) {
-        throw InvalidInput("--collapse needs an --error to keep");
+    if (request.collapses && !request.isovalue) {
+        const CLI::App& command = *options.surface.command;
+        if (command.count("--error") + command.count("--max-triangles") == 0) {
+            throw InvalidInput("--collapse needs an --error or --max-triangles to keep");
+        }
+        options.surface.projection.indicator = "deviation";
     }
     if (is_standard_stream(options.surface.output) && options.input.labels.size() > 1) {
         throw InvalidInput("standard output takes one surface: give -o a name for several");

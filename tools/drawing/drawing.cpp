@@ -170,6 +170,7 @@ private:
                                            options, executor_);
     }
     TriangleBudget find_coloured(std::uint64_t budget) const {
+        if (request_.collapses) return find_collapsed_colours(budget);
         if (request_.function == nullptr) {
             return find_shading_threshold(hierarchy_, criteria_at(), bounds(), budget, {},
                                           executor_);
@@ -183,6 +184,17 @@ private:
                 return count_both(criterion_at(threshold), most);
             },
             bounds().greatest() - bounds().least(), budget);
+    }
+    TriangleBudget find_collapsed_colours(std::uint64_t budget) const {
+        const nestgrid::TryCollapse within = [&](double error) {
+            Drawn d;
+            d.threshold = error;
+            d = draw_first(std::move(d), {});
+            const std::uint64_t drawn = d.result.surface.simplices.size();
+            if (error > 0) collapse_one({}, d);
+            return nestgrid::CollapseTrial{drawn, d.result.surface.simplices.size()};
+        };
+        return find_collapse_error(within, bounds().greatest() - bounds().least(), budget);
     }
     /// Counts the triangles of the slice and of the isosurface beside it.
     std::optional<std::uint64_t> count_both(const nestgrid::Criterion& criterion,
@@ -209,11 +221,18 @@ private:
     Drawn draw_at(Drawn d) const {
         tell_({});
         const nestgrid::Surface<3> whole = this->whole();
+        d = draw_first(std::move(d), whole);
+        if (request_.collapses && d.threshold > 0) collapse_one(whole, d);
+        if (request_.measures) measure_one(whole, d);
+        return reported(std::move(d));
+    }
+    /// Draws within the threshold, or, where edges are then collapsed within it, within a part.
+    Drawn draw_first(Drawn d, const nestgrid::Surface<3>& whole) const {
         const bool collapses = request_.collapses && d.threshold > 0;
         const bool of_error = request_.isovalue && !request_.keeps_distances;
         const double part = of_error ? nestgrid::collapse_start : 0.5;
         const double first = collapses ? part * d.threshold : d.threshold;
-        d = draw(std::move(d), [&](Drawn& to) {
+        return draw(std::move(d), [&](Drawn& to) {
             if (!collapses || request_.slice_distance == 0) {
                 return draw_with(criterion_at(first), first, whole, to);
             }
@@ -221,9 +240,6 @@ private:
             draw_exactly(to);
             refine(to.result.surface, first);
         });
-        if (collapses) collapse_one(whole, d);
-        if (request_.measures) measure_one(whole, d);
-        return reported(std::move(d));
     }
     template <class DrawInto>
     Drawn draw(Drawn d, const DrawInto& draw_into) const {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The least error, or distance, at which an isosurface can be collapsed (collapse.hpp) to a number
-// of triangles.
+// The least error, or distance, at which what is drawn can be collapsed (collapse.hpp,
+// collapse_colours.hpp) to a number of triangles.
 //
 // Both are searched among bfloat16 numbers. Each trial draws with a part of the number
 // (collapse_start of an error, half of a distance) and collapses within it; the next one is
@@ -42,12 +42,31 @@ TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double i
 
 }  // namespace detail
 
+/// How many triangles were drawn, and how many collapses left of them.
+struct CollapseTrial {
+    std::uint64_t drawn = 0;
+    std::uint64_t left = 0;
+};
+/// Draws what may then be off by a part of an error, and collapses it within the whole; at error 0
+/// draws all data. Returns nothing where it was cancelled.
+using TryCollapse = std::function<std::optional<CollapseTrial>(double error)>;
+
+/// The least error within which a drawing, whatever it is, is collapsed to at most max_triangles.
+/// It is the `threshold` of the result; where that is 0, all data have no more triangles.
+/// \param range of the data, in the unit of the error
+/// \throw InvalidInput where collapses leave more triangles at twice the range, and what the trials
+///        throw
+TriangleBudget find_collapse_error(const TryCollapse& within, double range,
+                                   std::uint64_t max_triangles);
+
 /// The least error such that the isosurface that is drawn with collapse_start of it, and then
 /// collapsed within it, has at most max_triangles. It is the `threshold` of the result; where that
-/// is 0, all data have no more triangles, and nothing is to be collapsed. \param criterion_at of an
-/// error, such as a Threshold on deviations \param bounds of the same grid and field, for
-/// collapse(), too \param options of the surface without a cap; progress is told while surfaces are
-/// drawn \throw InvalidInput where collapses leave more triangles at any error, and as isosurface()
+/// is 0, all data have no more triangles, and nothing is to be collapsed.
+/// \param criterion_at of an error, such as a Threshold on deviations
+/// \param bounds of the same grid and field, for collapse(), too
+/// \param options of the surface without a cap; progress is told while surfaces are drawn
+///
+/// \throw InvalidInput where collapses leave more triangles at any error, and as isosurface()
 template <class Real, MakesCriterion Make, RangedBounds Ranged>
 TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isovalue,
                                    const Make& criterion_at, const Ranged& bounds,

@@ -58,8 +58,7 @@ Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
                                             const Work& work = {});
 
 /// The slice of a field of dimension 3. Where all data are asked for, it needs no preroll. Colours
-/// keep the threshold where edges are collapsed.
-/// \throw InvalidInput also for collapses within a number of triangles
+/// keep the threshold where edges are collapsed, or the least one with a number of triangles.
 Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
                        const Projection& projection, const IsosurfaceOptions& options = {},
                        const Work& work = {});
@@ -83,7 +82,6 @@ Projected<Isolines> isolines(Prerolls& prerolls, std::span<const double> values,
                              const Work& work = {});
 
 /// The field of dimension 2 as a triangulation in its plane, or on its surface in space.
-/// \throw InvalidInput also for collapses within a number of triangles
 Projected<Shading> shading(Prerolls& prerolls, const Projection& projection,
                            const ShadingOptions& options = {}, const Work& work = {});
 
