@@ -17,7 +17,8 @@ using Inside = std::function<bool(const Point&)>;
 using Marks = engine::NodeMaxima<std::uint8_t>;
 
 /// Marks the nodes of an element that lie inside, and adds its split.
-void add_element(const engine::Walk<float>& walk, const engine::ElementView<float>& view,
+template <class Real>
+void add_element(const engine::Walk<Real>& walk, const engine::ElementView<Real>& view,
                  const engine::Split& split, const Inside& inside, Marks& marks) {
     const std::size_t corners = view.corner_count();
     std::array<NodeKey, max_corners> keys;
@@ -35,16 +36,19 @@ void add_element(const engine::Walk<float>& walk, const engine::ElementView<floa
 
 }  // namespace
 
-Region::Region(const Hierarchy<float>& hierarchy, const Inside& inside)
-    : epoch_{hierarchy.epoch()} {
-    if (hierarchy.facts().knows_star_positions) {
-        sweep_stars(hierarchy, inside);
-    } else {
-        sweep_levels(hierarchy, inside);
-    }
+Region::Region(const FieldOnGrid& field, const Inside& inside) {
+    field.visit([&](const auto& hierarchy) {
+        epoch_ = hierarchy.epoch();
+        if (hierarchy.facts().knows_star_positions) {
+            sweep_stars(hierarchy, inside);
+        } else {
+            sweep_levels(hierarchy, inside);
+        }
+    });
 }
 
-void Region::sweep_stars(const Hierarchy<float>& hierarchy, const Inside& inside) {
+template <class Real>
+void Region::sweep_stars(const Hierarchy<Real>& hierarchy, const Inside& inside) {
     constexpr std::uint8_t gathered = 2;  // marks nodes that stand for others
     dense_.assign(hierarchy.facts().node_count, 0);
     hierarchy.star_rows([&](const StarRow& row) {
@@ -65,11 +69,12 @@ void Region::sweep_stars(const Hierarchy<float>& hierarchy, const Inside& inside
     for (std::uint8_t& mark : dense_) mark &= 1U;
 }
 
-void Region::sweep_levels(const Hierarchy<float>& hierarchy, const Inside& inside) {
-    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true, .positions = true});
+template <class Real>
+void Region::sweep_levels(const Hierarchy<Real>& hierarchy, const Inside& inside) {
+    const engine::Walk<Real> walk(hierarchy, {.values = false, .keys = true, .positions = true});
     Marks marks(hierarchy.facts().node_count, 0);
     engine::for_each_element(
-        walk, false, [&](const engine::ElementView<float>& view, const engine::Split& split) {
+        walk, false, [&](const engine::ElementView<Real>& view, const engine::Split& split) {
             add_element(walk, view, split, inside, marks);
         });
     marks.saturate();

@@ -12,8 +12,11 @@ Criteria::Criteria(Prerolls& prerolls, Projection projection, std::span<const do
     : projection_{std::move(projection)} {
     projection_.check();
     chosen_ = prerolls.choose(projection_.indicator, projection_.blend, isovalues, work);
-    if (!projection_.lens) return;
-    sizes_ = prerolls.sizes(projection_.sizes_spread(), work);
+    if (projection_.lens) sizes_ = prerolls.sizes(projection_.sizes_spread(), work);
+    if (projection_.region) {
+        region_.emplace(work.on(prerolls.field()),
+                        [this](const Point& x) { return projection_.region->distance(x) <= 0; });
+    }
 }
 
 AnyCriterion Criteria::at(double threshold) const {
@@ -25,6 +28,9 @@ AnyCriterion Criteria::at(double threshold) const {
                Lens(sizes_.get(), lens.distance,
                     {.finest = lens.finest, .coarsest = lens.coarsest, .blend = projection_.blend});
     };
+    if (region_) {
+        return in_lens(fine_inside(*region_, *indicator, threshold, projection_.region->threshold));
+    }
     if (projection_.blend == 1) return in_lens(Threshold(indicator, threshold));
     return in_lens(Blended(indicator, threshold, projection_.blend));
 }

@@ -38,10 +38,25 @@ void refuse_distance(const Projection& projection) {
         throw InvalidInput("distances are kept by isosurfaces in space only");
     }
 }
+void refuse_tolerance(const Projection& projection) {
+    if (projection.colour_tolerance > 0) {
+        throw InvalidInput(
+            "triangles are split for their colours on slices, boundaries and shadings only");
+    }
+}
 void refuse_slice_distance(const Projection& projection) {
     if (projection.slice_distance > 0) {
         throw InvalidInput("the distance of a slice without a cap is asked for, but none is drawn");
     }
+}
+
+/// Refuses what needs a drawing of its own, or several.
+void check_one_walk(const Projection& projection, const char* drawing) {
+    refuse_collapse(projection, drawing);
+    refuse_budget(projection, drawing);
+    refuse_distance(projection);
+    refuse_slice_distance(projection);
+    refuse_tolerance(projection);
 }
 
 /// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
@@ -161,6 +176,7 @@ private:
 void check_isosurface(const Projection& projection, const IsosurfaceOptions& options,
                       int dimension) {
     refuse_slice_distance(projection);
+    refuse_tolerance(projection);
     if (dimension == 2) {
         refuse_collapse(projection, "isolines");
         refuse_distance(projection);
@@ -221,8 +237,10 @@ Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunctio
         const AnyCriterion criterion = moves ? AnyCriterion(Exact{}) : criteria.at(first);
         Projected<Slice> drawn{slice(hierarchy, function, criterion, bounds, options, executor)};
         begun = drawn.surface.simplices.size();
-        if (!collapses || drawn.cancelled) return drawn;
-        refine_colours(drawn.surface, hierarchy, first, criterion, bounds);
+        if (drawn.cancelled) return drawn;
+        const double tolerance = collapses ? first : projection.colour_tolerance;
+        if (tolerance > 0) refine_colours(drawn.surface, hierarchy, tolerance, criterion, bounds);
+        if (!collapses) return drawn;
         ColourCollapseOptions kept{.errors = {error}};
         Surface<3> whole;
         if (moves) {
@@ -254,7 +272,11 @@ Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<
         Projected<Shading> drawn{scale ? height_field(hierarchy, *scale, s, bounds, flat, executor)
                                        : shading(hierarchy, s, bounds, flat, executor)};
         begun = drawn.surface.simplices.size();
-        if (!collapses || drawn.cancelled) return drawn;
+        if (drawn.cancelled) return drawn;
+        if (projection.colour_tolerance > 0) {
+            refine_colours(drawn.surface, hierarchy, projection.colour_tolerance, s, bounds);
+        }
+        if (!collapses) return drawn;
         double no_surface_error = 0;
         collapse_colours_of(drawn, hierarchy, bounds,
                             {.errors = {error}, .scale = scale.value_or(0)}, no_surface_error,
@@ -272,6 +294,7 @@ Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
                           const Work& work) {
     refuse_distance(projection);
     refuse_slice_distance(projection);
+    if (scale) refuse_tolerance(projection);
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, projection, {}, work);
         return draw_shading(hierarchy, scale, criteria, options, work.executor);
@@ -312,9 +335,40 @@ template Projected<Isosurface<2>> isosurface<2>(Prerolls&, double, const Project
 template Projected<Isosurface<3>> isosurface<3>(Prerolls&, double, const Projection&,
                                                 const IsosurfaceOptions&, const Work&);
 
+template <int dimension>
+std::vector<Isosurface<dimension>> isosurfaces(Prerolls& prerolls,
+                                               std::span<const double> isovalues,
+                                               const Projection& projection,
+                                               const IsosurfaceOptions& options, const Work& work) {
+    check_one_walk(projection, "several isosurfaces");
+    return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, projection, isovalues, work);
+        return isosurfaces<dimension>(hierarchy, isovalues, criteria.criterion(), criteria.bounds(),
+                                      options, work.executor);
+    });
+}
+template std::vector<Isosurface<2>> isosurfaces<2>(Prerolls&, std::span<const double>,
+                                                   const Projection&, const IsosurfaceOptions&,
+                                                   const Work&);
+template std::vector<Isosurface<3>> isosurfaces<3>(Prerolls&, std::span<const double>,
+                                                   const Projection&, const IsosurfaceOptions&,
+                                                   const Work&);
+
+MeasuredError measure_error(Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
+                            std::size_t points, const Work& work) {
+    const std::shared_ptr<const Bounds> bounds = prerolls.bounds(work);
+    return with_field(prerolls, work, 3, [&](const auto& hierarchy) {
+        const Surface<3> whole =
+            isosurface<3>(hierarchy, isovalue, Exact{}, *bounds, {.elements = false}, work.executor)
+                .surface;
+        return measure_error(drawn, whole, hierarchy, isovalue, points, work.executor);
+    });
+}
+
 Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
                        const Projection& projection, const IsosurfaceOptions& options,
                        const Work& work) {
+    projection.check();
     refuse_distance(projection);
     if (options.cap) refuse_slice_distance(projection);
     return with_field(prerolls, work, 3, [&](const auto& hierarchy) {
@@ -322,7 +376,11 @@ Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
             IsosurfaceOptions everything = options;
             everything.threshold = 0;
             everything.max_triangles = 0;
-            return Projected<Slice>{slice(hierarchy, function, everything, work.executor)};
+            Projected<Slice> drawn{slice(hierarchy, function, everything, work.executor)};
+            if (projection.colour_tolerance > 0 && !drawn.cancelled) {
+                refine_colours(drawn.surface, hierarchy, projection.colour_tolerance);
+            }
+            return drawn;
         }
         const Criteria criteria(prerolls, projection, {}, work);
         return draw_slice(hierarchy, function, criteria, options, work.executor);
@@ -339,9 +397,7 @@ template <int dimension>
 Projected<Isosurface<dimension>> isoband(Prerolls& prerolls, double low, double high,
                                          const Projection& projection,
                                          const IsosurfaceOptions& options, const Work& work) {
-    refuse_collapse(projection, "bands");
-    refuse_budget(projection, "bands");
-    refuse_distance(projection);
+    check_one_walk(projection, "bands");
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const std::array<double, 2> isovalues{low, high};
         const Criteria criteria(prerolls, projection, isovalues, work);
@@ -359,9 +415,7 @@ template Projected<Isosurface<3>> isoband<3>(Prerolls&, double, double, const Pr
 Projected<Isolines> isolines(Prerolls& prerolls, std::span<const double> values,
                              const Projection& projection, const IsosurfaceOptions& options,
                              const Work& work) {
-    refuse_collapse(projection, "isolines");
-    refuse_budget(projection, "isolines");
-    refuse_distance(projection);
+    check_one_walk(projection, "isolines");
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, projection, values, work);
         return Projected<Isolines>{isolines(hierarchy, values, criteria.criterion(),
@@ -382,9 +436,11 @@ Projected<Shading> height_field(Prerolls& prerolls, double scale, const Projecti
 
 ProbeResult probe(Prerolls& prerolls, std::span<const Point> points, const Projection& projection,
                   const Work& work) {
+    projection.check();
     refuse_collapse(projection, "no surface");
     refuse_budget(projection, "a probe, which draws none");
     refuse_distance(projection);
+    refuse_tolerance(projection);
     const FieldOnGrid field = work.on(prerolls.field());
     return field.visit([&](const auto& hierarchy) {
         if (projection.draws_everything()) return probe(hierarchy, points);

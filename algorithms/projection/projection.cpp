@@ -18,6 +18,21 @@ void Projection::check() const {
             "edges are collapsed within a threshold or a number of triangles: neither is given");
     }
     if (collapse && lens) throw InvalidInput("edges are collapsed without a lens");
+    if (collapse && region) throw InvalidInput("edges are collapsed without a region");
+    if (region && !(region->threshold >= 0)) {
+        throw InvalidInput("the threshold in the region is not a number >= 0");
+    }
+    if (region && blend != 1) {
+        throw InvalidInput("a region has a threshold of its own: nodes do not move with it");
+    }
+    if (!(colour_tolerance >= 0) || !std::isfinite(colour_tolerance)) {
+        throw InvalidInput("the tolerance of colours is not a finite number >= 0");
+    }
+    if (colour_tolerance > 0 && (collapse || max_triangles > 0)) {
+        throw InvalidInput(
+            "triangles are split until colours follow the data: neither with collapses nor within "
+            "a number of triangles");
+    }
     if (keeps_distance && !threshold && !(collapse && max_triangles > 0)) {
         throw InvalidInput("a distance is to be kept, but there is no threshold that says which");
     }

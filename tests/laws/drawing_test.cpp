@@ -8,10 +8,12 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/refine_colours.hpp>
 
 #include "families.hpp"
 #include "projection_judge.hpp"
@@ -88,6 +90,71 @@ TYPED_TEST(Drawing, HasTheBitsOfItsParts) {
                                        *prerolls.bounds({}))
                         .surface);
     });
+}
+
+TYPED_TEST(Drawing, IsFineInARegion) {
+    const Ball ball{{0.4, 0.4, 0.4}, 0.2};
+    const double zero = 0;
+    for_each_drawn<TypeParam>(45, [&](const auto& hierarchy, Prerolls& prerolls, auto dimension) {
+        const Projection projection{.threshold = 0.4, .region = RegionRequest{ball, 0.01}};
+        const Region region(hierarchy, [&](const Point& x) { return ball(x) <= 0; });
+        const ChosenIndicator offsets = prerolls.choose("offset", 1, {}, {});
+        const auto s = fine_inside(region, *offsets.indicator, 0.4, 0.01);
+        const Isosurface<dimension> expected =
+            isosurface<dimension>(hierarchy, 0, s, *offsets.bounds);
+        expect_same(static_cast<const Isosurface<dimension>&>(
+                        isosurface<dimension>(prerolls, 0, projection)),
+                    expected);
+        expect_same(
+            isosurfaces<dimension>(prerolls, std::span(&zero, 1), projection).front().surface,
+            expected.surface);
+    });
+}
+
+TYPED_TEST(Drawing, LetsColoursFollowTheData) {
+    std::size_t split = 0;
+    bool simplices = false;
+    for_each_drawn<TypeParam>(46, [&](const auto& hierarchy, Prerolls& prerolls, auto dimension) {
+        simplices = cuts_are_errors(hierarchy.facts());  // whose colours are exact
+        for (const double threshold : {0.0, 0.1}) {
+            const Projection plain{.threshold = threshold};
+            Projection followed = plain;
+            followed.colour_tolerance = 0.01;
+            const Criteria criteria(prerolls, plain, {}, {});
+            const auto expect_followed = [&](Surface<3> drawn, const Surface<3>& got) {
+                split +=
+                    refine_colours(drawn, hierarchy, 0.01, criteria.criterion(), criteria.bounds())
+                        .split;
+                expect_same(got, drawn);
+            };
+            if constexpr (dimension == 3) {
+                const Plane plane({0.4, 0.5, 0.5}, {1, 2, 3});
+                expect_followed(slice(prerolls, plane, plain).surface,
+                                slice(prerolls, plane, followed).surface);
+            } else {
+                expect_followed(shading(prerolls, plain).surface,
+                                shading(prerolls, followed).surface);
+            }
+        }
+    });
+    EXPECT_TRUE(TypeParam::Grid::dimension == 2 || (split > 0) != simplices);
+}
+
+TYPED_TEST(Drawing, MeasuresFromTheSurfaceOfAllData) {
+    if constexpr (TypeParam::Grid::dimension == 3) {
+        bool first = true;
+        for_each_drawn<TypeParam>(47, [&](const auto& hierarchy, Prerolls& prerolls, auto) {
+            if (!std::exchange(first, false)) return;
+            const Surface<3> whole = isosurface<3>(prerolls, 0, {}).surface;
+            const Surface<3> drawn = isosurface<3>(prerolls, 0, {.threshold = 0.2}).surface;
+            const MeasuredError expected = measure_error(drawn, whole, hierarchy, 0.0, 1000);
+            const MeasuredError measured = measure_error(prerolls, drawn, 0, 1000);
+            EXPECT_EQ(measured.value.greatest, expected.value.greatest);
+            EXPECT_EQ(measured.distance.rms, expected.distance.rms);
+            EXPECT_EQ(measured.back.greatest, expected.back.greatest);
+            EXPECT_LT(measure_error(prerolls, whole, 0, 1000).distance.greatest, 1e-9);
+        });
+    }
 }
 
 /// The greatest |U - C| at samples of the triangles.
@@ -205,7 +272,17 @@ TEST(Drawing, RefusesWhatMakesNoSense) {
     const Projection collapsed{.threshold = 1, .collapse = true};
     expect_refused([&] { isosurface<3>(prerolls, 2, collapsed, {.cap = true}); }, "with caps");
     expect_refused([&] { isosurface<3>(prerolls, 2, collapsed, {.at_nodes = true}); }, "at nodes");
+    const RegionRequest region{.distance = Ball{{2, 2, 2}, 1}};
+    refused({.threshold = 1, .region = region, .collapse = true}, "without a region");
+    refused({.threshold = 1, .blend = 2, .region = region}, "threshold of its own");
+    refused({.threshold = 1, .region = RegionRequest{region.distance, -1}}, "in the region");
+    refused({.colour_tolerance = 1}, "slices, boundaries and shadings only");
     const Plane plane({2, 2, 2}, {0, 0, 1});
+    expect_refused([&] { slice(prerolls, plane, {.colour_tolerance = -1}); }, "tolerance");
+    expect_refused([&] { slice(prerolls, plane, {.max_triangles = 9, .colour_tolerance = 1}); },
+                   "a number of triangles");
+    const std::vector<double> isovalues{1, 2};
+    expect_refused([&] { isosurfaces<3>(prerolls, isovalues, {.max_triangles = 9}); }, "several");
     expect_refused([&] { slice(prerolls, plane, {.threshold = 1, .slice_distance = 1}); },
                    "whose edges are collapsed");
     expect_refused(

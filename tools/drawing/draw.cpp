@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/error.hpp>
 
 #include "drawing/drawing.hpp"
@@ -37,16 +36,14 @@ void draw_isolines(Drawn& d, const std::vector<double>& values) {
     d.seconds += meter.seconds();
 }
 
-/// The box as a region of a field; none where there is no box.
-std::optional<nestgrid::Region> region_of(const std::optional<FineBox>& box, int dimension,
-                                          const InputField& field) {
-    if (!box) return std::nullopt;
-    return field.region([bounds = box->bounds, dimension](const nestgrid::Point& x) {
-        for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d) {
-            if (x[d] < bounds[2 * d] || x[d] > bounds[2 * d + 1]) return false;
-        }
-        return true;
-    });
+/// The box as a region of a field.
+nestgrid::RegionRequest region_of(const FineBox& box, int dimension) {
+    nestgrid::Box domain;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d) {
+        domain.low[d] = box.bounds[2 * d];
+        domain.high[d] = box.bounds[2 * d + 1];
+    }
+    return {domain, box.threshold};
 }
 
 /// The field of an input, or those of its parts where it has several labels and one isosurface is
@@ -130,18 +127,18 @@ private:
     void draw_part(const InputField& part, const std::optional<double>& label) {
         nestgrid::Projection projection = options_.surface.projection;
         projection.lens = request_.lens;
+        if (request_.box) projection.region = region_of(*request_.box, field_.dimension);
         const Moments moments(part, options_.time, options_.input.path, std::move(projection),
                               request_.isovalue, options_.surface.threads,
                               [&](double share) { progress_.part(share); });
         preroll(moments);
-        const auto region = region_of(request_.box, field_.dimension, part);
         const Telling tell = [&](const std::string& work) {
             if (!work.empty()) return progress_.show(work);
             progress_.show("drawing", field_.surfaces.size(), expected_);
         };
         moments.for_each([&](const Moment& moment) {
-            draw_moment(moment, moments.executor(), options_.surface, request_,
-                        region ? &*region : nullptr, tell, [&](Drawn&& d) {
+            draw_moment(moment, moments.executor(), options_.surface, request_, tell,
+                        [&](Drawn&& d) {
                             d.label = label;
                             take(std::move(d));
                         });

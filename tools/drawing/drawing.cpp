@@ -9,7 +9,6 @@
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
-#include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/error.hpp>
 
 #include "drawing/meter.hpp"
@@ -63,13 +62,12 @@ class Drawing {
 public:
     Drawing(const nestgrid::Hierarchy<Real>& hierarchy, const Moment& moment,
             const nestgrid::Executor& executor, const SurfaceOptions& options,
-            const DrawingRequest& request, const nestgrid::Region* region, const Telling& tell)
+            const DrawingRequest& request, const Telling& tell)
         : hierarchy_{hierarchy},
           moment_{moment},
           executor_{executor},
           options_{options},
           request_{request},
-          region_{region},
           tell_{tell} {
         check(request, options, hierarchy.facts());
     }
@@ -102,11 +100,7 @@ private:
     const nestgrid::Bounds& bounds() const { return criteria().bounds(); }
     bool in_plane() const { return hierarchy_.facts().dimension == 2; }
 
-    AnyCriterion criterion_at(double threshold) const {
-        if (!region_) return criteria().at(threshold);
-        return nestgrid::fine_inside(*region_, criteria().indicator(), threshold,
-                                     request_.box->threshold);
-    }
+    AnyCriterion criterion_at(double threshold) const { return criteria().at(threshold); }
     /// The same as a function.
     auto criteria_at() const {
         return [this](double threshold) { return criterion_at(threshold); };
@@ -374,7 +368,6 @@ private:
     const nestgrid::Executor& executor_;
     const SurfaceOptions& options_;
     const DrawingRequest& request_;
-    const nestgrid::Region* region_;
     const Telling& tell_;
 };
 
@@ -386,10 +379,9 @@ bool is_drawn_exactly(const DrawingRequest& request, const SurfaceOptions& optio
 }
 
 void draw_moment(const Moment& moment, const nestgrid::Executor& executor,
-                 const SurfaceOptions& options, const DrawingRequest& request,
-                 const nestgrid::Region* region, const Telling& tell,
+                 const SurfaceOptions& options, const DrawingRequest& request, const Telling& tell,
                  const std::function<void(Drawn&&)>& take) {
     moment.visit([&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy) {
-        Drawing<Real>(hierarchy, moment, executor, options, request, region, tell).draw_all(take);
+        Drawing<Real>(hierarchy, moment, executor, options, request, tell).draw_all(take);
     });
 }

@@ -14,12 +14,10 @@ bool is_drawn_exactly(const DrawingRequest& request, const SurfaceOptions& optio
 using Telling = std::function<void(const std::string& work)>;
 
 /// Draws the surface at each threshold or number of triangles.
-/// \param region of request.box; null where there is none
 /// \param take takes each surface
 /// \throw nestgrid::InvalidInput where the surface is none of a field of this dimension, or options
 ///        do not go together; and as isosurface(), slice(), shading()
 /// \throw nestgrid::GridError
 void draw_moment(const Moment& moment, const nestgrid::Executor& executor,
-                 const SurfaceOptions& options, const DrawingRequest& request,
-                 const nestgrid::Region* region, const Telling& tell,
+                 const SurfaceOptions& options, const DrawingRequest& request, const Telling& tell,
                  const std::function<void(Drawn&&)>& take);

@@ -23,9 +23,6 @@ void set_samples(InputField& field, const nestgrid::LatticeGeometry<dimension>& 
     field.frames =
         nestgrid::shared_frames(grid, std::move(fields), std::move(times), std::move(memory));
     field.nodes = grid->sample_count();
-    field.region = [grid](const InputField::Inside& inside) {
-        return nestgrid::Region(*grid, inside);
-    };
     field.value_count = each.front().size();
     field.value = [samples = each.front()](std::size_t i) {
         return static_cast<double>(samples[i]);

@@ -7,18 +7,13 @@
 #include <array>
 #include <optional>
 
-#include <nestgrid/algorithms/region.hpp>
-
 #include "drawing/frame_field.hpp"
 #include "input/frame_files.hpp"
 #include "options/command_line.hpp"
 
 struct InputField : FrameField {
-    using Inside = std::function<bool(const nestgrid::Point&)>;
-
     std::size_t nodes = 0;          ///< or samples
     std::size_t leaf_elements = 0;  ///< of the finest grid
-    std::function<nestgrid::Region(const Inside& inside)> region{};
     /// The values of the first frame, in any order; some may be there more than once.
     std::size_t value_count = 0;
     std::function<double(std::size_t)> value{};

@@ -50,9 +50,6 @@ InputField frames_of(nestgrid::StoredHierarchy<Family> stored, const Input& inpu
     field.name = named.name;
     field.nodes = grid->used_node_count();
     field.leaf_elements = grid->leaf_count();
-    field.region = [grid](const InputField::Inside& inside) {
-        return nestgrid::Region(*grid, inside);
-    };
     field.value_count = kept->leaf_nodes.size();
     field.value = [kept, values = all.frame(named, 0)](std::size_t i) {
         return values[kept->leaf_nodes[i]];

@@ -158,9 +158,6 @@ InputField plotfile_frames(std::vector<AmrexPlotfile> files, const Input& input,
     field.name = first_name;
     field.nodes = grid->used_node_count();
     field.leaf_elements = grid->leaf_count();
-    field.region = [grid](const InputField::Inside& inside) {
-        return nestgrid::Region(*grid, inside);
-    };
     field.value_count = kept->cells.count();
     field.value = [kept, arrays = kept->files.front().template arrays<dim, Real>(
                              number_of(kept->files.front(), first_name))](std::size_t i) {

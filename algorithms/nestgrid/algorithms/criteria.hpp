@@ -6,6 +6,7 @@
 
 #include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/prerolls.hpp>
+#include <nestgrid/algorithms/region.hpp>
 
 namespace nestgrid {
 
@@ -35,6 +36,7 @@ private:
     Projection projection_;
     ChosenIndicator chosen_;
     std::shared_ptr<const SweptIndicator> sizes_;  // where there is a lens
+    std::optional<Region> region_;
 };
 
 }  // namespace nestgrid

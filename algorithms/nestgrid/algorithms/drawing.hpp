@@ -20,11 +20,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/least_threshold.hpp>
+#include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/prerolls.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/shading.hpp>
@@ -56,6 +58,22 @@ Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
                                             const Projection& projection,
                                             const IsosurfaceOptions& options = {},
                                             const Work& work = {});
+
+/// Several isosurfaces in one walk (isosurfaces.hpp), one result for each isovalue, at one
+/// threshold.
+/// \throw InvalidInput also for collapses, distances that are kept and a number of triangles
+template <int dimension>
+std::vector<Isosurface<dimension>> isosurfaces(Prerolls& prerolls,
+                                               std::span<const double> isovalues,
+                                               const Projection& projection,
+                                               const IsosurfaceOptions& options = {},
+                                               const Work& work = {});
+
+/// How far an isosurface is from the data and from that of all data, which is drawn for it
+/// (measured_error.hpp).
+/// \param points about how many to measure at, on each of both
+MeasuredError measure_error(Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
+                            std::size_t points = 200000, const Work& work = {});
 
 /// The slice of a field of dimension 3. Where all data are asked for, it needs no preroll. Colours
 /// keep the threshold where edges are collapsed, or the least one with a number of triangles.

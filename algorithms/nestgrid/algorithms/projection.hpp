@@ -22,6 +22,12 @@ struct LensRequest {
     double slope = 0.5;  ///< by which sizes may grow with the distance
 };
 
+/// A part of space that is drawn more finely (region.hpp).
+struct RegionRequest {
+    Distance distance;     ///< from it, not positive inside (domains.hpp)
+    double threshold = 0;  ///< inside, in the units of the indicator
+};
+
 /// Which elements may stop.
 struct Projection {
     /// In the units of the indicator. Nothing: 0, or with a lens infinity, so that the lens decides
@@ -36,6 +42,8 @@ struct Projection {
     /// (blended.hpp), at least 1.
     double blend = 1;
     std::optional<LensRequest> lens{};
+    /// Not while nodes move, nor where edges are collapsed.
+    std::optional<RegionRequest> region{};
     /// Whether edges are taken away as long as the threshold stays the error that is kept
     /// (collapse.hpp). Then max_triangles asks for the least such error, or distance.
     bool collapse = false;
@@ -45,6 +53,10 @@ struct Projection {
     /// How far a slice along a curved function whose edges are collapsed may be from that of all
     /// data, there and back, in units of length; 0 keeps its place (collapse_colours.hpp).
     double slice_distance = 0;
+    /// Triangles of slices, boundaries and shadings in the plane are split until colours follow
+    /// P_S U within this, in the units of the data (refine_colours.hpp); 0 splits none. Beside
+    /// neither collapses nor a number of triangles.
+    double colour_tolerance = 0;
 
     /// The threshold where none is searched for.
     double least_threshold() const {

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include <nestgrid/algorithms/criterion.hpp>
-#include <nestgrid/detail/erase.hpp>
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid {
@@ -32,11 +32,12 @@ public:
     Region() = default;
     /// \param inside whether a point lies in the region: bool(const Point&)
     template <class Grid, class Inside>
-        requires(!std::derived_from<Grid, Hierarchy<float>>)
+        requires(!std::convertible_to<const Grid&, FieldOnGrid>)
     Region(const Grid& grid, Inside&& inside)
-        : Region(erase(grid, ZeroField<Grid>{}),
+        : Region(FieldOnGrid(erase(grid, ZeroField<Grid>{})),
                  std::function<bool(const Point&)>(std::ref(inside))) {}
-    Region(const Hierarchy<float>& hierarchy, const std::function<bool(const Point&)>& inside);
+    /// \param field whose values are not asked for
+    Region(const FieldOnGrid& field, const std::function<bool(const Point&)>& inside);
 
     bool contains(NodeKey node) const {
         return dense_.empty() ? sparse_.find(node) != nullptr
@@ -51,9 +52,11 @@ public:
 private:
     struct Present {};
 
-    void sweep_stars(const Hierarchy<float>& hierarchy,
+    template <class Real>
+    void sweep_stars(const Hierarchy<Real>& hierarchy,
                      const std::function<bool(const Point&)>& inside);
-    void sweep_levels(const Hierarchy<float>& hierarchy,
+    template <class Real>
+    void sweep_levels(const Hierarchy<Real>& hierarchy,
                       const std::function<bool(const Point&)>& inside);
 
     std::optional<std::uint64_t> epoch_;  // of the grid, where there is one
