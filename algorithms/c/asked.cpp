@@ -63,27 +63,32 @@ int thread_count(int threads) {
 
 bool is_simplex(int shape) { return shape == NESTGRID_TRIANGLE || shape == NESTGRID_TETRAHEDRON; }
 
-/// The lens that a C code describes.
-/// \throw InvalidInput where its table is too small, or a number is out of range
-LensRequest lens_of(const nestgrid_lens& given) {
-    if (given.size < sizeof(nestgrid_lens)) {
-        throw InvalidInput("the table of the lens is too small: its size says " +
+/// The distance from the domain of a lens or a region that a C code describes.
+/// \param name of it
+/// \throw InvalidInput where its table is too small, or lacks the function
+template <class Table>
+Distance distance_of(const Table& given, const std::string& name) {
+    if (given.size < sizeof(Table)) {
+        throw InvalidInput("the table of the " + name + " is too small: its size says " +
                            std::to_string(given.size) + " bytes");
     }
     if (given.distance == nullptr) {
-        throw InvalidInput("the table of the lens lacks the function 'distance'");
+        throw InvalidInput("the table of the " + name + " lacks the function 'distance'");
     }
+    return [given, name = "the operation 'distance' of the " + name](const Point& x) {
+        double distance = 0;
+        require_success(given.distance(given.self, x.data(), &distance), name.c_str());
+        return distance;
+    };
+}
+
+/// The lens that a C code describes.
+/// \throw InvalidInput where its table is too small, or a number is out of range
+LensRequest lens_of(const nestgrid_lens& given) {
+    LensRequest lens{.distance = distance_of(given, "lens"), .finest = given.finest};
     if (!(given.finest >= 0) || !(given.coarsest >= 0)) {
         throw InvalidInput("a size of the lens is negative or not a number");
     }
-    LensRequest lens{.distance =
-                         [given](const Point& x) {
-                             double distance = 0;
-                             require_success(given.distance(given.self, x.data(), &distance),
-                                             "the operation 'distance' of the lens");
-                             return distance;
-                         },
-                     .finest = given.finest};
     if (given.coarsest > 0) lens.coarsest = given.coarsest;
     if (given.slope != 0) lens.slope = given.slope;
     return lens;
@@ -115,6 +120,9 @@ Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid, const nes
     require_range(options_);
     require_one_wish(options_);
     if (options_.lens != nullptr) lens_ = lens_of(*options_.lens);
+    if (options_.region != nullptr) {
+        region_ = {distance_of(*options_.region, "region"), options_.region->threshold};
+    }
     const int threads = thread_count(options_.threads);
     if (threads == 1) {
         executor_ = std::make_unique<SequentialExecutor>();
@@ -149,9 +157,11 @@ Projection Asked::projection(const FieldOnGrid& field, bool level_sets) const {
             .indicator = indicator_for(field, level_sets),
             .blend = options_.blend == 0 ? 1 : options_.blend,
             .lens = lens_,
+            .region = region_,
             .collapse = options_.collapse != 0,
             .keeps_distance = options_.keep_distance != 0,
-            .slice_distance = options_.slice_distance};
+            .slice_distance = options_.slice_distance,
+            .colour_tolerance = options_.colour_tolerance};
 }
 
 Prerolls& Asked::kept_prerolls(const FieldOnGrid& field) const {

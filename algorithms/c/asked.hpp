@@ -51,6 +51,7 @@ private:
 
     nestgrid_options options_{};
     std::optional<LensRequest> lens_;
+    std::optional<RegionRequest> region_;
     const nestgrid_grid* grid_;
     const nestgrid_field* field_;
     std::unique_ptr<const Executor> executor_;

@@ -77,6 +77,31 @@ std::size_t attribute_count(const Surface<dimension>& surface) {
     return surface.vertices.empty() ? 0 : surface.attributes.size() / surface.vertices.size();
 }
 
+/// Empties a struct that begins with its size.
+/// \throw InvalidInput where it is NULL, or too small for that
+template <class Told>
+void begin_told(Told* out, const std::string& name) {
+    if (out == nullptr || out->size < sizeof(out->size)) {
+        throw InvalidInput(name + " are NULL, or their size is not that of the struct");
+    }
+    write_result(Told{}, out);
+}
+
+constexpr std::uint64_t default_points = 200000;
+
+nestgrid_measure_of in_c(const Measured& measured) {
+    return {measured.greatest, measured.mean, measured.rms};
+}
+nestgrid_measured in_c(const MeasuredError& measured) {
+    nestgrid_measured told{};
+    told.value = in_c(measured.value);
+    told.distance = in_c(measured.distance);
+    told.back = in_c(measured.back);
+    told.reach = measured.reach;
+    told.points = measured.points;
+    return told;
+}
+
 template <class T>
 const T* data_or_null(const std::vector<T>& values) {
     return values.empty() ? nullptr : values.data();
@@ -167,13 +192,33 @@ extern "C" int nestgrid_height_field(const nestgrid_grid* grid, const nestgrid_f
     });
 }
 
+extern "C" int nestgrid_measure(const nestgrid_grid* grid, const nestgrid_field* field,
+                                const nestgrid_surface* surface, double isovalue, uint64_t points,
+                                const nestgrid_options* options, nestgrid_measured* out,
+                                char* message, size_t message_size) {
+    return without_exceptions(message, message_size, [&] {
+        begin_told(out, "the measured errors");
+        if (surface == nullptr || surface->owner == nullptr || surface->dimension != 3) {
+            throw InvalidInput("there is no isosurface in space to measure");
+        }
+        const Surface<3>& drawn = static_cast<Drawn<3>*>(surface->owner)->result.surface;
+        const Asked asked(options, grid, field);
+        return with_tables(grid, field, {}, [&](const auto& hierarchy) {
+            const MeasuredError measured =
+                asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
+                    return measure_error(prerolls, drawn, isovalue,
+                                         points == 0 ? default_points : points, work);
+                });
+            write_result(in_c(measured), out);
+            return 0;
+        });
+    });
+}
+
 extern "C" int nestgrid_details(const nestgrid_surface* surface, nestgrid_surface_details* out,
                                 char* message, size_t message_size) {
     return without_exceptions(message, message_size, [&] {
-        if (out == nullptr || out->size < sizeof(out->size)) {
-            throw InvalidInput("the details are NULL, or their size is not that of the struct");
-        }
-        write_result(nestgrid_surface_details{}, out);
+        begin_told(out, "the details");
         if (surface == nullptr || surface->owner == nullptr) {
             throw InvalidInput("there is no surface to tell details of");
         }

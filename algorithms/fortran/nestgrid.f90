@@ -131,6 +131,13 @@ module nestgrid
         real(c_double) :: slope = 0.0_c_double
     end type nestgrid_lens
 
+    type, bind(c) :: nestgrid_region
+        integer(c_size_t) :: size = 0_c_size_t
+        type(c_ptr) :: self = c_null_ptr
+        type(c_funptr) :: distance = c_null_funptr
+        real(c_double) :: threshold = 0.0_c_double
+    end type nestgrid_region
+
     type, bind(c) :: nestgrid_options
         integer(c_size_t) :: size = 0_c_size_t
         real(c_double) :: threshold = 0.0_c_double
@@ -154,6 +161,8 @@ module nestgrid
         real(c_double) :: blend = 0.0_c_double
         type(c_ptr) :: lens = c_null_ptr
         real(c_double) :: slice_distance = 0.0_c_double
+        type(c_ptr) :: region = c_null_ptr
+        real(c_double) :: colour_tolerance = 0.0_c_double
     end type nestgrid_options
 
     type, bind(c) :: nestgrid_surface
@@ -169,6 +178,21 @@ module nestgrid
         integer(c_int) :: bound_says_nothing = 0_c_int
         type(c_ptr) :: owner = c_null_ptr
     end type nestgrid_surface
+
+    type, bind(c) :: nestgrid_measure_of
+        real(c_double) :: greatest = 0.0_c_double
+        real(c_double) :: mean = 0.0_c_double
+        real(c_double) :: rms = 0.0_c_double
+    end type nestgrid_measure_of
+
+    type, bind(c) :: nestgrid_measured
+        integer(c_size_t) :: size = 0_c_size_t
+        type(nestgrid_measure_of) :: value
+        type(nestgrid_measure_of) :: distance
+        type(nestgrid_measure_of) :: back
+        real(c_double) :: reach = 0.0_c_double
+        integer(c_int64_t) :: points = 0_c_int64_t
+    end type nestgrid_measured
 
     type, bind(c) :: nestgrid_surface_details
         integer(c_size_t) :: size = 0_c_size_t
@@ -292,6 +316,20 @@ module nestgrid
             character(kind=c_char), intent(inout) :: message(*)
             integer(c_size_t), value :: message_size
         end function nestgrid_height_field
+
+        integer(c_int) function nestgrid_measure(grid, field, surface, isovalue, points, &
+                options, out, message, message_size) bind(c, name="nestgrid_measure")
+            import
+            type(nestgrid_grid), intent(in) :: grid
+            type(nestgrid_field), intent(in) :: field
+            type(nestgrid_surface), intent(in) :: surface
+            real(c_double), value :: isovalue
+            integer(c_int64_t), value :: points
+            type(nestgrid_options), intent(in), optional :: options
+            type(nestgrid_measured), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_measure
 
         integer(c_int) function nestgrid_details(surface, out, message, message_size) &
             bind(c, name="nestgrid_details")

@@ -150,6 +150,34 @@ TEST(IsosurfacesForC, AreDrawnUnderEveryProjection) {
         scene.options.threshold = 0.1;
         scene.options.lens = &in_c;
         expect({.threshold = 0.1, .lens = lens});
+        const nestgrid_region region{sizeof(region), nullptr, distance, 0.01};
+        scene.options.threshold = 0.4;
+        scene.options.region = &region;
+        expect({.threshold = 0.4, .region = RegionRequest{lens.distance, 0.01}});
+    }
+}
+
+TEST(MeasuresForC, AreThoseOfTheLibrary) {
+    for (const auto& forest : forests<3>()) {
+        Scene<3> scene(forest);
+        scene.options.threshold = 0.2;
+        nestgrid_surface surface{};
+        ASSERT_EQ(nestgrid_isosurface_with(&scene.in_c.table, &scene.field, isovalue,
+                                           &scene.options, &surface, nullptr, 0),
+                  0);
+        nestgrid_measured measured{};
+        measured.size = sizeof(measured);
+        ASSERT_EQ(nestgrid_measure(&scene.in_c.table, &scene.field, &surface, isovalue, 500,
+                                   &scene.options, &measured, nullptr, 0),
+                  0);
+        nestgrid_surface_free(&surface);
+        Prerolls prerolls(FieldOnGrid(scene.grid, scene.first));
+        const MeasuredError direct = measure_error(
+            prerolls, isosurface<3>(prerolls, isovalue, {.threshold = 0.2}).surface, isovalue, 500);
+        EXPECT_EQ(measured.value.greatest, direct.value.greatest);
+        EXPECT_EQ(measured.distance.mean, direct.distance.mean);
+        EXPECT_EQ(measured.back.rms, direct.back.rms);
+        EXPECT_EQ(measured.points, direct.points);
     }
 }
 

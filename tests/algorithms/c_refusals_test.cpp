@@ -132,6 +132,31 @@ TEST_F(RefusalsForC, OfProjectionsAreSentences) {
     options.at_nodes = 1;
     EXPECT_EQ(isosurface_says(), "edges of surfaces with vertices at nodes are not collapsed");
     start_again();
+    nestgrid_region region{};
+    options.region = &region;
+    EXPECT_EQ(isosurface_says(), "the table of the region is too small: its size says 0 bytes");
+    region.size = sizeof(region);
+    EXPECT_EQ(isosurface_says(), "the table of the region lacks the function 'distance'");
+    region.distance = [](void*, const double*, double*) { return 5; };
+    EXPECT_EQ(isosurface_says(), "the operation 'distance' of the region failed with code 5");
+    region.threshold = -1;
+    EXPECT_EQ(isosurface_says(), "the threshold in the region is not a number >= 0");
+    start_again();
+    options.colour_tolerance = -1;
+    EXPECT_EQ(isosurface_says(), "the tolerance of colours is not a finite number >= 0");
+    nestgrid_measured measured{};
+    EXPECT_EQ(refusal([&](char* text, std::size_t size) {
+                  return nestgrid_measure(nullptr, nullptr, nullptr, isovalue, 0, nullptr,
+                                          &measured, text, size);
+              }),
+              "the measured errors are NULL, or their size is not that of the struct");
+    measured.size = sizeof(measured);
+    EXPECT_EQ(refusal([&](char* text, std::size_t size) {
+                  return nestgrid_measure(nullptr, nullptr, nullptr, isovalue, 0, nullptr,
+                                          &measured, text, size);
+              }),
+              "there is no isosurface in space to measure");
+    start_again();
     options.keep_distance = 1;
     const double value = 0.2;
     EXPECT_EQ(lines_say(&value, 1), "distances are kept by isosurfaces in space only");

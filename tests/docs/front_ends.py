@@ -32,7 +32,7 @@ TABLE = {
     "What is drawn": {
         "an isosurface": "isosurface nestgrid_isosurface_with isosurface isovalue isosurface IsosurfaceSource "
         "NestgridIsosurface",
-        "several in one walk": "isosurfaces a a a a a a",
+        "several in one walk": "isosurfaces a a a isosurfaces a a",
         "a series of them": "IsosurfaceSeries a a a a a a",
         "a band between two": "isoband nestgrid_isoband a a isoband IsobandSource a",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
@@ -48,7 +48,7 @@ TABLE = {
         "values at points": "probe nestgrid_probe probe a probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines a a",
         "cracks, area, volume": "surface_report f i a report b b",
-        "measured errors": "measure_error a --measure a a a a",
+        "measured errors": "measure_error nestgrid_measure --measure a measure a a",
     },
     "How finely": {
         "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
@@ -64,7 +64,7 @@ TABLE = {
         "an indicator by name": "indicators indicator --indicator indicator indicator SetIndicator Indicator",
         "nodes that move": "Blended blend --blend a blend SetBlend a",
         "a lens": "Lens lens --lens lens lens SetLens a",
-        "a region": "Region a --box a a a a",
+        "a region": "Region region --box a region SetProjection a",
         "a criterion of one's own": "Criterion g g g g g g",
         "times between frames": "Frames a --time time Frames a TimestepValues",
     },
@@ -75,7 +75,7 @@ TABLE = {
         "cuts on finest data": "Cuts finest_cuts --cuts a cuts SetFinestCuts a",
         "the element of a triangle": "elements elements --elements outlines elements a a",
         "places in elements": "reference reference a a a a a",
-        "colours that follow the data": "refine_colours a --colour-tolerance a a a a",
+        "colours that follow the data": "refine_colours colour_tolerance --colour-tolerance a colour_tolerance SetProjection a",
         "threads": "Executor threads --threads e threads SetExecutor e",
         "work that is ended": "Watch progress h h h a a",
     },

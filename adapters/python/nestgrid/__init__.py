@@ -14,7 +14,7 @@ from __future__ import annotations
 from ._arguments import InvalidType
 from ._budget import FrameBudget
 from ._fields import Field
-from ._lens import Domain, Lens, ball, box, cone, half_space, polygon, view
+from ._lens import Domain, Lens, Region, ball, box, cone, half_space, polygon, view
 from ._load import load
 from ._nestgrid import GridError, InvalidInput, IoError, __version__
 from ._results import Lines, Segments, Surface
@@ -33,6 +33,7 @@ __all__ = [
     "Lens",
     "Lines",
     "Octree",
+    "Region",
     "Segments",
     "Surface",
     "Volume",

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Iterable, Literal, Sequence, Union
+from typing import Any, Iterable, Sequence, Union
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ._arguments import (
     SurfaceIndicator,
     flag,
     name_of,
+    not_a,
     not_negative,
     number,
     numbers,
@@ -24,12 +25,20 @@ from ._arguments import (
     several,
     shape,
     takes,
+    whole,
 )
-from ._lens import Lens, LensLike
+from ._lens import LensLike, RegionLike
 from ._nestgrid import InvalidInput
+from ._projection import coloured_projection_of, projection_of, surface_projection_of
 from ._results import Lines, Surface
 
 Numbers = Union[Sequence[float], np.ndarray]
+
+
+def _surface(value: Any) -> Surface:
+    if not isinstance(value, Surface):
+        raise not_a("a Surface, such as isosurface() returns", value)
+    return value
 
 
 class Field:
@@ -96,6 +105,7 @@ class Field:
         indicator: SurfaceIndicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        region: RegionLike | None = None,
         error: float | None = None,
         distance: float | None = None,
         distance_field: bool = False,
@@ -134,17 +144,17 @@ class Field:
         Raises InvalidInput where an argument makes no sense, a value is not finite, or even the
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
         """
-        projection = _surface_projection(
-            threshold, max_triangles, indicator, blend, lens, error, distance, collapse
+        projection = surface_projection_of(
+            threshold, max_triangles, indicator, blend, lens, error, distance, collapse, region
         )
         if collapse:
             kept = error is not None or distance is not None or max_triangles is not None
             nearest = max_triangles is not None and indicator == "slope"
             other = indicator != "offset" and not nearest
-            if not kept or cap or at_nodes or lens is not None or other:
+            if not kept or cap or at_nodes or lens is not None or region is not None or other:
                 raise InvalidInput(
                     "collapse needs an error, a distance or max_triangles, and neither cap, "
-                    "at_nodes, lens nor indicator, but for slope beside max_triangles"
+                    "at_nodes, lens, region nor indicator, but for slope beside max_triangles"
                 )
         if distance_field and (distance is None or lens is not None):
             raise InvalidInput("distance_field needs a distance, and no lens")
@@ -162,6 +172,73 @@ class Field:
             _nestgrid.isosurface(self._source, level, *options, projection, threads), self
         )
 
+    @takes(
+        levels=numbers,
+        indicator=name_of(SurfaceIndicator),
+        cap=flag,
+        at_nodes=flag,
+        cuts=name_of(Cuts),
+    )
+    def isosurfaces(
+        self,
+        levels: float | Iterable[float] | np.ndarray,
+        threshold: float | None = None,
+        *,
+        indicator: SurfaceIndicator = "offset",
+        blend: float = 1,
+        lens: LensLike | None = None,
+        region: RegionLike | None = None,
+        error: float | None = None,
+        normals: bool = True,
+        cap: bool = False,
+        at_nodes: bool = False,
+        cuts: Cuts = "linear",
+        elements: bool = False,
+        threads: int = 0,
+    ) -> list[Surface]:
+        """The surfaces of several values, in one pass: what isosurface() draws of each.
+
+        levels    one number or several, in the units of the data
+        indicator as elsewhere, or "cut": the error of these surfaces alone; "slope": the distance
+        cap       whether to close the surfaces along the boundary of the domain, around what is
+                  at least the level
+        at_nodes  whether to draw no slivers around nodes at which the field has the value
+        cuts      where edges of coarse elements are cut: "linear" between their ends, or "finest",
+                  where the finest data have the value
+
+        Raises InvalidInput as isosurface().
+        """
+        if error is None:
+            projection = projection_of(threshold, None, indicator, blend, lens, None, region)
+        else:
+            projection = surface_projection_of(
+                threshold, None, indicator, blend, lens, error, None, False, region
+            )
+        options = (normals, cap, elements, at_nodes, cuts == "finest")
+        drawn = _nestgrid.isosurfaces(
+            self._source, several(levels), *options, projection, threads
+        )
+        return [Surface._of(each, self) for each in drawn]
+
+    @takes(surface=_surface, level=number, points=whole(1, 2**40))
+    def measure(
+        self, surface: Surface, level: float, points: int = 200_000, threads: int = 0
+    ) -> dict[str, float]:
+        """How far an isosurface is from the field and from the surface of all its data.
+
+        surface  an isosurface of this field, however coarse
+        level    its value
+        points   about how many to measure at, on it and on the surface of all data
+
+        Returns the greatest, "..._mean" and "..._rms" of "error": |data - level| on the surface, in
+        the units of the data; "distance": from it to the surface of all data, in units of length;
+        "distance_back": from that to it; "reach": no point is farther from those that were
+        measured; "points": how many these were.
+
+        Raises InvalidInput also for a field of dimension 2.
+        """
+        return _nestgrid.measure(self._source, surface._data, level, points, threads)
+
     @takes(low=number, high=number, indicator=name_of(SurfaceIndicator))
     def isoband(
         self,
@@ -172,6 +249,7 @@ class Field:
         indicator: SurfaceIndicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        region: RegionLike | None = None,
         error: float | None = None,
         normals: bool = True,
         elements: bool = False,
@@ -185,11 +263,11 @@ class Field:
         It is open on the boundary of the domain only. Raises InvalidInput also unless low < high,
         and for a field of dimension 2.
         """
-        projection = _projection(threshold, None, indicator, blend, lens, error)
+        projection = projection_of(threshold, None, indicator, blend, lens, error, region)
         options = (low, high, normals, elements)
         return Surface._of(_nestgrid.isoband(self._source, *options, projection, threads), self)
 
-    @takes()
+    @takes(collapse=flag, colour_tolerance=not_negative)
     def boundary(
         self,
         threshold: float | None = None,
@@ -198,17 +276,29 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        region: RegionLike | None = None,
         error: float | None = None,
+        collapse: bool = False,
+        colour_tolerance: float = 0,
         elements: bool = False,
         threads: int = 0,
     ) -> Surface:
         """The boundary of the domain, closed, with the field at its vertices as attributes[:, 0].
 
+        collapse  whether to take edges away while error is kept, or down to max_triangles of the
+                  least error: one of these must be given
+        colour_tolerance  split triangles until colours follow the field within this, in the units
+                  of the data; 0: not at all
+
         Hidden data are outside. Raises InvalidInput also for a field of dimension 2.
         """
-        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
+        projection = coloured_projection_of(
+            threshold, max_triangles, indicator, blend, lens, error, region, collapse,
+            colour_tolerance
+        )
+        options = (elements, collapse)
         return Surface._of(
-            _nestgrid.boundary(self._source, elements, projection, threads), self
+            _nestgrid.boundary(self._source, *options, projection, threads), self
         )
 
     @takes(
@@ -217,6 +307,7 @@ class Field:
         cylinder=optional(shape(("the point", 3), ("the axis", 3), ("the radius", 0))),
         distance=optional(number),
         collapse=flag,
+        colour_tolerance=not_negative,
     )
     def slice(
         self,
@@ -229,9 +320,11 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        region: RegionLike | None = None,
         error: float | None = None,
         distance: float | None = None,
         collapse: bool = False,
+        colour_tolerance: float = 0,
         normals: bool = False,
         elements: bool = False,
         threads: int = 0,
@@ -244,7 +337,10 @@ class Field:
         distance  of a sphere or a cylinder with collapse: no point of what is left is farther from
                   the slice of all data, and none of that from what is left, in units of length.
                   None: the slice keeps its place
-        collapse  whether to take edges away while error, which must be given, is kept
+        collapse  whether to take edges away while error is kept, or down to max_triangles of the
+                  least error: one of these must be given
+        colour_tolerance  split triangles until colours follow the field within this, in the units
+                  of the data; 0: not at all
 
         Raises InvalidInput unless there is one of plane, sphere and cylinder, and as isosurface().
         """
@@ -254,13 +350,15 @@ class Field:
             raise InvalidInput("slice(): a slice needs one of plane, sphere and cylinder")
         ((name, parts),) = shapes
         function = getattr(_nestgrid, name)(*parts)
-        _require_error(collapse, error, lens)
         if distance is not None:
             if not collapse or plane is not None:
                 raise InvalidInput("distance needs collapse, and a sphere or a cylinder")
             if not distance > 0:
                 raise InvalidInput("distance is not a number > 0: leave it out to keep the place")
-        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
+        projection = coloured_projection_of(
+            threshold, max_triangles, indicator, blend, lens, error, region, collapse,
+            colour_tolerance
+        )
         options = (normals, elements, collapse, distance or 0)
         return Surface._of(
             _nestgrid.slice(self._source, function, *options, projection, threads), self
@@ -275,6 +373,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        region: RegionLike | None = None,
         error: float | None = None,
         threads: int = 0,
     ) -> Lines:
@@ -284,7 +383,7 @@ class Field:
 
         Raises InvalidInput also for a field of dimension 3: its slices have isolines().
         """
-        projection = _projection(threshold, None, indicator, blend, lens, error)
+        projection = projection_of(threshold, None, indicator, blend, lens, error, region)
         return Lines._of(
             _nestgrid.isolines(self._source, several(values), projection, threads), self
         )
@@ -300,6 +399,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        region: RegionLike | None = None,
         error: float | None = None,
         collapse: bool = False,
         elements: bool = False,
@@ -310,13 +410,15 @@ class Field:
         scale     units of length per unit of the data; None: the triangles stay in the plane
         flatness  at least 0, in the units of the data: quadrilaterals that differ by more from two
                   triangles get a vertex in their middle
-        collapse  whether to take edges away while error, which must be given, is kept
+        collapse  whether to take edges away while error is kept, or down to max_triangles of the
+                  least error: one of these must be given
 
         Raises InvalidInput also for a field of dimension 3, and where even the coarsest triangles
         are more than max_triangles.
         """
-        _require_error(collapse, error, lens)
-        projection = _projection(threshold, max_triangles, indicator, blend, lens, error)
+        projection = coloured_projection_of(
+            threshold, max_triangles, indicator, blend, lens, error, region, collapse, 0
+        )
         options = (scale, flatness, elements, collapse)
         return Surface._of(
             _nestgrid.height_field(self._source, *options, projection, threads), self
@@ -331,6 +433,7 @@ class Field:
         indicator: Indicator = "offset",
         blend: float = 1,
         lens: LensLike | None = None,
+        region: RegionLike | None = None,
         error: float | None = None,
         threads: int = 0,
     ) -> np.ndarray:
@@ -345,7 +448,7 @@ class Field:
             raise InvalidInput(f"probe(): points have {width} coordinates, not {self.dimension}")
         at = np.zeros((*points.shape[:-1], 3))
         at[..., :width] = points
-        projection = _projection(threshold, None, indicator, blend, lens, error)
+        projection = projection_of(threshold, None, indicator, blend, lens, error, region)
         return _nestgrid.probe(self._source, at, projection, threads).reshape(points.shape[:-1])
 
     def _size(self) -> str:
@@ -372,54 +475,3 @@ class Field:
         if self.unit:
             rows.append(("unit of length", self.unit))
         return _html.table(f"nestgrid.{type(self).__name__}", rows)
-
-
-def _surface_projection(
-    threshold: float | None,
-    max_triangles: int | None,
-    indicator: SurfaceIndicator,
-    blend: float,
-    lens: LensLike | None,
-    error: float | None,
-    distance: float | None,
-    collapse: bool,
-) -> _nestgrid.Projection:
-    """The projection of an isosurface, which has an error and a distance of its own."""
-    if collapse and max_triangles is not None and (threshold, error, distance) == (None,) * 3:
-        least: Literal["error", "slope"] = "slope" if indicator == "slope" else "error"
-        return _nestgrid.Projection(None, max_triangles, least, blend, None)
-    if error is None and distance is None:
-        return _projection(threshold, max_triangles, indicator, blend, lens, None)
-    name = "distance" if error is None else "error"
-    value = distance if error is None else error
-    alone = (threshold, max_triangles, indicator) == (None, None, "offset")
-    if not alone or (error is not None and distance is not None):
-        raise InvalidInput(f"{name} is given alone: beside it no other says how fine to draw")
-    if value is None or not value > 0:
-        raise InvalidInput(f"{name} is not a number > 0: leave it out to draw all detail")
-    compiled = lens._lens if isinstance(lens, Lens) else None
-    measured: Literal["error", "slope"] = "slope" if error is None else "error"
-    return _nestgrid.Projection(value, None, measured, blend, compiled)
-
-
-def _require_error(collapse: bool, error: float | None, lens: LensLike | None) -> None:
-    if collapse and (error is None or lens is not None):
-        raise InvalidInput("collapse needs an error, and no lens")
-
-
-def _projection(
-    threshold: float | None,
-    max_triangles: int | None,
-    indicator: SurfaceIndicator,
-    blend: float,
-    lens: LensLike | None,
-    error: float | None,
-) -> _nestgrid.Projection:
-    if threshold is not None and max_triangles is not None:
-        raise InvalidInput("max_triangles is given alone: it finds the threshold")
-    if error is not None:
-        if threshold is not None or max_triangles is not None or indicator != "offset":
-            raise InvalidInput("error is given alone: it is the threshold of the deviation")
-        threshold, indicator = error, "deviation"
-    compiled = lens._lens if isinstance(lens, Lens) else None
-    return _nestgrid.Projection(threshold, max_triangles, indicator, blend, compiled)

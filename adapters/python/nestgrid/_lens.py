@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lenses: fine in a domain, coarser with the distance from it."""
+"""Lenses and regions: fine in a domain, coarser outside."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Numbers = Union[Sequence[float], np.ndarray]
 
 
 class Domain:
-    """Where a lens is fine: what ball(), box(), half_space(), cone(), polygon() and view() return.
+    """Where a lens or a region is fine: what ball(), box(), half_space(), cone(), polygon() and view() return.
 
     a | b is the union of two domains, a & b what they share.
     """
@@ -252,6 +252,56 @@ def as_lens(value: Any) -> Lens:
     return Lens(ball(centre, radius))
 
 
+class Region:
+    """A domain in which another threshold holds.
+
+    domain     where: ball(), box(), ..., joined by | and &
+    threshold  at least 0, in the units of the indicator; 0: all detail
+
+    Raises InvalidInput where the threshold is negative.
+    """
+
+    __module__ = "nestgrid"
+
+    @takes(domain=_domain, threshold=not_negative)
+    def __init__(self, domain: Domain, threshold: float = 0) -> None:
+        self._arguments = (domain, threshold)
+        self._region = _nestgrid.Region(domain._domain, threshold)
+
+    @property
+    def domain(self) -> Domain:
+        """Where the threshold holds."""
+        return self._arguments[0]
+
+    @property
+    def threshold(self) -> float:
+        """The threshold inside, in the units of the indicator."""
+        return self._arguments[1]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Region, self._arguments
+
+    def __repr__(self) -> str:
+        return f"nestgrid.Region({self.domain!r}, threshold={self.threshold:g})"
+
+
+#: A region, or a domain in which everything is drawn.
+RegionLike = Union[Region, Domain]
+
+
+def as_region(value: Any) -> Region:
+    """The region of a domain."""
+    if isinstance(value, Region):
+        return value
+    if isinstance(value, Domain):
+        return Region(value)
+    raise not_a("a Region or a Domain, such as nestgrid.box(low, high)", value)
+
+
+SHARED["region"] = Argument(
+    optional(as_region),
+    "where another threshold holds: a Region, or a Domain (ball(), box(), ...) for all detail",
+)
 SHARED["lens"] = Argument(
     optional(as_lens),
     "where to draw finely: a Lens, a Domain (ball(), box(), ...) or (centre, radius)",

@@ -91,6 +91,9 @@ class Lens:
         self, domain: Domain, finest: float, coarsest: float, slope: float
     ) -> None: ...
 
+class Region:
+    def __init__(self, domain: Domain, threshold: float) -> None: ...
+
 class Projection:
     def __init__(
         self,
@@ -99,6 +102,8 @@ class Projection:
         indicator: _Indicator | _OfSurface,
         blend: float,
         lens: Lens | None,
+        region: Region | None,
+        colour_tolerance: float,
     ) -> None: ...
 
 def indicators() -> list[tuple[str, str, str, bool]]: ...
@@ -191,6 +196,20 @@ def isosurface(
     projection: Projection,
     threads: int,
 ) -> Surface: ...
+def isosurfaces(
+    source: Source,
+    levels: Sequence[float],
+    normals: bool,
+    cap: bool,
+    elements: bool,
+    at_nodes: bool,
+    finest_cuts: bool,
+    projection: Projection,
+    threads: int,
+) -> list[Surface]: ...
+def measure(
+    source: Source, surface: Surface, level: float, points: int, threads: int
+) -> dict[str, float]: ...
 def isoband(
     source: Source,
     low: float,
@@ -201,7 +220,7 @@ def isoband(
     threads: int,
 ) -> Surface: ...
 def boundary(
-    source: Source, elements: bool, projection: Projection, threads: int
+    source: Source, elements: bool, collapses: bool, projection: Projection, threads: int
 ) -> Surface: ...
 def slice(
     source: Source,

@@ -3,6 +3,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
+#include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/indicators.hpp>
 #include <nestgrid/error.hpp>
 
@@ -14,7 +15,7 @@ namespace nestgrid::python {
 
 namespace {
 
-/// A domain of lenses, for Python opaque.
+/// A domain of lenses and regions, for Python opaque.
 struct Domain {
     Distance distance;
 };
@@ -88,15 +89,26 @@ void bind_requests(py::module_& m) {
             return LensRequest{domain.distance, finest, coarsest, slope};
         }),
         py::arg("domain"), py::arg("finest"), py::arg("coarsest"), py::arg("slope"));
+    py::class_<RegionRequest>(m, "Region")
+        .def(py::init([](const Domain& domain, double threshold) {
+                 return RegionRequest{domain.distance, threshold};
+             }),
+             py::arg("domain"), py::arg("threshold"));
     py::class_<Projection>(m, "Projection")
         .def(py::init([](std::optional<double> threshold, std::optional<std::uint64_t> triangles,
-                         std::string indicator, double blend, std::optional<LensRequest> lens) {
+                         std::string indicator, double blend, std::optional<LensRequest> lens,
+                         std::optional<RegionRequest> region, double colour_tolerance) {
                  if (triangles == std::uint64_t{0}) throw InvalidInput("max_triangles is 0");
-                 return Projection{threshold, triangles.value_or(0), std::move(indicator), blend,
-                                   std::move(lens)};
+                 return Projection{.threshold = threshold,
+                                   .max_triangles = triangles.value_or(0),
+                                   .indicator = std::move(indicator),
+                                   .blend = blend,
+                                   .lens = std::move(lens),
+                                   .region = std::move(region),
+                                   .colour_tolerance = colour_tolerance};
              }),
              py::arg("threshold"), py::arg("max_triangles"), py::arg("indicator"), py::arg("blend"),
-             py::arg("lens"));
+             py::arg("lens"), py::arg("region"), py::arg("colour_tolerance"));
     m.def("indicators", [] {
         std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
         for (const IndicatorKind& kind : indicators()) {
@@ -168,6 +180,47 @@ void bind_draws(py::module_& m) {
         py::arg("elements"), py::arg("at_nodes"), py::arg("finest_cuts"), py::arg("collapses"),
         py::arg("keeps_distance"), py::arg("projection"), py::arg("threads"));
     m.def(
+        "isosurfaces",
+        [](const SourcePointer& source, const std::vector<double>& levels, bool normals, bool cap,
+           bool elements, bool at_nodes, bool finest_cuts, const Projection& projection,
+           int threads) {
+            const SurfaceRequest request{normals, cap, elements, at_nodes, finest_cuts};
+            const auto all =
+                drawn(threads, [source, levels, request, projection](const Call& call) {
+                    return draw_isosurfaces(*source, levels, request, projection, call);
+                });
+            std::vector<std::shared_ptr<Drawn>> each;
+            for (Drawn& d : *all) each.push_back(std::make_shared<Drawn>(std::move(d)));
+            return each;
+        },
+        py::arg("source"), py::arg("levels"), py::arg("normals"), py::arg("cap"),
+        py::arg("elements"), py::arg("at_nodes"), py::arg("finest_cuts"), py::arg("projection"),
+        py::arg("threads"));
+    m.def(
+        "measure",
+        [](const SourcePointer& source, const std::shared_ptr<Drawn>& surface, double level,
+           std::size_t points, int threads) {
+            const auto measured =
+                drawn(threads, [source, surface, level, points](const Call& call) {
+                    return measure_error(source->prerolls(), surface->surface, level, points,
+                                         call.work());
+                });
+            py::dict result;
+            const auto add = [&](const char* name, const Measured& each) {
+                result[name] = each.greatest;
+                result[(std::string(name) + "_mean").c_str()] = each.mean;
+                result[(std::string(name) + "_rms").c_str()] = each.rms;
+            };
+            add("error", measured->value);
+            add("distance", measured->distance);
+            add("distance_back", measured->back);
+            result["reach"] = measured->reach;
+            result["points"] = measured->points;
+            return result;
+        },
+        py::arg("source"), py::arg("surface"), py::arg("level"), py::arg("points"),
+        py::arg("threads"));
+    m.def(
         "isoband",
         [](const SourcePointer& source, double low, double high, bool normals, bool elements,
            const Projection& projection, int threads) {
@@ -180,13 +233,16 @@ void bind_draws(py::module_& m) {
         py::arg("projection"), py::arg("threads"));
     m.def(
         "boundary",
-        [](const SourcePointer& source, bool elements, const Projection& projection, int threads) {
-            const SurfaceRequest request{.normals = false, .elements = elements};
+        [](const SourcePointer& source, bool elements, bool collapses, const Projection& projection,
+           int threads) {
+            const SurfaceRequest request{
+                .normals = false, .elements = elements, .collapses = collapses};
             return drawn(threads, [source, request, projection](const Call& call) {
                 return draw_boundary(*source, request, projection, call);
             });
         },
-        py::arg("source"), py::arg("elements"), py::arg("projection"), py::arg("threads"));
+        py::arg("source"), py::arg("elements"), py::arg("collapses"), py::arg("projection"),
+        py::arg("threads"));
     m.def(
         "slice",
         [](const SourcePointer& source, const std::shared_ptr<LevelFunction>& function,

@@ -54,6 +54,19 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
                                   options_of(request, call), call.work()));
 }
 
+std::vector<Drawn> draw_isosurfaces(const Source& source, std::span<const double> isovalues,
+                                    const SurfaceRequest& request, const Projection& projection,
+                                    const Call& call) {
+    const Projection finely = asked(projection, request);
+    std::vector<Drawn> all;
+    for (Isosurface<3>& each : isosurfaces<3>(source.prerolls(), isovalues, finely,
+                                              options_of(request, call), call.work())) {
+        all.push_back(drawn_of(
+            Projected<Isosurface<3>>{std::move(each), {.threshold = finely.least_threshold()}}));
+    }
+    return all;
+}
+
 Drawn draw_isoband(const Source& source, double low, double high, const SurfaceRequest& request,
                    const Projection& projection, const Call& call) {
     return drawn_of(isoband<3>(source.prerolls(), low, high, asked(projection, request),

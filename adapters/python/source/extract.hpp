@@ -6,7 +6,9 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
@@ -50,6 +52,12 @@ struct SurfaceRequest {
 /// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
                       const Projection& projection, const Call& call);
+/// One for each value, in one walk.
+/// \throw InvalidInput, GridError as isosurfaces(), and for collapses, distances that are kept and
+///        numbers of triangles
+std::vector<Drawn> draw_isosurfaces(const Source& source, std::span<const double> isovalues,
+                                    const SurfaceRequest& request, const Projection& projection,
+                                    const Call& call);
 /// \throw InvalidInput, GridError as isoband()
 Drawn draw_isoband(const Source& source, double low, double high, const SurfaceRequest& request,
                    const Projection& projection, const Call& call);

@@ -496,6 +496,70 @@ def test_lens_is_fine_inside_and_coarse_outside(gyroid):
     assert len(volume.isosurface(0, lens=two).triangles) > 0
 
 
+def test_another_threshold_holds_in_a_region(gyroid):
+    volume, level = nestgrid.Volume(gyroid), 0.3
+    everywhere = nestgrid.box((-1e9,) * 3, (1e9,) * 3)
+    coarse, fine = volume.isosurface(level, 0.5), volume.isosurface(level, 0.01)
+    in_all = volume.isosurface(level, 0.5, region=nestgrid.Region(everywhere, 0.01))
+    assert np.array_equal(in_all.triangles, fine.triangles)
+    corner = tuple(fine.vertices[0])
+    some = volume.isosurface(level, 0.5, region=nestgrid.ball(corner, 3))
+    assert len(coarse.triangles) < len(some.triangles) < len(volume.isosurface(level).triangles)
+    report = some.report()
+    assert report["open_edges"] == report["boundary_edges"] or report["open_edges"] == 0
+    with refused("in the region|threshold is not a number >= 0"):
+        nestgrid.Region(everywhere, -1)
+    with refused("nor indicator"):
+        volume.isosurface(level, error=0.1, collapse=True, region=everywhere)
+
+
+def test_several_isosurfaces_are_those_of_each_value(gyroid):
+    volume, level = nestgrid.Volume(gyroid), 0.3
+    values = [level, level + 0.1]
+    for value, drawn in zip(values, volume.isosurfaces(values, 0.05)):
+        alone = volume.isosurface(value, 0.05)
+        assert np.array_equal(drawn.vertices, alone.vertices)
+        assert np.array_equal(drawn.triangles, alone.triangles)
+        assert drawn.threshold == 0.05
+
+
+def test_measured_errors_keep_to_the_promised_ones(gyroid):
+    volume, level = nestgrid.Volume(gyroid), 0.3
+    drawn = volume.isosurface(level, error=0.1)
+    measured = volume.measure(drawn, level, points=10_000)
+    assert 0 < measured["error"] <= 0.1
+    assert measured["error_mean"] <= measured["error_rms"] <= measured["error"]
+    assert measured["distance"] > 0 and measured["distance_back"] > 0
+    assert volume.measure(volume.isosurface(level), level, points=10_000)["distance"] < 1e-6
+
+
+def test_colours_follow_the_field():
+    octree = nestgrid.Octree(
+        np.array([[x, y, z, 1] for z in (0, 1) for y in (0, 1) for x in (0, 1)]),
+        np.arange(8.0) ** 2,
+    )
+    plane = ((1, 1, 1), (1, 2, 3))
+    followed = octree.slice(plane=plane, colour_tolerance=0.25)
+    assert len(followed.triangles) > len(octree.slice(plane=plane).triangles)
+    middles = followed.vertices[followed.triangles].mean(axis=1)
+    colours = followed.attributes[followed.triangles, 0].mean(axis=1)
+    assert np.abs(octree.probe(middles) - colours).max() <= 0.25
+    with refused("a number of triangles"):
+        octree.slice(plane=plane, colour_tolerance=0.25, max_triangles=100)
+
+
+def test_colours_collapse_to_a_number_of_triangles(gyroid):
+    volume = nestgrid.Volume(gyroid)
+    plane = ((0, 0, 31.3), (0, 0, 1))
+    few = volume.slice(plane=plane, max_triangles=300, collapse=True)
+    assert 270 <= len(few.triangles) <= 300
+    assert few.error_bound <= few.threshold
+    assert few.error_bound < volume.slice(plane=plane, max_triangles=300).error_bound
+    assert len(volume.boundary(error=0.2, collapse=True).triangles) < len(
+        volume.boundary(error=0.2).triangles
+    )
+
+
 def test_hints_and_help():
     for name in nestgrid.__all__:
         assert inspect.getdoc(getattr(nestgrid, name)), name

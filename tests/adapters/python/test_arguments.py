@@ -15,6 +15,9 @@ CUBE = np.arange(27, dtype=float).reshape(3, 3, 3)
 LEAVES = np.array([[x, y, z, 1] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
 
 
+IN_SPACE = ("isosurface", "isosurfaces", "isoband", "slice", "boundary", "measure")
+
+
 class Nothing:
     """An object of a type that no argument takes."""
 
@@ -31,12 +34,14 @@ def callables():
     cut = volume.slice(plane=((1, 1, 1), (0, 0, 1)), elements=True)
     budget = nestgrid.FrameBudget(1, 1)
     lens = nestgrid.Lens(nestgrid.ball((0, 0, 0), 1))
+    region = nestgrid.Region(nestgrid.ball((0, 0, 0), 1))
     one = (0.0, 0.0, 1.0)
     yield nestgrid.Volume, {"array": CUBE}
     yield nestgrid.Octree, {"leaves": LEAVES, "values": np.zeros(8)}
     yield nestgrid.Frames, {"arrays": [CUBE, CUBE]}
     yield nestgrid.FrameBudget, {"goal": 1, "greatest": 1}
     yield nestgrid.Lens, {"domain": nestgrid.ball((0, 0, 0), 1)}
+    yield nestgrid.Region, {"domain": nestgrid.ball((0, 0, 0), 1)}
     yield nestgrid.ball, {"centre": one, "radius": 1}
     yield nestgrid.box, {"low": (0, 0, 0), "high": (1, 1, 1)}
     yield nestgrid.half_space, {"through": one, "normal": one}
@@ -47,15 +52,16 @@ def callables():
     yield nestgrid.marching_cubes, {"volume": CUBE, "level": 3.5}
     right = {"isosurface": {"level": 3.5}, "slice": {"plane": ((1, 1, 1), one)}}
     right |= {"probe": {"points": one}, "isolines": {"values": [3.5]}, "height_field": {}}
-    right |= {"isoband": {"low": 1.5, "high": 3.5}}
+    right |= {"isoband": {"low": 1.5, "high": 3.5}, "isosurfaces": {"levels": [3.5]}}
+    right |= {"measure": {"surface": volume.isosurface(3.5), "level": 3.5}}
     right |= {"at": {"t": 0.5}, "drawn": {"cost": 1}, "settle": {"fits": lambda t: True}}
     right |= {"save": {"path": "x.png"}}
-    for thing in (volume, flat, frames, cut, cut.isolines([3.5]), cut.outlines(), budget, lens):
+    for thing in (volume, flat, frames, cut, cut.isolines([3.5]), cut.outlines(), budget, lens, region):
         for name, method in inspect.getmembers(thing, inspect.ismethod):
             if not name.startswith("_") and name != "to_pyvista":
                 if name in ("isolines", "height_field") and thing is volume:
                     continue  # for two dimensions
-                if name in ("isosurface", "isoband", "slice", "boundary") and thing is flat:
+                if name in IN_SPACE and thing is flat:
                     continue
                 yield method, right.get(name, {})
 

@@ -84,6 +84,32 @@ int nestgrid_height_field(const nestgrid_grid* grid, const nestgrid_field* field
                           const nestgrid_options* options, nestgrid_surface* out, char* message,
                           size_t message_size);
 
+/** A number that is measured all over a surface; 0 where that is empty. */
+typedef struct nestgrid_measure_of {
+    double greatest;
+    double mean; /* over the area */
+    double rms;
+} nestgrid_measure_of;
+
+/** How far an isosurface is from the data and from the isosurface of all data, which is drawn for
+ * it. The caller sets `size` to sizeof the struct, and no more of it is written. */
+typedef struct nestgrid_measured {
+    size_t size;
+    nestgrid_measure_of value;    /* |U - isovalue| on the surface, in units of the data */
+    nestgrid_measure_of distance; /* from it to the surface of all data, in units of length */
+    nestgrid_measure_of back;     /* from the surface of all data to it */
+    double reach;                 /* no point of the surfaces is farther from those measured */
+    uint64_t points;              /* that were measured */
+} nestgrid_measured;
+
+/** Measures an isosurface in space of component 0 of this field. Options say how many threads work,
+ * and lend their prerolls.
+ * \param points about how many, on each surface; 0 stands for 200,000 */
+int nestgrid_measure(const nestgrid_grid* grid, const nestgrid_field* field,
+                     const nestgrid_surface* surface, double isovalue, uint64_t points,
+                     const nestgrid_options* options, nestgrid_measured* out, char* message,
+                     size_t message_size);
+
 /** Tells what else is known of a surface that one of these functions has returned. */
 int nestgrid_details(const nestgrid_surface* surface, nestgrid_surface_details* out, char* message,
                      size_t message_size);

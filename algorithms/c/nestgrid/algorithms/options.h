@@ -46,6 +46,15 @@ typedef struct nestgrid_lens {
     double slope;    /* by which sizes may grow with the distance; 0: 0.5 */
 } nestgrid_lens;
 
+/** A part of space in which another threshold holds. */
+typedef struct nestgrid_region {
+    size_t size; /* sizeof the struct */
+    void* self;
+    /* As of a lens: the region is where the distance is not positive. */
+    int (*distance)(void* self, const double* point, double* distance);
+    double threshold; /* inside, at least 0, in units of the indicator */
+} nestgrid_region;
+
 /** The options of all algorithms. A member that is 0 or NULL has its default, and so have all of
  * them where NULL is given in the place of the options. `size` is sizeof the struct as the caller
  * compiled it, so that it can grow. */
@@ -94,6 +103,10 @@ typedef struct nestgrid_options {
     /* How far a slice along a curved function that is collapsed may be from that of all data, in
      * units of length; 0: it keeps its place. */
     double slice_distance;
+    const nestgrid_region* region;
+    /* Above 0, in units of the data: triangles of slices are split until their colours follow the
+     * data within this. */
+    double colour_tolerance;
 } nestgrid_options;
 
 /** Makes empty prerolls. Returns 0, or another number and a sentence, as isosurface.h says. Free
