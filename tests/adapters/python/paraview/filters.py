@@ -94,6 +94,44 @@ def check_image_data():
     assert fewer.triangles.shape[0] < expected.triangles.shape[0]
 
 
+def check_where_and_how():
+    """What holds in a part of space, other shapes, bands and boundaries: as the package draws."""
+    wavelet = pv.Wavelet(WholeExtent=[-10, 10, -8, 8, -6, 6])
+    image = fetch(wavelet)
+    samples = vtk_to_numpy(image.GetPointData().GetArray("RTData"))
+    volume = nestgrid.Volume(
+        samples.reshape(image.GetDimensions(), order="F"), origin=(-10, -8, -6)
+    )
+    filter = pv.NestgridIsosurface(Input=wavelet, Isovalue=157, Threshold=20)
+    filter.RegionBounds, filter.RegionThreshold = [0, 5, 0, 5, 0, 5], 1
+    region = nestgrid.Region(nestgrid.box((0, 0, 0), (5, 5, 5)), 1)
+    same(fetch(filter), volume.isosurface(157, 20, region=region))
+    filter.RegionBounds = [0] * 6
+    filter.LensCentre, filter.LensRadius = [4, 0, 0], 3
+    same(fetch(filter), volume.isosurface(157, 20, lens=((4, 0, 0), 3)))
+    filter.LensRadius, filter.Blend, filter.AtNodes = 0, 2, 1
+    same(fetch(filter), volume.isosurface(157, 20, blend=2, at_nodes=True))
+    filter.Blend, filter.AtNodes, filter.Cuts = 1, 0, "finest"
+    same(fetch(filter), volume.isosurface(157, 20, cuts="finest"))
+    slice = pv.NestgridSlice(Input=wavelet, Error=5)
+    slice.Origin, slice.Normal, slice.Shape, slice.Radius = [0, 0, 0], [0, 0, 1], "Sphere", 5
+    same(fetch(slice), volume.slice(sphere=((0, 0, 0), 5), error=5))
+    slice.Collapse, slice.SliceDistance = 1, 0.5
+    same(
+        fetch(slice),
+        volume.slice(sphere=((0, 0, 0), 5), error=5, collapse=True, distance=0.5),
+    )
+    slice.Shape, slice.Error, slice.MaxTriangles = "Cylinder", 0, 500
+    assert 0 < fetch(slice).GetNumberOfPolys() <= 500
+    band = pv.NestgridBand(Input=wavelet, Band=[150, 200], Threshold=5)
+    same(fetch(band), volume.isoband(150, 200, 5))
+    boundary = pv.NestgridBoundary(Input=wavelet, Error=5)
+    same(fetch(boundary), volume.boundary(error=5))
+    assert open_edges(fetch(boundary)) == 0
+    boundary.Collapse = 1
+    same(fetch(boundary), volume.boundary(error=5, collapse=True))
+
+
 def check_hyper_tree_grid():
     source = pv.HyperTreeGridRandom(Dimensions=[4, 4, 4], MaxDepth=4, SplitFraction=0.4, Seed=3)
     source.UpdatePipeline()
@@ -208,6 +246,7 @@ def check_state_and_picture():
 
 
 check_image_data()
+check_where_and_how()
 check_hyper_tree_grid()
 check_reader()
 check_times()

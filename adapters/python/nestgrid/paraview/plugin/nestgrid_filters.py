@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin for ParaView: adaptive isosurfaces and slices, and a reader of .nestgrid files.
+"""The plugin for ParaView: isosurfaces, bands, slices, boundaries, and a reader of .nestgrid files.
 
 python -m nestgrid.paraview starts ParaView so that it finds this file.
 """
@@ -133,6 +133,95 @@ CAP = """
   <Documentation>Close the surface along the boundary of the domain.</Documentation>
 </IntVectorProperty>
 """
+AT_NODES = """
+<IntVectorProperty name="AtNodes" command="SetAtNodes" number_of_elements="1" default_values="0"
+    panel_visibility="advanced">
+  <BooleanDomain name="bool"/>
+  <Documentation>Draw no slivers around nodes at which the data have the value.</Documentation>
+</IntVectorProperty>
+"""
+CUTS = """
+<IntVectorProperty name="Cuts" command="SetCuts" number_of_elements="1" default_values="0"
+    panel_visibility="advanced">
+  <EnumerationDomain name="enum">
+    <Entry value="0" text="as what is asked for needs them"/>
+    <Entry value="1" text="linear"/><Entry value="2" text="finest"/>
+  </EnumerationDomain>
+  <Documentation>Where edges of coarse elements are cut: between their ends, or where the finest
+  data have the value.</Documentation>
+</IntVectorProperty>
+"""
+BLEND = """
+<DoubleVectorProperty name="Blend" command="SetBlend" number_of_elements="1" default_values="1"
+    panel_visibility="advanced">
+  <DoubleRangeDomain name="range" min="1"/>
+  <Documentation>Nodes move from their mean to their value as the indicator grows from the threshold
+  to this many times it; 1: they jump.</Documentation>
+</DoubleVectorProperty>
+"""
+LENS = """
+<DoubleVectorProperty name="LensCentre" command="SetLensCentre" number_of_elements="3"
+    default_values="0 0 0" panel_visibility="advanced">
+  <Documentation>Where elements are fine; away from there they may grow.</Documentation>
+</DoubleVectorProperty>
+<DoubleVectorProperty name="LensRadius" command="SetLensRadius" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>Of the ball in which all is drawn, in units of length; 0: no lens.</Documentation>
+</DoubleVectorProperty>
+"""
+REGION = """
+<DoubleVectorProperty name="RegionBounds" command="SetRegionBounds" number_of_elements="6"
+    default_values="0 0 0 0 0 0" panel_visibility="advanced">
+  <Documentation>A box with a threshold of its own: its least and greatest x, y and z. As long as
+  all are 0 there is none.</Documentation>
+</DoubleVectorProperty>
+<DoubleVectorProperty name="RegionThreshold" command="SetRegionThreshold" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>The threshold in the box, in the units of the indicator.</Documentation>
+</DoubleVectorProperty>
+"""
+COLOUR_TOLERANCE = """
+<DoubleVectorProperty name="ColourTolerance" command="SetColourTolerance" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>Split triangles until their colours follow the data within this, in the units of
+  the data; 0: not at all. Not with collapses, nor with a number of triangles.</Documentation>
+</DoubleVectorProperty>
+"""
+BAND = """
+<DoubleVectorProperty name="Band" command="SetBand" number_of_elements="2" default_values="0 1">
+  <ArrayRangeDomain name="range">
+    <RequiredProperties>
+      <Property name="Input" function="Input"/>
+      <Property name="Scalars" function="ArraySelection"/>
+    </RequiredProperties>
+  </ArrayRangeDomain>
+  <Documentation>The lower and the upper value, in the units of the data.</Documentation>
+</DoubleVectorProperty>
+"""
+SHAPE = """
+<IntVectorProperty name="Shape" command="SetShape" number_of_elements="1" default_values="0">
+  <EnumerationDomain name="enum">
+    <Entry value="0" text="Plane"/><Entry value="1" text="Sphere"/>
+    <Entry value="2" text="Cylinder"/>
+  </EnumerationDomain>
+  <Documentation>What cuts: a plane across the normal, a sphere around the origin, or a cylinder
+  around the normal through it.</Documentation>
+</IntVectorProperty>
+<DoubleVectorProperty name="Radius" command="SetRadius" number_of_elements="1" default_values="1">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>Of the sphere or the cylinder, in units of length.</Documentation>
+</DoubleVectorProperty>
+<DoubleVectorProperty name="SliceDistance" command="SetSliceDistance" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>How far a sphere or a cylinder whose edges are collapsed may be from that of all
+  data, there and back, in units of length; 0: it keeps its place.</Documentation>
+</DoubleVectorProperty>
+"""
+WHERE = (BLEND, LENS, REGION)
 INPUT = """
 <InputProperty name="Input" command="SetInputConnection">
   <ProxyGroupDomain name="groups"><Group name="sources"/><Group name="filters"/></ProxyGroupDomain>
@@ -166,8 +255,14 @@ class Drawing(VTKPythonAlgorithmBase):
         self._collapse = {"collapse": False}
         self._distance_field = {"distance_field": False}
         self._isovalue = 0.0
+        self._band = {"values": (0.0, 1.0)}
         self._plane = {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)}
-        self._surface_options = {"normals": True, "cap": False}
+        self._shape = {"kind": "plane", "radius": 1.0, "distance": 0.0}
+        self._surface_options = {"normals": True, "cap": False, "at_nodes": False, "cuts": None}
+        self._blend = {"blend": 1.0}
+        self._lens = {"centre": (0.0, 0.0, 0.0), "radius": 0.0}
+        self._region = {"bounds": (0.0,) * 6, "threshold": 0.0}
+        self._colours = {"colour_tolerance": 0.0}
 
     def _set(self, where, name, value):
         if where[name] != value:
@@ -206,6 +301,42 @@ class Drawing(VTKPythonAlgorithmBase):
     def SetCap(self, value):
         self._set(self._surface_options, "cap", bool(value))
 
+    def SetAtNodes(self, value):
+        self._set(self._surface_options, "at_nodes", bool(value))
+
+    def SetCuts(self, number):
+        self._set(self._surface_options, "cuts", (None, "linear", "finest")[number])
+
+    def SetBlend(self, value):
+        self._set(self._blend, "blend", value)
+
+    def SetLensCentre(self, x, y, z):
+        self._set(self._lens, "centre", (x, y, z))
+
+    def SetLensRadius(self, value):
+        self._set(self._lens, "radius", value)
+
+    def SetRegionBounds(self, *bounds):
+        self._set(self._region, "bounds", bounds)
+
+    def SetRegionThreshold(self, value):
+        self._set(self._region, "threshold", value)
+
+    def SetColourTolerance(self, value):
+        self._set(self._colours, "colour_tolerance", value)
+
+    def SetBand(self, low, high):
+        self._set(self._band, "values", (low, high))
+
+    def SetShape(self, number):
+        self._set(self._shape, "kind", ("plane", "sphere", "cylinder")[number])
+
+    def SetRadius(self, value):
+        self._set(self._shape, "radius", value)
+
+    def SetSliceDistance(self, value):
+        self._set(self._shape, "distance", value)
+
     def SetOrigin(self, x, y, z):
         self._set(self._plane, "origin", (x, y, z))
 
@@ -217,24 +348,56 @@ class Drawing(VTKPythonAlgorithmBase):
         asked = [name for name, value in self._fineness.items() if value > 0 and name not in without]
         name = asked[0] if asked else "threshold"
         kind = self._indicator if name in ("threshold", "max_triangles") else {}
-        return {name: self._fineness[name], **kind}
+        return {name: self._fineness[name], **kind, **self.where()}
+
+    def where(self):
+        """What holds in a part of space, and how nodes move, as arguments of a field."""
+        where = dict(self._blend)
+        if self._lens["radius"] > 0:
+            where["lens"] = (self._lens["centre"], self._lens["radius"])
+        bounds = self._region["bounds"]
+        if any(bounds):
+            box = nestgrid.box(bounds[0::2], bounds[1::2])
+            where["region"] = nestgrid.Region(box, self._region["threshold"])
+        return where
+
+    def collapsed(self, options):
+        """Options with collapses, where these and something to keep are asked for."""
+        if self._collapse["collapse"] and "threshold" not in options:
+            options = {**options, "collapse": True}
+            options.pop("indicator", None)
+        return options
 
     def isosurface(self, field):
         options = {**self.fineness(), **self._surface_options}
         if "distance" in options:
             options.update(self._distance_field)
-        if "threshold" not in options and not options["cap"]:
-            options.update(self._collapse)
-            if options["collapse"]:
-                options.pop("indicator", None)
+        if not options["cap"]:
+            options = self.collapsed(options)
         return field.isosurface(self._isovalue, **options)
 
+    def band(self, field):
+        options = self.fineness(without=("distance", "max_triangles"))
+        return field.isoband(
+            *self._band["values"], normals=self._surface_options["normals"], **options
+        )
+
+    def coloured(self):
+        """How finely what has a place of its own is drawn."""
+        return {**self.collapsed(self.fineness(without=("distance",))), **self._colours}
+
     def slice(self, field):
-        plane = (self._plane["origin"], self._plane["normal"])
-        options = self.fineness(without=("distance",))  # a slice is where it is
-        if "error" in options:
-            options.update(self._collapse)
-        return field.slice(plane=plane, **options)
+        origin, normal, radius = *self._plane.values(), self._shape["radius"]
+        kind = self._shape["kind"]
+        shape = {"plane": (origin, normal), "sphere": (origin, radius)}
+        shape["cylinder"] = (origin, normal, radius)
+        options = self.coloured()
+        if options.get("collapse") and kind != "plane" and self._shape["distance"] > 0:
+            options["distance"] = self._shape["distance"]
+        return field.slice(**{kind: shape[kind]}, **options)
+
+    def boundary(self, field):
+        return field.boundary(**self.coloured())
 
     def draw(self, outInfo, field_of_data, drawing, name):
         """Draws into the output. What the library refuses is empty, with a message in the log."""
@@ -293,7 +456,7 @@ class Filter(Drawing):
 @smproxy.filter(name="NestgridIsosurface", label="Nestgrid Isosurface")
 @properties(
     INPUT, ARRAY, ISOVALUE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE,
-    DISTANCE_FIELD, INDICATOR, NORMALS, CAP,
+    DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES, CUTS, *WHERE,
 )
 class NestgridIsosurface(Filter):
     def RequestData(self, request, inInfo, outInfo):
@@ -301,10 +464,29 @@ class NestgridIsosurface(Filter):
 
 
 @smproxy.filter(name="NestgridSlice", label="Nestgrid Slice")
-@properties(INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE)
+@properties(
+    INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, SHAPE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE,
+    INDICATOR, COLOUR_TOLERANCE, *WHERE,
+)
 class NestgridSlice(Filter):
     def RequestData(self, request, inInfo, outInfo):
         return self.request(inInfo, outInfo, self.slice)
+
+
+@smproxy.filter(name="NestgridBand", label="Nestgrid Band")
+@properties(INPUT, ARRAY, BAND, THRESHOLD, ERROR, INDICATOR, NORMALS, *WHERE)
+class NestgridBand(Filter):
+    def RequestData(self, request, inInfo, outInfo):
+        return self.request(inInfo, outInfo, self.band)
+
+
+@smproxy.filter(name="NestgridBoundary", label="Nestgrid Boundary")
+@properties(
+    INPUT, ARRAY, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, INDICATOR, COLOUR_TOLERANCE, *WHERE
+)
+class NestgridBoundary(Filter):
+    def RequestData(self, request, inInfo, outInfo):
+        return self.request(inInfo, outInfo, self.boundary)
 
 
 FILE_NAMES = """
@@ -345,7 +527,7 @@ FREE_ISOVALUE = """
 )
 @properties(
     FILE_NAMES, FIELD_NAME, DRAW, FREE_ISOVALUE, FREE_PLANE, NORMAL, THRESHOLD, MAX_TRIANGLES,
-    ERROR, COLLAPSE, DISTANCE, DISTANCE_FIELD, INDICATOR, NORMALS, CAP,
+    ERROR, COLLAPSE, DISTANCE, DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES, CUTS, *WHERE,
 )
 class NestgridReader(Drawing):
     """Draws hierarchies from files; their elements are no data of VTK."""
