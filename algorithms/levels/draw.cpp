@@ -94,10 +94,10 @@ std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const C
     plain.cap = options.cap;
     plain.progress = options.progress;
     const Walk<Real> walk(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
-    const LevelSearch<Real> search(walk, std::span(levels.levels).first(1), criterion, bounds);
+    const LevelSearch<Real> search(walk, levels.levels, criterion, bounds);
     Surface<dimension> nothing;
-    const typename Drawing::Builder builder(nothing, false);
-    Drawing drawing(walk, search, std::span(&builder, 1), plain, levels.first_attribute);
+    const std::vector<typename Drawing::Builder> builders(levels.levels.size(), {nothing, false});
+    Drawing drawing(walk, search, builders, plain, levels.first_attribute);
     drawing.count_only(most);
     try {
         drawing.run(executor);

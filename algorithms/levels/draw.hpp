@@ -68,8 +68,8 @@ template <class Real>
 void require_sound(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
                    const Bounds& bounds);
 
-/// The number of triangles (segments) of the first level under a criterion, or nothing where it
-/// exceeds `most`.
+/// The number of triangles (segments) of all levels under a criterion, or nothing where there are
+/// more than `most`.
 /// \param options only cap and progress have an effect
 template <int dimension, class Real>
 std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const Criterion& criterion,
@@ -77,7 +77,7 @@ std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const C
                                              const IsosurfaceOptions& options,
                                              const Executor& executor);
 
-/// The least threshold at which the first level keeps within a number of triangles.
+/// The least threshold at which all levels keep within a number of triangles.
 /// \throw InvalidInput where even the coarsest surface has more
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Levels<Real>& levels,

@@ -30,6 +30,44 @@ TriangleBudget find_slice_threshold(const Hierarchy<Real>& hierarchy, const Leve
         });
 }
 
+}  // namespace nestgrid::detail
+
+namespace nestgrid {
+
+template <class Real>
+std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
+                                             const SliceRequest& request,
+                                             const Criterion& criterion, const Bounds& bounds,
+                                             std::uint64_t most, const IsosurfaceOptions& options,
+                                             const Executor& executor) {
+    hierarchy.facts().require_dimension(3);
+    const auto count = [&](const auto& levels) {
+        return engine::count_simplices<3>(levels, criterion, bounds, most, options, executor);
+    };
+    try {
+        if (!request.functions.empty()) {
+            return engine::with_levels(hierarchy, request, options, count);
+        }
+        return count(
+            engine::isosurface_levels(hierarchy, std::span<const double>(request.isovalues)));
+    } catch (const engine::Cancelled&) {
+        return std::nullopt;
+    }
+}
+
+template std::optional<std::uint64_t> count_triangles(const Hierarchy<float>&, const SliceRequest&,
+                                                      const Criterion&, const Bounds&,
+                                                      std::uint64_t, const IsosurfaceOptions&,
+                                                      const Executor&);
+template std::optional<std::uint64_t> count_triangles(const Hierarchy<double>&, const SliceRequest&,
+                                                      const Criterion&, const Bounds&,
+                                                      std::uint64_t, const IsosurfaceOptions&,
+                                                      const Executor&);
+
+}  // namespace nestgrid
+
+namespace nestgrid::detail {
+
 #define NESTGRID_INSTANTIATE(Real)                                                               \
     template std::vector<Slice> draw_slices(const Hierarchy<Real>&, const SliceRequest&,         \
                                             const SurfaceTargets<3>&, const Criterion&,          \

@@ -146,22 +146,9 @@ class Samples:
         return surface.vertices, surface.triangles
 
     def error_within(self, level, most):
-        """An error whose collapsed surface has at most so many triangles, and hardly fewer."""
-        low, high = 0.0, np.inf
-        error = 0.01 * float(np.ptp(self.values))
-        for _ in range(9):
-            triangles = len(self.collapsed(level, error)[1])
-            if triangles > most:
-                low = error
-            else:
-                high = error
-                if triangles > 0.9 * most:
-                    break
-            # Until an error is enough, the next one is clearly greater.
-            least = 1.5 if high == np.inf else 0.0
-            guess = error * max(triangles / most, 1 / most, least)
-            error = guess if low < guess < high else (low + min(high, 4 * error)) / 2
-        return high
+        """The least error whose collapsed surface has at most so many triangles."""
+        least = self.volume.isosurface(level, max_triangles=most, collapse=True, normals=False)
+        return least.threshold
 
     def flying_edges(self, level):
         edges = vtkFlyingEdges3D()

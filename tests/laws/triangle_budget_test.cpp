@@ -134,6 +134,22 @@ TYPED_TEST(TriangleBudgets, AreKeptUnderEveryCriterion) {
     }
 }
 
+/// Triangles are counted up to a number, alone and with those of an isosurface.
+template <class Real>
+void expect_counted(const Hierarchy<Real>& hierarchy, SliceRequest request,
+                    const Criterion& criterion, const Bounds& bounds, std::size_t count,
+                    const IsosurfaceOptions& options) {
+    const auto counted = [&](std::uint64_t most) {
+        return count_triangles(hierarchy, request, criterion, bounds, most, options);
+    };
+    EXPECT_EQ(counted(count), count);
+    EXPECT_TRUE(count == 0 || !counted(count - 1));
+    request.isovalues = {0.0};
+    count += isosurface<3>(hierarchy, 0, criterion, bounds, options).surface.simplices.size();
+    EXPECT_EQ(counted(count), count);
+    EXPECT_TRUE(count == 0 || !counted(count - 1));
+}
+
 TYPED_TEST(TriangleBudgets, AreKeptBySlicesAndBoundaries) {
     if constexpr (TypeParam::Grid::dimension == 3) {
         auto grid = TypeParam::grids().back();
@@ -153,6 +169,8 @@ TYPED_TEST(TriangleBudgets, AreKeptBySlicesAndBoundaries) {
                         std::size_t count = 0;
                         extract_slices(grid, field, {{f}}, std::vector{Counter(count)},
                                        criterion_at(threshold), bounds, options);
+                        expect_counted(hierarchy, {{f}}, criterion_at(threshold), bounds, count,
+                                       options);
                         const auto merged =
                             slice(grid, field, *f, criterion_at(threshold), bounds, options);
                         EXPECT_LE(merged.surface.simplices.size(), count);
@@ -254,15 +272,12 @@ TEST(LeastThreshold, IsOneOfAnythingThatCounts) {
     const HierarchicalIndicator bounds(grid, field);
     const SweptIndicator jumps = numerical_indicator(grid, field, {.spread = {.factor = 1.5}});
     const Plane plane({16, 16, 15.3}, {0.1, 0.2, 1});
+    const auto hierarchy = erase(grid, field);
     for (const std::uint64_t budget : {3000U, 6000U}) {
         // [least_threshold]
-        const auto count = [&](double threshold,
-                               std::uint64_t most) -> std::optional<std::uint64_t> {
-            const auto both = slices(grid, field, {{&plane}, {isovalue}},
-                                     Blended(&jumps, threshold, 1.5), bounds, {.elements = false});
-            const std::size_t drawn =
-                both[0].surface.simplices.size() + both[1].surface.simplices.size();
-            return drawn <= most ? std::optional<std::uint64_t>(drawn) : std::nullopt;
+        const auto count = [&](double threshold, std::uint64_t most) {
+            return count_triangles(hierarchy, {{&plane}, {isovalue}},
+                                   Blended(&jumps, threshold, 1.5), bounds, most);
         };
         const TriangleBudget found = least_threshold(count, 1.0, budget);
         // [least_threshold]

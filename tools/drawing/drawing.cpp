@@ -39,23 +39,6 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
-/// Counts triangles, and keeps none.
-class TriangleCounter final : public nestgrid::SimplexSink<3> {
-public:
-    struct Exceeded {};
-
-    /// \param most take() throws Exceeded where there are more
-    TriangleCounter(std::uint64_t& count, std::uint64_t most) : count_{&count}, most_{most} {}
-    void take(const nestgrid::Surface<3>& part) override {
-        *count_ += part.simplices.size();
-        if (*count_ > most_) throw Exceeded{};
-    }
-
-private:
-    std::uint64_t* count_;
-    std::uint64_t most_;
-};
-
 /// Draws the surfaces at one moment.
 template <class Real>
 class Drawing {
@@ -193,15 +176,8 @@ private:
     /// Counts the triangles of the slice and of the isosurface beside it.
     std::optional<std::uint64_t> count_both(const nestgrid::Criterion& criterion,
                                             std::uint64_t most) const {
-        std::uint64_t count = 0;
-        const std::vector<TriangleCounter> counters(2, {count, most});
-        try {
-            extract_slices(hierarchy_, {{request_.function}, {*request_.isovalue}}, counters,
-                           criterion, bounds(), {}, executor_);
-        } catch (const TriangleCounter::Exceeded&) {
-            return std::nullopt;
-        }
-        return count;
+        return count_triangles(hierarchy_, {{request_.function}, {*request_.isovalue}}, criterion,
+                               bounds(), most, {}, executor_);
     }
 
     /// The isosurface of all data, where it is compared with.

@@ -3,33 +3,12 @@
 #include "frame_drawing.hpp"
 
 #include <nestgrid/algorithms/collapse.hpp>
-#include <nestgrid/algorithms/isosurfaces.hpp>
+#include <nestgrid/algorithms/slices.hpp>
 
 #include "dropped_nodes.hpp"
 #include "surface_arrays.hpp"
 
 namespace nestgrid::view {
-
-namespace {
-
-/// Ends an extraction that has more triangles than asked for.
-struct TooMany {};
-
-/// Counts triangles and throws TooMany beyond a limit.
-class Counter final : public SimplexSink<3> {
-public:
-    explicit Counter(std::uint64_t most) : most_{most} {}
-    void take(const Surface<3>& part) override {
-        count_ += part.simplices.size();
-        if (count_ > most_) throw TooMany{};
-    }
-
-private:
-    std::uint64_t most_;
-    std::uint64_t count_ = 0;
-};
-
-}  // namespace
 
 FrameDrawing::FrameDrawing(const FrameRequest& request, const FieldOnGrid& field,
                            const FrameCriteria& criteria, const WatchedWork& work,
@@ -60,15 +39,16 @@ std::vector<FramePart> FrameDrawing::draw(double threshold) const {
 bool FrameDrawing::fits(double threshold) const {
     steps_.begin("Searching for the detail that keeps within the triangles");
     const AnyCriterion criterion = criteria_.detail.at(threshold);
-    return field_.visit([&](const auto& hierarchy) {
-        std::uint64_t most = request_.triangles;
-        if (plane_) {
-            const std::size_t used = draw_slice(hierarchy, criterion).surface.simplices.size();
-            if (used > most) return false;
-            most -= used;
-        }
-        return !request_.isovalue || counts_at_most(most, hierarchy, criterion);
+    SliceRequest all;
+    if (plane_) all.functions.push_back(&*plane_);
+    if (request_.isovalue) all.isovalues.push_back(*request_.isovalue);
+    const bool fit = field_.visit([&](const auto& hierarchy) {
+        return count_triangles(hierarchy, all, criterion, *criteria_.bounds, request_.triangles,
+                               watched({}), executor_)
+            .has_value();
     });
+    if (!fit && !steps_.tell()) throw FrameAbandoned{};
+    return fit;
 }
 
 template <class Real>
@@ -115,21 +95,6 @@ Slice FrameDrawing::draw_slice(const Hierarchy<Real>& hierarchy, const Criterion
 IsosurfaceOptions FrameDrawing::watched(IsosurfaceOptions options) const {
     options.progress = [this](const TraversalCounts&) { return steps_.tell(); };
     return options;
-}
-
-template <class Real>
-bool FrameDrawing::counts_at_most(std::uint64_t most, const Hierarchy<Real>& hierarchy,
-                                  const Criterion& criterion) const {
-    const double isovalue = *request_.isovalue;
-    try {
-        const auto counted = extract_isosurfaces<3>(
-            hierarchy, std::span(&isovalue, 1), std::vector{Counter(most)}, criterion,
-            *criteria_.bounds, watched({.elements = false}), executor_);
-        if (counted.front().cancelled) throw FrameAbandoned{};
-    } catch (const TooMany&) {
-        return false;
-    }
-    return true;
 }
 
 }  // namespace nestgrid::view

@@ -53,9 +53,6 @@ private:
     void collapse_edges(FramePart& part, const Hierarchy<Real>& hierarchy) const;
     template <class Real>
     Slice draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const;
-    template <class Real>
-    bool counts_at_most(std::uint64_t most, const Hierarchy<Real>& hierarchy,
-                        const Criterion& criterion) const;
     IsosurfaceOptions watched(IsosurfaceOptions options) const;
 
     const FrameRequest& request_;

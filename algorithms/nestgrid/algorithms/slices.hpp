@@ -5,6 +5,8 @@
 // criterion. What holds of each slice, slice.hpp says.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -48,6 +50,19 @@ std::vector<Slice> slices(const Grid& grid, const Field& field, const SliceReque
                           const Executor& executor = SequentialExecutor{}) {
     return slices(erase(grid, field), request, criterion, bounds, options, executor);
 }
+
+/// How many triangles slices() would draw of all of them together, before vertices are merged at
+/// nodes, or nothing where there are more than `most` or options.progress ends it. Counts up to
+/// there, and stores no triangle.
+/// \param options only cap and progress have an effect
+/// \throw InvalidInput, GridError as slices()
+template <class Real>
+std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
+                                             const SliceRequest& request,
+                                             const Criterion& criterion, const Bounds& bounds,
+                                             std::uint64_t most,
+                                             const IsosurfaceOptions& options = {},
+                                             const Executor& executor = SequentialExecutor{});
 
 /// Draws the slices and isosurfaces into sinks (surface.hpp), one for each. A SimplexSink also gets
 /// triangles without area, around nodes that lie on a slice.
