@@ -9,6 +9,7 @@
 #include <levels/error_bound.hpp>
 #include <ranks/agreement.hpp>
 #include <walk/unusable_values.hpp>
+#include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
 
@@ -201,7 +202,7 @@ void LevelSet<dimension, Real>::agree(Ranks& ranks) {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::walk(const Executor& executor) {
-    if (executor.concurrency() < 2) return walk_->run(*this);
+    if (executor.concurrency() < 2) return walk_->run_as(*this);
     tasks_.run(*this, executor);
 }
 
