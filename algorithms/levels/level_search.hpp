@@ -98,6 +98,11 @@ private:
         Real hi;
     };
 
+    Range plain_range_of(const View& view) const;
+    NodeMask low_nodes(std::span<const NodeKey> nodes) const;
+    Sight look_plainly(const View& view, const Split& split) const;
+    Sight look_anyhow(const View& view, const Split& split, bool caps,
+                      CriterionQuestion& question) const;
     Range range_of(const View& view, std::size_t component) const;
     bool looks_at(const View& view, const Split& split, std::size_t component, Real bound,
                   bool caps) const;
@@ -123,6 +128,9 @@ private:
     bool saturated_;
     bool asks_for_masks_;
     bool never_stops_;  // S holds nowhere
+    // One level of the only component, and own_threshold_ is the criterion.
+    bool looks_plainly_ = false;
+    std::uint16_t most_ = 0;  // the threshold as bfloat16, where looks_plainly_
 };
 
 template <class Real>

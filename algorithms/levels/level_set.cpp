@@ -6,7 +6,9 @@
 #include <bit>
 #include <limits>
 
+#include <levels/element_contour_steps.hpp>
 #include <levels/error_bound.hpp>
+#include <levels/level_search_steps.hpp>
 #include <ranks/agreement.hpp>
 #include <walk/unusable_values.hpp>
 #include <walk/walk_steps.hpp>
@@ -374,8 +376,9 @@ unsigned LevelSet<dimension, Real>::boundary_in_slice(const View& view,
 /// \param inside the corners inside the level, one bit each
 /// \param boundary the faces to be capped
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::extract(std::size_t level, const View& view, unsigned inside,
-                                        unsigned boundary, bool draws) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::extract(std::size_t level, const View& view,
+                                                        unsigned inside, unsigned boundary,
+                                                        bool draws) {
     load(view, draws);
     at_hand_.cuts.set_level(search_->levels()[level]);
     if (walks_.is_recording() && view.closed.any) record(level, inside, boundary);
@@ -386,7 +389,7 @@ void LevelSet<dimension, Real>::extract(std::size_t level, const View& view, uns
 
 /// Loads the corners of the element, and adds its gradients where it is drawn.
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::load(const View& view, bool draws) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::load(const View& view, bool draws) {
     if (at_hand_.loaded) return;
     at_hand_.loaded = true;
     const bool keys =
@@ -412,7 +415,8 @@ void LevelSet<dimension, Real>::record(std::size_t level, unsigned inside, unsig
 }
 
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigned boundary) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside,
+                                                     unsigned boundary) {
     const View& view = at_hand_.cuts.view();
     LevelSurface<dimension>& surface = surfaces_[level];
     auto& contour = at_hand_.contour;
@@ -482,7 +486,7 @@ bool LevelSet<dimension, Real>::stops_above_cap(const View& view) {
 /// Counts an element that was drawn, raises the error bound by its error, and hands a full chunk to
 /// the sink.
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);
     surface.add_limited(at_hand_.cuts.view().inner_bounds().limited ? 1 : 0);
     surface.raise_off_level(at_hand_.cuts.off_level());

@@ -139,13 +139,14 @@ public:
         surface_->vertices.push_back(x);
         for (const double a : attributes) surface_->attributes.push_back(a);
     }
-    void add_vertices(std::span<const Point> x, std::span<const double> attributes) {
+    NESTGRID_INLINE void add_vertices(std::span<const Point> x,
+                                      std::span<const double> attributes) {
         surface_->vertices.insert(surface_->vertices.end(), x.begin(), x.end());
         if (attributes.empty()) return;
         surface_->attributes.insert(surface_->attributes.end(), attributes.begin(),
                                     attributes.end());
     }
-    Point position(Number vertex) const {
+    NESTGRID_INLINE Point position(Number vertex) const {
         return vertex < taken_ ? mesh_->position(vertex) : surface_->vertices[vertex - taken_];
     }
     bool keeps_elements() const { return elements_; }
