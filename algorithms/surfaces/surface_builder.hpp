@@ -111,7 +111,8 @@ public:
           soup_{&sink},
           chunk_{soup_chunk_},
           shares_vertices_{false},
-          elements_{sink.keeps_elements()} {}
+          elements_{sink.keeps_elements()},
+          takes_batches_{sink.takes_batches() && !elements_} {}
 
     /// The surface that is filled, or null where a sink takes it in chunks.
     const Target* target() const {
@@ -121,6 +122,13 @@ public:
     template <class Function>
     void change(Function&& function) {
         function(*surface_);
+    }
+    /// Whether a sink takes simplices as they lie in a batch.
+    bool takes_batches() const { return takes_batches_; }
+    /// Hands the chunk, and a batch behind it, to the sink. Requires takes_batches().
+    void take_batch(const SimplexBatch& batch) {
+        flush();
+        soup_->take_batch(batch);
     }
     /// Whether elements share vertices.
     bool shares_vertices() const { return shares_vertices_; }
@@ -257,6 +265,7 @@ private:
     Number taken_ = 0;  // vertices that the sink has
     bool shares_vertices_ = true;
     bool elements_;
+    bool takes_batches_ = false;
 };
 
 }  // namespace nestgrid::engine
