@@ -17,6 +17,7 @@ LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::span<const Level<Rea
       functions_{walk.function_count()},
       criterion_{&criterion},
       bounds_{&bounds},
+      range_{bounds},
       own_bounds_{dynamic_cast<const HierarchicalIndicator*>(&bounds)},
       entries_{own_bounds_ == nullptr ? nullptr : &own_bounds_->entries()},
       saturated_{criterion.saturated()},

@@ -17,6 +17,17 @@ namespace nestgrid::engine {
 
 namespace {
 
+/// std::popcount without the call that it is on processors that may lack the instruction.
+constexpr std::uint64_t count_ones(std::uint64_t x) {
+#if defined(__POPCNT__)
+    return static_cast<std::uint64_t>(std::popcount(x));
+#else
+    x -= x >> 1U & 0x5555555555555555U;
+    x = (x & 0x3333333333333333U) + (x >> 2U & 0x3333333333333333U);
+    return ((x + (x >> 4U)) & 0x0F0F0F0F0F0F0F0FU) * 0x0101010101010101U >> 56U;
+#endif
+}
+
 unsigned all_corners(std::size_t corners) { return (1U << corners) - 1; }
 
 /// The faces whose corners are all among some, one bit each.
@@ -209,6 +220,11 @@ void LevelSet<dimension, Real>::walk(const Executor& executor) {
 }
 
 template <int dimension, class Real>
+void LevelSet<dimension, Real>::walk_below(const Walk<Real>& walk, const View& view) {
+    walk.walk_below_as(view, *this);
+}
+
+template <int dimension, class Real>
 void LevelSet<dimension, Real>::flush() {
     for (LevelSurface<dimension>& surface : surfaces_) surface.builder().flush();
 }
@@ -236,7 +252,7 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
 }
 
 template <int dimension, class Real>
-Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
+NESTGRID_INLINE Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
     // Ranks that have parts of one element all visit it; that with its first leaf counts it.
     counted_ = view.member->presence == Presence::partly ? 0 : 1;
     counts_.calls += counted_;
@@ -248,7 +264,7 @@ Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split
 }
 
 template <int dimension, class Real>
-Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
+NESTGRID_INLINE Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
     const bool caps = options_->cap && may_cap_below(view);
     const bool hidden = view.member->hidden == Hidden::wholly;
     if (options_->cap && hidden && !caps) return {Visit::skip, 0};
@@ -271,15 +287,14 @@ void LevelSet<dimension, Real>::undo() {
 /// Leaves out leaves that would only record and around which nothing is closed. With caps, inspects
 /// all others, because caps also lie in leaves that no level passes through.
 template <int dimension, class Real>
-Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values, NodeMask which,
-                                         bool closed) {
+NESTGRID_INLINE Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values,
+                                                         NodeMask which, bool closed) {
     const bool records_only = walks_.is_recording() && !walks_.draws_finest();
     if (records_only && !tally_.limited() && !closed) return {};
     if (options_->cap) return {0, which};
     const Leaves leaves = search_->cut_leaves(rule, values, which);
     const std::uint64_t before = counts_.calls;
-    add(static_cast<std::uint64_t>(std::popcount(which & ~leaves.inspect)),
-        static_cast<std::uint64_t>(std::popcount(leaves.extract)));
+    add(count_ones(which & ~leaves.inspect), count_ones(leaves.extract));
     if ((before >> 16U) != (counts_.calls >> 16U)) report_progress(0, 0);
     return leaves;
 }

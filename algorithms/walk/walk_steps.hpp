@@ -84,8 +84,8 @@ void Walk<Real>::visit(const View& view, V& visitor) const {
 
 template <class Real>
 template <class V>
-void Walk<Real>::descend(const View& view, const Split& split, const Decision& decision,
-                         V& visitor) const {
+NESTGRID_INLINE void Walk<Real>::descend(const View& view, const Split& split,
+                                         const Decision& decision, V& visitor) const {
     const Rule& rule = *split.rule;
     Frame<Real>& frame = view.stack->frame(view.level);
     NodeMask interpolated = decision.interpolated;
@@ -183,9 +183,10 @@ NESTGRID_INLINE void Walk<Real>::project_positions(const View& view, const Split
 
 template <class Real>
 template <class V>
-void Walk<Real>::visit_children(const View& view, const Split& split, NodeMask interpolated,
-                                const ClosingSplit<Real>* closing, Frame<Real>& frame,
-                                V& visitor) const {
+NESTGRID_INLINE void Walk<Real>::visit_children(const View& view, const Split& split,
+                                                NodeMask interpolated,
+                                                const ClosingSplit<Real>* closing,
+                                                Frame<Real>& frame, V& visitor) const {
     const Rule& rule = *split.rule;
     const Family& family = frame.family;
     NodeMask shown = family.leaves;
