@@ -44,6 +44,10 @@ bool may_stop_apart(const Hierarchy<Real>& hierarchy, const Criterion& criterion
         if (shared->any_hangs()) return true;
     }
     if (criterion.never_holds()) return false;
+    const Threshold* const threshold = criterion.as_threshold();
+    if (threshold != nullptr && threshold->epsilon() < threshold->indicator()->least_stop()) {
+        return false;
+    }
     return hierarchy.offers(Feature::hidden) || !bounds.stops_conform();
 }
 
