@@ -6,6 +6,7 @@
 #include <bit>
 
 #include <levels/error_bound.hpp>
+#include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
 
@@ -37,7 +38,7 @@ void Triangulation<Real>::run(const Executor& executor,
 /// Walks alone, or in tasks.
 template <class Real>
 void Triangulation<Real>::walk(const Executor& executor) {
-    if (executor.concurrency() < 2) return graph_.walk->run(*this);
+    if (executor.concurrency() < 2) return graph_.walk->run_as(*this);
     std::vector<std::unique_ptr<Task>> tasks(most_tasks(executor));
     run_tasks<Real>(
         *graph_.walk, *this, executor,

@@ -34,6 +34,7 @@ void PrerollFacts::add(const PrerollFacts& other) {
     longest_chain = std::max(longest_chain, other.longest_chain);
     all_divided = all_divided && other.all_divided;
     one_level_a_node = one_level_a_node && other.one_level_a_node;
+    least_stop = std::min(least_stop, other.least_stop);
 }
 
 void IndicatorEntries::resize(std::size_t from, std::size_t to) {
@@ -57,15 +58,17 @@ void agree(detail::PrerollFacts& facts, Ranks& ranks) {
     // A node may be made on different levels on two ranks.
     facts.one_level_a_node = false;
     double least = -facts.least;
+    double least_stop = -facts.least_stop;
     auto largest_split = static_cast<double>(facts.largest_split);
     auto finest_level = static_cast<double>(facts.finest_level);
     auto longest_chain = static_cast<double>(facts.longest_chain);
     double not_divided = facts.all_divided ? 0 : 1;
-    std::array<double*, 7> greatest{&least,         &facts.greatest, &facts.hanging_violation,
+    std::array<double*, 8> greatest{&least,         &facts.greatest, &facts.hanging_violation,
                                     &largest_split, &finest_level,   &longest_chain,
-                                    &not_divided};
+                                    &not_divided,   &least_stop};
     engine::take_greatest(ranks, greatest);
     facts.least = -least;
+    facts.least_stop = -least_stop;
     facts.largest_split = static_cast<std::size_t>(largest_split);
     facts.finest_level = static_cast<int>(finest_level);
     facts.longest_chain = static_cast<int>(longest_chain);
@@ -160,6 +163,7 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
                      [&] { engine::with_places(hierarchy, walk_all); });
     if (!sweeps) return;
     sweeps->saturate(shared);
+    facts_.least_stop = bfloat16_value(sweeps->least_stop());
     // No element above a crossing node stops, whatever its level.
     facts_.one_level_a_node = sweeps->one_level_a_node() && hanging_.crossing() == nullptr;
     if (shared != nullptr) agree(facts_, shared->ranks());

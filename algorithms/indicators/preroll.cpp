@@ -4,6 +4,7 @@
 
 #include <indicators/preroll_visitor.hpp>
 #include <indicators/walk_in_logs.hpp>
+#include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
 
@@ -31,7 +32,7 @@ detail::PrerollFacts walk_preroll(const Walk<Real>& walk, const PrerollRequest& 
                                   Sweeps& sweeps, const Executor& executor) {
     if (executor.concurrency() > 1) return walk_with_threads(walk, request, sweeps, executor);
     PrerollVisitor<Real, Sweeps> visitor(walk, request, sweeps);
-    walk.run(visitor);
+    walk.run_as(visitor);
     visitor.finish();
     return visitor.facts();
 }

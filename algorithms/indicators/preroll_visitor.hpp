@@ -14,6 +14,7 @@
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/frontier.hpp>
+#include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
 
@@ -82,6 +83,9 @@ public:
     void finish() { deviations_.finish(left_); }
 
     void extract(const View&) override {}
+    void walk_below(const Walk<Real>& walk, const View& view) override {
+        walk.walk_below_as(view, *this);
+    }
 
     Decision look(const View&, const Split&) override { return {}; }
     void undo() override {}

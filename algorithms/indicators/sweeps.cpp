@@ -30,6 +30,7 @@ void Sweeps::raise(NodeKey key, const Entry& known) {
 }
 
 void Sweeps::sweep_all() {
+    least_stop_ = bfloat16_infinity;
     sweep(splits_, one_level_ && one_step_,
           [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
               return sweep_split(rule, of, reach);
@@ -82,6 +83,7 @@ inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> o
     };
     Below greatest;
     bool changed = raise_parents(rule, of, of_node, hand, raise, greatest);
+    if (!rule.new_nodes.empty()) least_stop_ = std::min(least_stop_, greatest.stop);
     if (rule.inside != no_new_node) {
         Entry& within =
             nodes_[of[static_cast<std::size_t>(rule.corner_count()) + rule.inside]].entry;

@@ -61,6 +61,9 @@ public:
     /// \param shared the nodes that other ranks have, too, or null
     void saturate(const SharedNodes* shared = nullptr);
 
+    /// The least, over all splits, of the greatest `stop` at new nodes of a split, after
+    /// saturate(): no element stops at a lower threshold.
+    std::uint16_t least_stop() const { return least_stop_; }
     std::size_t node_count() const { return nodes_.size(); }
     /// Whether each node was created on one level only.
     bool one_level_a_node() const { return one_level_; }
@@ -111,13 +114,14 @@ private:
     SplitsByLevel splits_;
     Spread spread_;
     MadeOf made_of_;
+    std::uint16_t least_stop_ = bfloat16_infinity;
     bool one_level_ = true;  // each node was created on one level
     bool one_step_ = true;   // no new node is a parent of another one of its split
     std::array<std::size_t, max_corners + max_new_nodes> numbers_{};
 };
 
 template <class Offset>
-void Sweeps::split(const MetSplit& s, Offset&& offset) {
+NESTGRID_INLINE void Sweeps::split(const MetSplit& s, Offset&& offset) {
     const Rule& rule = *s.rule;
     const auto corners = static_cast<std::size_t>(rule.corner_count());
     const std::span<const std::size_t> number = numbers(s.keys);

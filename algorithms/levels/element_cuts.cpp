@@ -57,24 +57,18 @@ SurfaceCut ElementCuts<Real>::finest_cut(std::size_t low, std::size_t high) cons
     }
     cut.attributes = attributes_;
     if (to.along - from.along < 1) {
-        const double drawn = u_[low] + cut.fraction * (u_[high] - u_[low]);
+        const double drawn = u(low) + cut.fraction * (u(high) - u(low));
         off_level_ = std::max(off_level_, std::abs(drawn));
     }
     return cut;
 }
 
 template <class Real>
-void ElementCuts<Real>::positions_of(std::span<const std::uint8_t> edges, unsigned inside,
-                                     Point* out) const {
-    const bool closed = view_->closed.any;
+void ElementCuts<Real>::positions_of_any(std::span<const std::uint8_t> edges, unsigned inside,
+                                         Point* out) const {
     for (const std::uint8_t edge : edges) {
-        if (closed && view_->closed.edge(edge) != nullptr) {
-            *out++ = cut(edge).x;
-        } else {
-            const auto [low, high] = ends(edge, inside);
-            *out++ = cuts_finest() ? finest_cut(low, high).x
-                                   : between(low, high, fraction_between(low, high));
-        }
+        const bool closed = view_->closed.edge(edge) != nullptr;
+        *out++ = closed ? cut(edge).x : plain_cut(edge, inside).x;
     }
 }
 

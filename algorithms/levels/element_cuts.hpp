@@ -31,7 +31,7 @@ public:
           attributes_(components_ - first_attribute) {}
 
     /// Loads positions, and keys where asked for, of the corners of an element.
-    void load(const View& view, bool keys) {
+    NESTGRID_INLINE void load(const View& view, bool keys) {
         view_ = &view;
         walk_->corners(view, keys ? key_.data() : nullptr, x_.data());
     }
@@ -41,10 +41,6 @@ public:
     void set_level(const Level<Real>& level) {
         level_ = &level;
         off_level_ = 0;
-        const Real* const value = view_->value + level.component;
-        for (std::size_t i = 0; i < view_->corner_count(); ++i) {
-            u_[i] = static_cast<double>(value[i * components_]) - level.value;
-        }
     }
 
     const View& view() const { return *view_; }
@@ -55,16 +51,25 @@ public:
     const std::array<Point, max_corners>& positions() const { return x_; }
     /// A component of the field at the corners.
     /// \param component 0 is the first behind the functions of position
-    std::array<double, max_corners> data(std::size_t component) const {
-        std::array<double, max_corners> values{};
+    NESTGRID_INLINE std::array<double, max_corners> data(std::size_t component) const {
+        std::array<double, max_corners> values;
         const Real* const value = view_->value + walk_->function_count() + component;
         for (std::size_t i = 0; i < view_->corner_count(); ++i) {
             values[i] = static_cast<double>(value[i * components_]);
         }
         return values;
     }
-    /// The component less the value of the level, at the corners.
-    const std::array<double, max_corners>& u() const { return u_; }
+    /// The component less the value of the level, at a corner.
+    double u(std::size_t corner) const {
+        const Real value = view_->value[corner * components_ + level_->component];
+        return static_cast<double>(value) - level_->value;
+    }
+    /// The same at all corners.
+    std::array<double, max_corners> u() const {
+        std::array<double, max_corners> values{};
+        for (std::size_t i = 0; i < view_->corner_count(); ++i) values[i] = u(i);
+        return values;
+    }
 
     /// The name of the vertex on a cut edge.
     NESTGRID_INLINE KeyPair name(std::uint8_t edge) const {
@@ -89,13 +94,20 @@ public:
         return {between(low, high, fraction), {key_[low], key_[high]}, fraction, {}};
     }
     /// Positions of the cuts of some edges.
-    void positions_of(std::span<const std::uint8_t> edges, unsigned inside, Point* out) const;
+    NESTGRID_INLINE void positions_of(std::span<const std::uint8_t> edges, unsigned inside,
+                                      Point* out) const {
+        if (view_->closed.any || cuts_finest()) return positions_of_any(edges, inside, out);
+        for (const std::uint8_t edge : edges) {
+            const auto [low, high] = ends(edge, inside);
+            *out++ = between(low, high, fraction_between(low, high));
+        }
+    }
     /// The end of a cut edge at which the component has the value of the level, or no_corner. Such
     /// a node may lie inside the maximal edge around that edge.
     static constexpr std::size_t no_corner = max_corners;
     std::size_t corner_at_level(std::uint8_t edge) const {
         const auto& [a, b] = view_->topology().edge[edge];
-        return u_[a] == 0 ? a : u_[b] == 0 ? b : no_corner;
+        return u(a) == 0 ? a : u(b) == 0 ? b : no_corner;
     }
     /// A corner as a vertex.
     SurfaceCut node(std::size_t corner) const;
@@ -108,8 +120,8 @@ public:
     }
     /// Whether the corners inside the level are joined across a face whose signs alternate.
     bool joined(const FaceTopology& face) const {
-        return joins_across(u_[face.corner[0]], u_[face.corner[1]], u_[face.corner[2]],
-                            u_[face.corner[3]]);
+        return joins_across(u(face.corner[0]), u(face.corner[1]), u(face.corner[2]),
+                            u(face.corner[3]));
     }
 
 private:
@@ -131,6 +143,7 @@ private:
         return x_[low] + fraction * (x_[high] - x_[low]);
     }
 
+    void positions_of_any(std::span<const std::uint8_t> edges, unsigned inside, Point* out) const;
     SurfaceCut finest_cut(std::size_t low, std::size_t high) const;
 
     const Walk<Real>* walk_;
@@ -143,7 +156,6 @@ private:
     const Level<Real>* level_ = nullptr;
     std::array<NodeKey, max_corners> key_{};
     std::array<Point, max_corners> x_{};
-    std::array<double, max_corners> u_{};
     mutable std::vector<double> attributes_;  // attributes of the vertex made last
 };
 

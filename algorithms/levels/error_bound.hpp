@@ -17,9 +17,13 @@ struct Extent {
     double least;
     double greatest;
 
-    static Extent of(std::span<const double> values) {
-        const auto [least, greatest] = std::ranges::minmax(values);
-        return {least, greatest};
+    NESTGRID_INLINE static Extent of(std::span<const double> values) {
+        Extent extent{values[0], values[0]};
+        for (const double value : values.subspan(1)) {
+            extent.least = std::min(extent.least, value);
+            extent.greatest = std::max(extent.greatest, value);
+        }
+        return extent;
     }
 };
 
@@ -28,8 +32,8 @@ struct Extent {
 /// \param corners extent of the values at the corners of the element
 /// \param off how far the data may leave the extent of the corners
 /// \param range tells least() and greatest() of all data
-double greatest_difference(const Extent& drawn, const Extent& corners, double off,
-                           const auto& range) {
+NESTGRID_INLINE double greatest_difference(const Extent& drawn, const Extent& corners, double off,
+                                           const auto& range) {
     const double least = std::max(range.least(), corners.least - off);
     const double greatest = std::min(range.greatest(), corners.greatest + off);
     return std::max({0.0, greatest - drawn.least, drawn.greatest - least});
@@ -59,9 +63,11 @@ double corner_offset(const ElementView<Real>& view, const std::array<NodeKey, ma
 /// How far U may be from P_S U on an element that stops.
 /// \param below the bound of what S projected away below it
 template <class Real>
-double projected_away(const ElementView<Real>& view, const std::array<NodeKey, max_corners>& keys,
-                      double below, const Bounds& bounds, const auto& corner_bounds) {
-    if (view.interpolated == 0 || !bounds.corners_bound_elements()) {
+NESTGRID_INLINE double projected_away(const ElementView<Real>& view,
+                                      const std::array<NodeKey, max_corners>& keys, double below,
+                                      const Bounds& bounds, const auto& corner_bounds) {
+    if (view.interpolated == 0) return below;
+    if (!bounds.corners_bound_elements()) {
         return below + corner_offset(view, keys, corner_bounds);
     }
     double least = std::numeric_limits<double>::infinity();
@@ -77,7 +83,8 @@ double projected_away(const ElementView<Real>& view, const std::array<NodeKey, m
 /// corners, and what the flatness of triangles adds in shapes other than simplices.
 /// \param below how far U may leave the range of the corners
 template <class Real>
-double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& search, Real below) {
+NESTGRID_INLINE double error_bound(const ElementCuts<Real>& element,
+                                   const LevelSearch<Real>& search, Real below) {
     const ElementView<Real>& view = element.view();
     if (view.is_leaf()) {
         const float told = view.inner_bounds().error;
@@ -94,7 +101,7 @@ double error_bound(const ElementCuts<Real>& element, const LevelSearch<Real>& se
     const Level<Real>& level = element.level();
     const Extent drawn = search.is_slice(level) ? corners : Extent{level.value, level.value};
     return std::min(bound + 2 * residual,
-                    greatest_difference(drawn, corners, bound, search.bounds()));
+                    greatest_difference(drawn, corners, bound, search.data_range()));
 }
 
 /// How far U may be from a level, or on a slice from the colour of component 0, anywhere.

@@ -34,6 +34,19 @@ public:
         Real bound;
     };
 
+    /// The least and the greatest value of data.
+    class DataRange {
+    public:
+        explicit DataRange(const Bounds& bounds)
+            : least_{bounds.least()}, greatest_{bounds.greatest()} {}
+        double least() const { return least_; }
+        double greatest() const { return greatest_; }
+
+    private:
+        double least_;
+        double greatest_;
+    };
+
     LevelSearch(const Walk<Real>& walk, std::span<const Level<Real>> levels,
                 const Criterion& criterion, const Bounds& bounds);
 
@@ -41,6 +54,8 @@ public:
     /// Whether a level is that of a function of position.
     bool is_slice(const Level<Real>& level) const { return level.component < functions_; }
     const Bounds& bounds() const { return *bounds_; }
+    /// Of component 0 of all data, as bounds() tell it.
+    const DataRange& data_range() const { return range_; }
     /// What the criterion promises of a level (Criterion::surface_error); nothing of a slice.
     double surface_error(const Level<Real>& level) const {
         constexpr double nothing = std::numeric_limits<double>::infinity();
@@ -98,6 +113,11 @@ private:
         Real hi;
     };
 
+    Range plain_range_of(const View& view) const;
+    NodeMask low_nodes(std::span<const NodeKey> nodes) const;
+    Sight look_plainly(const View& view, const Split& split) const;
+    Sight look_anyhow(const View& view, const Split& split, bool caps,
+                      CriterionQuestion& question) const;
     Range range_of(const View& view, std::size_t component) const;
     bool looks_at(const View& view, const Split& split, std::size_t component, Real bound,
                   bool caps) const;
@@ -115,6 +135,7 @@ private:
     std::size_t functions_;  // the first components are functions of position
     const Criterion* criterion_;
     const Bounds* bounds_;
+    DataRange range_;
     const HierarchicalIndicator* own_bounds_;   // bounds_ where it has this type, else null
     const detail::IndicatorEntries* entries_;   // entries of own_bounds_, or null
     const Threshold* own_threshold_ = nullptr;  // criterion_ where it is one of own_bounds_
@@ -123,6 +144,9 @@ private:
     bool saturated_;
     bool asks_for_masks_;
     bool never_stops_;  // S holds nowhere
+    // One level of the only component, and own_threshold_ is the criterion.
+    bool looks_plainly_ = false;
+    std::uint16_t most_ = 0;  // the threshold as bfloat16, where looks_plainly_
 };
 
 template <class Real>

@@ -6,13 +6,27 @@
 #include <bit>
 #include <limits>
 
+#include <levels/element_contour_steps.hpp>
 #include <levels/error_bound.hpp>
+#include <levels/level_search_steps.hpp>
 #include <ranks/agreement.hpp>
 #include <walk/unusable_values.hpp>
+#include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
 
 namespace {
+
+/// std::popcount without the call that it is on processors that may lack the instruction.
+constexpr std::uint64_t count_ones(std::uint64_t x) {
+#if defined(__POPCNT__)
+    return static_cast<std::uint64_t>(std::popcount(x));
+#else
+    x -= x >> 1U & 0x5555555555555555U;
+    x = (x & 0x3333333333333333U) + (x >> 2U & 0x3333333333333333U);
+    return ((x + (x >> 4U)) & 0x0F0F0F0F0F0F0F0FU) * 0x0101010101010101U >> 56U;
+#endif
+}
 
 unsigned all_corners(std::size_t corners) { return (1U << corners) - 1; }
 
@@ -201,8 +215,13 @@ void LevelSet<dimension, Real>::agree(Ranks& ranks) {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::walk(const Executor& executor) {
-    if (executor.concurrency() < 2) return walk_->run(*this);
+    if (executor.concurrency() < 2) return walk_->run_as(*this);
     tasks_.run(*this, executor);
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::walk_below(const Walk<Real>& walk, const View& view) {
+    walk.walk_below_as(view, *this);
 }
 
 template <int dimension, class Real>
@@ -233,7 +252,7 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
 }
 
 template <int dimension, class Real>
-Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
+NESTGRID_INLINE Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
     // Ranks that have parts of one element all visit it; that with its first leaf counts it.
     counted_ = view.member->presence == Presence::partly ? 0 : 1;
     counts_.calls += counted_;
@@ -245,7 +264,7 @@ Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split
 }
 
 template <int dimension, class Real>
-Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
+NESTGRID_INLINE Decision LevelSet<dimension, Real>::look(const View& view, const Split& split) {
     const bool caps = options_->cap && may_cap_below(view);
     const bool hidden = view.member->hidden == Hidden::wholly;
     if (options_->cap && hidden && !caps) return {Visit::skip, 0};
@@ -268,15 +287,14 @@ void LevelSet<dimension, Real>::undo() {
 /// Leaves out leaves that would only record and around which nothing is closed. With caps, inspects
 /// all others, because caps also lie in leaves that no level passes through.
 template <int dimension, class Real>
-Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values, NodeMask which,
-                                         bool closed) {
+NESTGRID_INLINE Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values,
+                                                         NodeMask which, bool closed) {
     const bool records_only = walks_.is_recording() && !walks_.draws_finest();
     if (records_only && !tally_.limited() && !closed) return {};
     if (options_->cap) return {0, which};
     const Leaves leaves = search_->cut_leaves(rule, values, which);
     const std::uint64_t before = counts_.calls;
-    add(static_cast<std::uint64_t>(std::popcount(which & ~leaves.inspect)),
-        static_cast<std::uint64_t>(std::popcount(leaves.extract)));
+    add(count_ones(which & ~leaves.inspect), count_ones(leaves.extract));
     if ((before >> 16U) != (counts_.calls >> 16U)) report_progress(0, 0);
     return leaves;
 }
@@ -373,8 +391,9 @@ unsigned LevelSet<dimension, Real>::boundary_in_slice(const View& view,
 /// \param inside the corners inside the level, one bit each
 /// \param boundary the faces to be capped
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::extract(std::size_t level, const View& view, unsigned inside,
-                                        unsigned boundary, bool draws) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::extract(std::size_t level, const View& view,
+                                                        unsigned inside, unsigned boundary,
+                                                        bool draws) {
     load(view, draws);
     at_hand_.cuts.set_level(search_->levels()[level]);
     if (walks_.is_recording() && view.closed.any) record(level, inside, boundary);
@@ -385,7 +404,7 @@ void LevelSet<dimension, Real>::extract(std::size_t level, const View& view, uns
 
 /// Loads the corners of the element, and adds its gradients where it is drawn.
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::load(const View& view, bool draws) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::load(const View& view, bool draws) {
     if (at_hand_.loaded) return;
     at_hand_.loaded = true;
     const bool keys =
@@ -411,7 +430,8 @@ void LevelSet<dimension, Real>::record(std::size_t level, unsigned inside, unsig
 }
 
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside, unsigned boundary) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside,
+                                                     unsigned boundary) {
     const View& view = at_hand_.cuts.view();
     LevelSurface<dimension>& surface = surfaces_[level];
     auto& contour = at_hand_.contour;
@@ -481,7 +501,7 @@ bool LevelSet<dimension, Real>::stops_above_cap(const View& view) {
 /// Counts an element that was drawn, raises the error bound by its error, and hands a full chunk to
 /// the sink.
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
+NESTGRID_INLINE void LevelSet<dimension, Real>::end_element(LevelSurface<dimension>& surface) {
     surface.add_extracted(1);
     surface.add_limited(at_hand_.cuts.view().inner_bounds().limited ? 1 : 0);
     surface.raise_off_level(at_hand_.cuts.off_level());

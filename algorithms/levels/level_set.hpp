@@ -65,6 +65,7 @@ public:
     bool takes(const View& view) override;
     Decision look(const View& view, const Split& split) override;
     void undo() override;
+    void walk_below(const Walk<Real>& walk, const View& view) override;
     void restart() override { counts_ = {}; }
 
 private:

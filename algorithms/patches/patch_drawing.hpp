@@ -156,6 +156,9 @@ private:
         surface_->add_extracted(run.simplex_count - run.four_count);
         target_->tally->add(run.simplex_count);
         if (surface_->counts_only()) return;
+        if (surface_->builder().takes_batches() && !target_->carries && !target_->at_nodes) {
+            return hand_over(run);
+        }
 
         std::array<Number, Run::most_cuts> v;
         if (surface_->names_vertices()) {
@@ -176,6 +179,18 @@ private:
         if (surface_->names_vertices()) put_boundaries(run.cuts(), v.data());
         if (target_->at_nodes) put_at_nodes(run.cuts(), v.data());
         surface_->builder().flush_if_full();
+    }
+
+    /// Hands the simplices to a sink as they lie in the run.
+    NESTGRID_INLINE void hand_over(Run& run) {
+        std::array<WidePoint, Run::most_cuts> x;
+        cut(run.cuts(), true, x.data());
+        for (const auto& four : run.fours()) {
+            const auto at = [&](std::size_t i) { return Point(x[four.cut[i]]); };
+            run.divide(four, !shorter(at(0), at(2), at(1), at(3)));
+        }
+        surface_->builder().take_batch({reinterpret_cast<const double*>(x.data()),
+                                        sizeof(WidePoint) / sizeof(double), run.simplices()});
     }
 
     /// Lists the drawn elements in order. \return their number

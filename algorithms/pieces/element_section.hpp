@@ -42,7 +42,7 @@ private:
     static constexpr Number none = ~Number{0};
 
     const View& view() const { return cuts_.view(); }
-    double u(std::size_t corner) const { return cuts_.u()[corner]; }
+    double u(std::size_t corner) const { return cuts_.u(corner); }
     unsigned joins(const ContourTable& table, unsigned inside) const;
     void draw_contour(unsigned inside);
     void draw_faces();

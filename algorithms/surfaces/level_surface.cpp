@@ -60,16 +60,6 @@ auto LevelSurface<dimension>::add(const SurfaceCut& cut) -> Number {
 }
 
 template <int dimension>
-auto LevelSurface<dimension>::add_unnamed(std::span<const Point> x,
-                                          std::span<const double> attributes) -> Number {
-    const Number first = builder_.next_vertex();
-    if (none - first < x.size()) throw_too_many_vertices();
-    if (normals_.gradients != nullptr) where_.resize(where_.size() + x.size(), {none, none, 0.0});
-    builder_.add_vertices(x, attributes);
-    return first;
-}
-
-template <int dimension>
 void LevelSurface<dimension>::verify(Number number, const Point& x) const {
     if (position(number) == x) return;
     throw GridError("two elements put the vertex " + std::to_string(number) +

@@ -78,7 +78,16 @@ public:
     /// Adds a vertex on an edge.
     Number add(const SurfaceCut& cut);
     /// Adds vertices without names: inside one element, or of one task alone. \return the first one
-    Number add_unnamed(std::span<const Point> x, std::span<const double> attributes);
+    NESTGRID_INLINE Number add_unnamed(std::span<const Point> x,
+                                       std::span<const double> attributes) {
+        const Number first = builder_.next_vertex();
+        if (none - first < x.size()) throw_too_many_vertices();
+        if (normals_.gradients != nullptr) {
+            where_.resize(where_.size() + x.size(), {none, none, 0.0});
+        }
+        builder_.add_vertices(x, attributes);
+        return first;
+    }
     /// \throw GridError where a vertex lies elsewhere
     void verify(Number number, const Point& x) const;
     Point position(Number number) const { return builder_.position(number); }

@@ -111,7 +111,8 @@ public:
           soup_{&sink},
           chunk_{soup_chunk_},
           shares_vertices_{false},
-          elements_{sink.keeps_elements()} {}
+          elements_{sink.keeps_elements()},
+          takes_batches_{sink.takes_batches() && !elements_} {}
 
     /// The surface that is filled, or null where a sink takes it in chunks.
     const Target* target() const {
@@ -121,6 +122,13 @@ public:
     template <class Function>
     void change(Function&& function) {
         function(*surface_);
+    }
+    /// Whether a sink takes simplices as they lie in a batch.
+    bool takes_batches() const { return takes_batches_; }
+    /// Hands the chunk, and a batch behind it, to the sink. Requires takes_batches().
+    void take_batch(const SimplexBatch& batch) {
+        flush();
+        soup_->take_batch(batch);
     }
     /// Whether elements share vertices.
     bool shares_vertices() const { return shares_vertices_; }
@@ -139,13 +147,14 @@ public:
         surface_->vertices.push_back(x);
         for (const double a : attributes) surface_->attributes.push_back(a);
     }
-    void add_vertices(std::span<const Point> x, std::span<const double> attributes) {
+    NESTGRID_INLINE void add_vertices(std::span<const Point> x,
+                                      std::span<const double> attributes) {
         surface_->vertices.insert(surface_->vertices.end(), x.begin(), x.end());
         if (attributes.empty()) return;
         surface_->attributes.insert(surface_->attributes.end(), attributes.begin(),
                                     attributes.end());
     }
-    Point position(Number vertex) const {
+    NESTGRID_INLINE Point position(Number vertex) const {
         return vertex < taken_ ? mesh_->position(vertex) : surface_->vertices[vertex - taken_];
     }
     bool keeps_elements() const { return elements_; }
@@ -256,6 +265,7 @@ private:
     Number taken_ = 0;  // vertices that the sink has
     bool shares_vertices_ = true;
     bool elements_;
+    bool takes_batches_ = false;
 };
 
 }  // namespace nestgrid::engine

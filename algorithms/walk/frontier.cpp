@@ -98,7 +98,7 @@ public:
         }
         ++item_;
         if (!here.entry) return visitor_->look(view, split);
-        walk_->walk_below(view, *visitor_);
+        visitor_->walk_below(*walk_, view);
         return {Visit::skip, 0};
     }
     void extract(const ElementView<Real>&) override {}

@@ -34,6 +34,10 @@ public:
     virtual void restart() = 0;
     /// Decides like inspect(), without counting the element.
     virtual Decision look(const ElementView<Real>& view, const Split& split) = 0;
+    /// Visits an element and all below it. A final visitor has the walk compiled for its class.
+    virtual void walk_below(const Walk<Real>& walk, const ElementView<Real>& view) {
+        walk.walk_below(view, *this);
+    }
 
 protected:
     TaskVisitor() = default;

@@ -1,29 +1,17 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <walk/walk.hpp>
+#include <walk/walk_steps.hpp>
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 
 #include <nestgrid/detail/coarse_boundary.hpp>
-#include <nestgrid/detail/interpolate.hpp>
-#include <nestgrid/error.hpp>
 #include <projection/made_for_ranks.hpp>
 #include <ranks/far_values.hpp>
-#include <walk/crossing_nodes.hpp>
 
 namespace nestgrid::engine {
 
 namespace {
-
-/// A vector that only grows.
-template <class T>
-T* with_room(std::vector<T>& vector, std::size_t count) {
-    if (vector.size() < count) vector.resize(count);
-    return vector.data();
-}
 
 [[noreturn]] void throw_missing(NodeMask missing, std::size_t coarse) {
     throw GridError("the field has no value at corner " +
@@ -118,17 +106,12 @@ void Walk<Real>::give_back(std::unique_ptr<Stack> stack) const {
 
 template <class Real>
 void Walk<Real>::run(Visitor<Real>& visitor, std::size_t first, std::size_t last) const {
-    std::unique_ptr<Stack> stack = take_stack();
-    for (std::size_t i = first; i < last; ++i) {
-        View view;
-        if (make_coarse(i, *stack, view)) walk_below(view, visitor);
-    }
-    give_back(std::move(stack));
+    run_as(visitor, first, last);
 }
 
 template <class Real>
 void Walk<Real>::walk_below(const View& view, Visitor<Real>& visitor) const {
-    if (!visitor.takes(view)) visit(view, visitor);
+    walk_below_as(view, visitor);
 }
 
 template <class Real>
@@ -195,46 +178,6 @@ void Walk<Real>::put_coarse_values(View& view) const {
     view.value = value;
 }
 
-template <class Real>
-void Walk<Real>::visit(const View& view, Visitor<Real>& visitor) const {
-    const Member& member = *view.member;
-    if (member.hidden == Hidden::wholly && !visitor.sees_hidden()) return;
-    Split split;
-    if (member.rule == nullptr) {
-        if (visitor.inspect(view, split).visit != Visit::skip) visitor.extract(view);
-        return;
-    }
-    const Rule& rule = *member.rule;
-    split.rule = &rule;
-    split.constrained = member.constrained;
-    split.outside = member.outside;
-    const std::size_t count = rule.new_nodes.size();
-    if (carries_keys_) {
-        const std::size_t corners = view.corner_count();
-        NodeKey* const key = with_room(view.stack->frame(view.level).key, corners + count);
-        this->corners(view, key, nullptr);
-        for (std::size_t n = 0; n < count; ++n) {
-            key[corners + n] = derived_key(rule.new_nodes[n], key);
-        }
-        split.keys = {key + corners, count};
-    } else if (own_keys_) {
-        split.keys = view.family->new_keys(member);
-    }
-    if (!constrained_ && hanging_ != nullptr) split.constrained = hanging_->mask(split.keys);
-    if (hanging_ != nullptr) split.unseen = hanging_->unseen(split.keys);
-    split.constrained |= split.unseen;
-    if (fixed_ != nullptr) mark_crossing(view, split);
-    Decision decision;
-    if (count > 0) decision = visitor.inspect(view, split);
-    if (decision.visit == Visit::skip) return;
-    if (decision.visit == Visit::stop && member.hidden != Hidden::partly) {
-        // Else the rank draws it that has its first leaf.
-        if (member.presence != Presence::partly) visitor.extract(view);
-    } else {
-        descend(view, split, decision, visitor);
-    }
-}
-
 /// Sets Split::crossing. These nodes count as new ones that do not hang, and S holds at no fixed
 /// one.
 template <class Real>
@@ -247,91 +190,32 @@ void Walk<Real>::mark_crossing(const View& view, Split& split) const {
     split.constrained &= ~split.crossing;
 }
 
+/// Puts values from other ranks where the field has none.
+/// \param missing the new nodes whose values are needed
+/// \param out the values at the new nodes
+///
+/// \throw GridError where there is none
 template <class Real>
-void Walk<Real>::descend(const View& view, const Split& split, const Decision& decision,
-                         Visitor<Real>& visitor) const {
-    const Rule& rule = *split.rule;
-    Frame<Real>& frame = view.stack->frame(view.level);
-    NodeMask interpolated = decision.interpolated;
-    const NodeMask mean = (interpolated | split.constrained) & rule.all();
-    const NodeMask wanted = visitor.children(view);
-    project(view, split, mean, wanted, frame);
-    if (carries_positions_) project_positions(view, split, mean, frame);
-    if (functions_ != nullptr) put_functions(view, split, mean, frame);
-    if (!decision.weights.empty()) {
-        blend(rule, mean, decision.weights, functions_, frame.value.data(), components_);
-        if (carries_positions_ && new_positions_) {
-            blend(rule, mean, decision.weights, nullptr, frame.position.data()->data(),
-                  Point{}.size());
-        }
-        for (std::size_t n = 0; n < decision.weights.size(); ++n) {
-            interpolated |= NodeMask{decision.weights[n] > 0} << n;
-        }
-    }
-    if (!rule.new_nodes.empty()) visitor.entered(view, split, frame.value.data());
-    const ClosingSplit<Real>* closing = nullptr;
-    if (needs_.closed &&
-        (view.closed.any || (mean | split.crossing) != 0 || rule.divides_bare_faces)) {
-        closing = close(view, split, mean, frame);
-    }
-    visit_children(view, split, interpolated, closing, frame, visitor);
+void Walk<Real>::put_far_values(const View& view, const Split& split, NodeMask missing,
+                                Real* out) const {
+    const FarValues* const far = hierarchy_->facts().far_values;
+    if (far != nullptr) missing &= far->give(split.keys, missing, out);
+    if (missing != 0) throw_missing(missing, view);
 }
 
-/// Enters the element, and puts P_S U at its corners and new nodes into the frame, eq. (2).
+/// Moves values and true positions at new nodes where S has a weight towards their interpolants.
+/// \return the nodes at which the weight is greater than 0
 template <class Real>
-void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
-                         Frame<Real>& frame) const {
+NodeMask Walk<Real>::blend(const Split& split, NodeMask mean, std::span<const float> weights,
+                           Frame<Real>& frame) const {
     const Rule& rule = *split.rule;
-    const std::size_t corners = view.corner_count();
-    const std::size_t stride = components_;
-    Real* const value = with_room(frame.value, (corners + rule.new_nodes.size()) * stride);
-    if (needs_.values) std::copy_n(view.value, corners * stride, value);
-    const NodeMask which = needs_.values ? rule.all() & ~(mean | split.crossing) : NodeMask{0};
-    NodeMask missing = hierarchy_->enter(view.stack->task.get(), view.element(), rule, which, value,
-                                         wanted, frame.family);
-    if ((missing & which) != 0 && hierarchy_->facts().far_values != nullptr) {
-        missing = hierarchy_->facts().far_values->give(split.keys, missing & which,
-                                                       value + corners * stride);
+    engine::blend(rule, mean, weights, functions_, frame.value.data(), components_);
+    if (carries_positions_ && new_positions_) {
+        engine::blend(rule, mean, weights, nullptr, frame.position.data()->data(), Point{}.size());
     }
-    if ((missing & which) != 0) throw_missing(missing & which, view);
-    if (!needs_.values) return;
-    if (split.crossing != 0) fixed_->put_values(split, value + corners * stride);
-    for (NodeMask left = mean; left != 0; left &= left - 1) {
-        const auto n = static_cast<std::size_t>(std::countr_zero(left));
-        for (std::size_t c = 0; c < stride; ++c) {
-            value[(corners + n) * stride + c] =
-                detail::interpolate(rule.new_nodes[n], value + c, stride);
-        }
-    }
-}
-
-/// Puts the positions of the corners and new nodes into the frame. True positions are projected
-/// like the data.
-template <class Real>
-void Walk<Real>::project_positions(const View& view, const Split& split, NodeMask mean,
-                                   Frame<Real>& frame) const {
-    const Rule& rule = *split.rule;
-    const std::size_t corners = view.corner_count();
-    const std::size_t count = rule.new_nodes.size();
-    Point* const x = with_room(frame.position, corners + count);
-    for (std::size_t k = 0; k < corners; ++k) {
-        x[k] = view.node_position[view.as == nullptr ? k : view.as->corner[k]];
-    }
-    NodeMask given = 0;
-    if (new_positions_) {
-        given = rule.all() & ~mean;
-        hierarchy_->new_positions(view.stack->task.get(), view.element(), given,
-                                  {x + corners, count});
-    }
-    if (fixed_ != nullptr) given |= fixed_->put_positions(split.keys, x + corners);
-    for (std::size_t n = 0; n < count; ++n) {
-        if ((given >> n & 1U) == 0) x[corners + n] = detail::interpolate(rule.new_nodes[n], x);
-    }
-    if (!carries_placed_) return;
-    Point* const placed = with_room(frame.placed, corners + count);
-    placed_corners(view, placed);
-    hierarchy_->new_positions(view.stack->task.get(), view.element(), rule.all(),
-                              {placed + corners, count});
+    NodeMask weighted = 0;
+    for (std::size_t n = 0; n < weights.size(); ++n) weighted |= NodeMask{weights[n] > 0} << n;
+    return weighted;
 }
 
 /// Finds the edges and faces of the rule that the split closes.
@@ -391,121 +275,6 @@ void ClosingSplit<Real>::close(const ElementView<Real>& view, const Rule& rule, 
     }
 }
 
-template <class Real>
-void Walk<Real>::visit_children(const View& view, const Split& split, NodeMask interpolated,
-                                const ClosingSplit<Real>* closing, Frame<Real>& frame,
-                                Visitor<Real>& visitor) const {
-    const Rule& rule = *split.rule;
-    const Family& family = frame.family;
-    NodeMask shown = family.leaves;
-    if ((family.hidden & shown) != 0 && !visitor.sees_hidden()) shown &= ~family.hidden;
-    Leaves leaves;
-    if (shown != 0) leaves = visitor.leaves(rule, frame.value.data(), shown, closing != nullptr);
-    with_room(frame.child_value, max_corners * components_);
-    const bool any_interpolated = (view.interpolated | interpolated) != 0;
-    View child = make_child(view, rule, frame);
-    for (NodeMask left = family.split | leaves.extract | leaves.inspect; left != 0;
-         left &= left - 1) {
-        const auto c = static_cast<std::size_t>(std::countr_zero(left));
-        set_child(view, rule.children[c], c, frame, child);
-        if (any_interpolated) {
-            child.interpolated = interpolated_corners(view, *child.as, interpolated);
-        }
-        if (closing != nullptr) {
-            child.closed = split.crossing == 0
-                               ? closing->around(*child.as)
-                               : fixed_->around(split, *closing, *child.as, *frame.crossed);
-        }
-        if ((leaves.extract >> c & 1U) != 0) {
-            visitor.extract(child);
-        } else {
-            visit(child, visitor);
-        }
-    }
-}
-
-/// Makes the view of a child, but for what set_child() sets.
-template <class Real>
-auto Walk<Real>::make_child(const View& father, const Rule& rule, const Frame<Real>& frame) const
-    -> View {
-    View child;
-    child.family = &frame.family;
-    child.stack = father.stack;
-    child.coarse = father.coarse;
-    child.father = &father;
-    child.made_by = &rule;
-    child.value = frame.child_value.data();
-    child.node_key = frame.key.data();
-    child.node_position = frame.position.data();
-    child.node_placed = frame.placed.data();
-    child.closed.any = false;
-    child.level = father.level + 1;
-    child.boundary = 0;
-    child.interpolated = 0;
-    return child;
-}
-
-/// Sets what differs between the children of one family, and puts the child's values into the
-/// frame.
-template <class Real>
-void Walk<Real>::set_child(const View& father, const Child& as, std::size_t c, Frame<Real>& frame,
-                           View& child) const {
-    child.member = &frame.family.members[c];
-    child.as = &as;
-    child.path = father.path * NodeKey{0x9e3779b97f4a7c15ULL} + c + 1U;
-    child.shape = as.shape;
-    child.orientation = static_cast<std::int8_t>(father.orientation * as.orientation);
-    child.child = static_cast<std::uint8_t>(c);
-    if (father.boundary != 0) child.boundary = boundary_of_child(father, as);
-    const Real* const from = frame.value.data();
-    Real* const to = frame.child_value.data();
-    if (components_ > 1) {
-        copy_components(as, from, to);
-    } else if (as.shape == Shape::hexahedron) {
-        for (std::size_t i = 0; i < 8; ++i) to[i] = from[as.corner[i]];
-    } else {
-        const std::size_t corners = nestgrid::topology(as.shape).corners;
-        for (std::size_t i = 0; i < corners; ++i) to[i] = from[as.corner[i]];
-    }
-}
-
-/// Copies all components of the values at the corners of a child.
-template <class Real>
-void Walk<Real>::copy_components(const Child& as, const Real* from, Real* to) const {
-    const std::size_t corners = nestgrid::topology(as.shape).corners;
-    for (std::size_t i = 0; i < corners; ++i) {
-        to = std::copy_n(from + as.corner[i] * components_, components_, to);
-    }
-}
-
-/// Faces of a child on the boundary of the domain, one bit each.
-template <class Real>
-std::uint8_t Walk<Real>::boundary_of_child(const View& father, const Child& as) {
-    const Topology& t = nestgrid::topology(as.shape);
-    unsigned boundary = 0;
-    for (std::size_t f = 0; f < t.faces; ++f) {
-        const std::uint8_t g = as.parent_face[f];
-        if (g != no_face && (father.boundary >> g & 1U) != 0) boundary |= 1U << f;
-    }
-    return static_cast<std::uint8_t>(boundary);
-}
-
-/// Corners of a child at which S holds, one bit each.
-template <class Real>
-std::uint8_t Walk<Real>::interpolated_corners(const View& father, const Child& as,
-                                              NodeMask interpolated) {
-    const std::size_t corners = father.corner_count();
-    const std::size_t count = nestgrid::topology(as.shape).corners;
-    unsigned result = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t n = as.corner[i];
-        const NodeMask flag =
-            n < corners ? NodeMask{father.interpolated} >> n : interpolated >> (n - corners);
-        result |= static_cast<unsigned>(flag & 1U) << i;
-    }
-    return static_cast<std::uint8_t>(result);
-}
-
 template class WalkStack<float>;
 template class WalkStack<double>;
 template struct ClosingSplit<float>;
@@ -516,6 +285,24 @@ template Walk<float>::Walk(const Hierarchy<float>&, const Needs&, const HangingN
                            const PositionFunctions*);
 template Walk<double>::Walk(const Hierarchy<double>&, const Needs&, const HangingNodes*,
                             const PositionFunctions*);
+template NodeMask Walk<float>::blend(const Split&, NodeMask, std::span<const float>,
+                                     Frame<float>&) const;
+template NodeMask Walk<double>::blend(const Split&, NodeMask, std::span<const float>,
+                                      Frame<double>&) const;
+template void Walk<float>::put_far_values(const View&, const Split&, NodeMask, float*) const;
+template void Walk<double>::put_far_values(const View&, const Split&, NodeMask, double*) const;
+template void Walk<float>::mark_crossing(const View&, Split&) const;
+template void Walk<double>::mark_crossing(const View&, Split&) const;
+template const ClosingSplit<float>* Walk<float>::close(const View&, const Split&, NodeMask,
+                                                       Frame<float>&) const;
+template const ClosingSplit<double>* Walk<double>::close(const View&, const Split&, NodeMask,
+                                                         Frame<double>&) const;
+template std::unique_ptr<WalkStack<float>> Walk<float>::take_stack() const;
+template std::unique_ptr<WalkStack<double>> Walk<double>::take_stack() const;
+template void Walk<float>::give_back(std::unique_ptr<WalkStack<float>>) const;
+template void Walk<double>::give_back(std::unique_ptr<WalkStack<double>>) const;
+template bool Walk<float>::make_coarse(std::size_t, WalkStack<float>&, View&) const;
+template bool Walk<double>::make_coarse(std::size_t, WalkStack<double>&, View&) const;
 template void Walk<float>::run(Visitor<float>&, std::size_t, std::size_t) const;
 template void Walk<double>::run(Visitor<double>&, std::size_t, std::size_t) const;
 template void Walk<float>::walk_below(const View&, Visitor<float>&) const;

@@ -15,7 +15,6 @@
 // function of its arguments (mean.hpp).
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -63,8 +62,10 @@ public:
     /// Frame of the split of an element on a level.
     Frame<Real>& frame(int level) {
         const auto at = static_cast<std::size_t>(level);
-        while (frames_.size() <= at) frames_.emplace_back();
-        return frames_[at];
+        while (frames_.size() <= at) [[unlikely]] {
+                frames_.push_back(std::make_unique<Frame<Real>>());
+            }
+        return *frames_[at];
     }
     std::unique_ptr<Task> task;
     // The coarse element that the walk is below.
@@ -74,7 +75,7 @@ public:
     std::array<NodeKey, max_corners> key{};
 
 private:
-    std::deque<Frame<Real>> frames_;
+    std::vector<std::unique_ptr<Frame<Real>>> frames_;
 };
 
 /// Walks a hierarchy. Construction looks at the coarse grid once. Several threads may walk.
@@ -104,6 +105,15 @@ public:
     void run(Visitor<Real>& visitor, std::size_t first, std::size_t last) const;
     /// Visits an element and all below it.
     void walk_below(const View& view, Visitor<Real>& visitor) const;
+    // The same, compiled for one class of visitors, which is to be final (walk_steps.hpp).
+    template <class V>
+    void run_as(V& visitor, std::size_t first, std::size_t last) const;
+    template <class V>
+    void run_as(V& visitor) const {
+        run_as(visitor, 0, hierarchy_->coarse_count());
+    }
+    template <class V>
+    void walk_below_as(const View& view, V& visitor) const;
 
     /// Keys and positions of the corners; each pointer may be null.
     void corners(const View& view, NodeKey* keys, Point* positions) const;
@@ -134,11 +144,15 @@ private:
 
     bool make_coarse(std::size_t i, Stack& stack, View& view) const;
     void put_coarse_values(View& view) const;
-    void visit(const View& view, Visitor<Real>& visitor) const;
-    void descend(const View& view, const Split& split, const Decision& decision,
-                 Visitor<Real>& visitor) const;
+    template <class V>
+    void visit(const View& view, V& visitor) const;
+    template <class V>
+    void descend(const View& view, const Split& split, const Decision& decision, V& visitor) const;
     void project(const View& view, const Split& split, NodeMask mean, NodeMask wanted,
                  Frame<Real>& frame) const;
+    void put_far_values(const View& view, const Split& split, NodeMask missing, Real* out) const;
+    NodeMask blend(const Split& split, NodeMask mean, std::span<const float> weights,
+                   Frame<Real>& frame) const;
     void project_positions(const View& view, const Split& split, NodeMask mean,
                            Frame<Real>& frame) const;
     void put_functions(const View& view, const Split& split, NodeMask mean,
@@ -146,9 +160,9 @@ private:
     const ClosingSplit<Real>* close(const View& view, const Split& split, NodeMask mean,
                                     Frame<Real>& frame) const;
     void mark_crossing(const View& view, Split& split) const;
+    template <class V>
     void visit_children(const View& view, const Split& split, NodeMask interpolated,
-                        const ClosingSplit<Real>* closing, Frame<Real>& frame,
-                        Visitor<Real>& visitor) const;
+                        const ClosingSplit<Real>* closing, Frame<Real>& frame, V& visitor) const;
     View make_child(const View& father, const Rule& rule, const Frame<Real>& frame) const;
     void set_child(const View& father, const Child& as, std::size_t c, Frame<Real>& frame,
                    View& child) const;

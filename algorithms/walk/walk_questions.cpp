@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include <nestgrid/detail/interpolate.hpp>
-#include <walk/walk.hpp>
+#include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
 
@@ -73,26 +73,6 @@ unsigned Walk<Real>::boundary(const View& view) const {
 template <class Real>
 void Walk<Real>::gradients(const View& view, std::span<Point> out) const {
     hierarchy_->corner_gradients(view.stack->task.get(), view.element(), out);
-}
-
-template <class Real>
-void Walk<Real>::corners(const View& view, NodeKey* keys, Point* positions) const {
-    const std::size_t corners = view.corner_count();
-    NodeKey* const own_keys = own_keys_ ? keys : nullptr;
-    Point* const own_positions = own_positions_ ? positions : nullptr;
-    if (own_keys != nullptr || own_positions != nullptr) {
-        hierarchy_->corners(view.stack->task.get(), view.element(), corners, own_keys,
-                            own_positions, nullptr);
-    }
-    const auto node = [&](std::size_t k) {
-        return view.as == nullptr ? k : std::size_t{view.as->corner[k]};
-    };
-    for (std::size_t k = 0; keys != own_keys && k < corners; ++k) {
-        keys[k] = view.node_key[node(k)];
-    }
-    for (std::size_t k = 0; positions != own_positions && k < corners; ++k) {
-        positions[k] = view.node_position[node(k)];
-    }
 }
 
 template <class Real>

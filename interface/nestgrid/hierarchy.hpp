@@ -65,18 +65,21 @@ struct InnerBounds {
 /// are masked, elsewhere, or were not asked for; nothing of them is set but handle and presence.
 struct Family {
     std::vector<Member> members;
-    NodeMask split = 0;              ///< members that are split, one bit each
-    NodeMask leaves = 0;             ///< members that are not, likewise
-    NodeMask hidden = 0;             ///< members that are hidden wholly, likewise
-    std::vector<NodeKey> keys;       ///< of the new nodes of all members that are split
+    NodeMask split = 0;   ///< members that are split, one bit each
+    NodeMask leaves = 0;  ///< members that are not, likewise
+    NodeMask hidden = 0;  ///< members that are hidden wholly, likewise
+    /// Of the new nodes of all members that are split, and room behind them.
+    std::vector<NodeKey> keys;
+    std::size_t key_count = 0;       ///< number of keys that are set
     std::vector<InnerBounds> inner;  ///< one for each member, or none where Bounds say all
     /// Where handles point to, for elements that do not fit into them.
     std::shared_ptr<void> elements;
 
     /// Makes room for members, none of which is set, and keeps the memory.
     void begin(std::size_t count) {
-        if (members.size() < count) members.resize(count);
-        keys.clear();
+        if (members.size() < count) [[unlikely]]
+            members.resize(count);
+        key_count = 0;
         split = leaves = hidden = 0;
     }
     /// \param member of this family
@@ -85,7 +88,17 @@ struct Family {
                              : inner[static_cast<std::size_t>(&member - members.data())];
     }
     std::span<const NodeKey> new_keys(const Member& member) const {
-        return std::span(keys).subspan(member.first_key, member.rule->new_nodes.size());
+        return {keys.data() + member.first_key, member.rule->new_nodes.size()};
+    }
+    /// Makes room for keys behind those that are set, and counts them as set.
+    /// \param spare room behind them
+    std::span<NodeKey> add_keys(std::size_t count, std::size_t spare) {
+        if (keys.size() < key_count + count + spare) [[unlikely]] {
+            keys.resize(2 * (key_count + count + spare));
+        }
+        const std::span<NodeKey> added(keys.data() + key_count, count);
+        key_count += count;
+        return added;
     }
 };
 

@@ -39,6 +39,18 @@ public:
         }
         *to_ = to;
     }
+    bool takes_batches() const override { return true; }
+    void take_batch(const nestgrid::SimplexBatch& batch) override {
+        Triangle* to = *to_;
+        for (const auto& corners : batch.simplices) {
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                const double* const x = batch.at(corners[i]);
+                for (std::size_t d = 0; d < 3; ++d) (*to)[3 * i + d] = static_cast<float>(x[d]);
+            }
+            ++to;
+        }
+        *to_ = to;
+    }
 
 private:
     Triangle** to_;

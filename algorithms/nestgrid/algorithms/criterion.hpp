@@ -97,6 +97,8 @@ public:
     virtual bool saturated() const { return true; }
     /// How eta spreads from the new nodes of a split element to its corners, where it is saturated.
     virtual Spread spread() const { return {}; }
+    /// At a threshold below this no element stops.
+    virtual double least_stop() const { return 0; }
     /// Whether this is of the grid in the state of this epoch. One that keeps numbers of nodes says
     /// whether they were computed then.
     virtual bool made_for(std::uint64_t /*epoch*/) const { return true; }

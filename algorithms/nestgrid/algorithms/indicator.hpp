@@ -149,6 +149,7 @@ struct PrerollFacts {
     int longest_chain = 1;         ///< of new nodes of one split that are parents of each other
     bool all_divided = true;       ///< every rule divides all edges and faces
     bool one_level_a_node = true;  ///< every node is created on one level only
+    double least_stop = 0;         ///< of the greatest `stop` at the new nodes of a split
 
     void add(const PrerollFacts& other);
     /// \throw InvalidInput where the value is not a number, infinite, or beyond the limit
@@ -258,6 +259,7 @@ public:
         return mask;
     }
 
+    double least_stop() const override { return facts_.least_stop; }
     Spread spread() const override { return spread_; }
     NodeError error() const { return error_; }
     bool corners_bound_elements() const override { return error_ == NodeError::deviation; }

@@ -65,6 +65,16 @@ protected:
     MeshSink& operator=(MeshSink&&) noexcept = default;
 };
 
+/// Triangles (segments) as they lie in the memory of a walk.
+struct SimplexBatch {
+    const double* positions;  ///< three coordinates of each point
+    std::size_t stride;       ///< numbers from one point to the next
+    /// Corners, as numbers of points; a segment has two.
+    std::span<const std::array<std::uint16_t, 3>> simplices;
+
+    const double* at(std::uint16_t point) const { return positions + point * stride; }
+};
+
 /// Takes triangles (segments) in parts while they are extracted, without connections between
 /// elements; nothing else is kept.
 template <int dimension>
@@ -75,6 +85,10 @@ public:
     /// Takes the next part. Simplices name the vertices, and `element_of` counts the elements, of
     /// the part. Elements share no vertices, so that one may come several times.
     virtual void take(const Surface<dimension>& part) = 0;
+    /// Takes the next part without the detour through a Surface, where takes_batches().
+    virtual void take_batch(const SimplexBatch& /*batch*/) {}
+    /// Whether the sink also takes batches; not where it keeps elements or attributes.
+    virtual bool takes_batches() const { return false; }
     /// Whether parts are to tell the elements that simplices come from.
     virtual bool keeps_elements() const { return false; }
 
@@ -106,6 +120,17 @@ public:
                 for (std::size_t d = 0; d < 3; ++d) (*to)[3 * i + d] = static_cast<Real>(x[d]);
             }
             ++to;
+        }
+    }
+    bool takes_batches() const override { return true; }
+    void take_batch(const SimplexBatch& batch) override {
+        for (const auto& corners : batch.simplices) {
+            Simplex simplex;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
+                const double* const x = batch.at(corners[i]);
+                for (std::size_t d = 0; d < 3; ++d) simplex[3 * i + d] = static_cast<Real>(x[d]);
+            }
+            target_->push_back(simplex);
         }
     }
 

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include <nestgrid/detail/constants.hpp>
+#include <nestgrid/detail/inlining.hpp>
 #include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/detail/operations.hpp>
 #include <nestgrid/hierarchy.hpp>
@@ -47,10 +48,19 @@ HierarchyFacts facts_of_grid(const Grid& grid) {
     return facts;
 }
 
+/// Which members of a family are what, one bit each: in registers while a family is described.
+struct MemberMasks {
+    NodeMask split = 0;
+    NodeMask leaves = 0;
+    NodeMask hidden = 0;
+};
+
 /// Sets member c of a family to an element, with its rule, masks and keys of new nodes.
+/// \param masks to which the bits of the member are added
 template <class Grid, class AnyContext>
-void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& context,
-                     const ElementOf<Grid>& e, Family& family, std::size_t c) {
+NESTGRID_INLINE void describe_member(const Grid& grid, const HierarchyFacts& facts,
+                                     AnyContext& context, const ElementOf<Grid>& e, Family& family,
+                                     std::size_t c, MemberMasks& masks) {
     Member& member = family.members[c];
     set_handle(member.element, e);
     if constexpr (may_offer<Grid>(Feature::presence)) {
@@ -65,23 +75,21 @@ void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& 
     const NodeMask bit = NodeMask{1} << c;
     if constexpr (may_offer<Grid>(Feature::hidden)) {
         if (facts.offers(Feature::hidden)) member.hidden = call_hidden(grid, context, e);
-        if (member.hidden == Hidden::wholly) family.hidden |= bit;
+        if (member.hidden == Hidden::wholly) masks.hidden |= bit;
     }
     member.rule = call_split(grid, context, e);
     if (member.rule == nullptr) {
-        family.leaves |= bit;
+        masks.leaves |= bit;
         return;
     }
-    family.split |= bit;
+    masks.split |= bit;
     if constexpr (may_offer<Grid>(Feature::own_keys)) {
         if (facts.offers(Feature::own_keys)) {
-            member.first_key = static_cast<std::uint32_t>(family.keys.size());
-            // A grid that gives the keys of another rule writes no farther than this, and
+            member.first_key = static_cast<std::uint32_t>(family.key_count);
+            // A grid that gives the keys of another rule writes no farther than the spare room, and
             // check_grid can name the mistake.
-            const std::size_t room = family.keys.size() + max_new_nodes;
-            if (family.keys.capacity() < room) family.keys.reserve(2 * room);
-            family.keys.resize(family.keys.size() + member.rule->new_nodes.size());
-            call_new_keys(grid, context, e, std::span(family.keys).subspan(member.first_key));
+            const std::size_t count = member.rule->new_nodes.size();
+            call_new_keys(grid, context, e, family.add_keys(count, max_new_nodes));
         }
     }
     if constexpr (may_offer<Grid>(Feature::constrained)) {
@@ -92,6 +100,17 @@ void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& 
     if constexpr (may_offer<Grid>(Feature::outside)) {
         if (facts.offers(Feature::outside)) member.outside = call_outside(grid, context, e);
     }
+}
+
+/// Describes the only member of a family, or one that is described by itself.
+template <class Grid, class AnyContext>
+void describe_member(const Grid& grid, const HierarchyFacts& facts, AnyContext& context,
+                     const ElementOf<Grid>& e, Family& family, std::size_t c) {
+    MemberMasks masks;
+    describe_member(grid, facts, context, e, family, c, masks);
+    family.split |= masks.split;
+    family.leaves |= masks.leaves;
+    family.hidden |= masks.hidden;
 }
 
 /// A field that gives the gradient of the data at any node, of a grid with known bisections.
@@ -133,7 +152,8 @@ public:
             family.begin(1);
             const std::span<Element> kept = places(family, 1);
             if (!kept.empty()) kept[0] = from.element;
-            describe(context, kept.empty() ? from.element : kept[0], family, 0);
+            describe_member(*grid_, this->facts_, context, kept.empty() ? from.element : kept[0],
+                            family, 0);
         });
     }
 
@@ -159,9 +179,14 @@ public:
             std::span<Element> children = places(family, count);
             if (children.empty()) children = std::span(on_stack).first(count);
             call_children(*grid_, context, e, children);
+            MemberMasks masks;
             for (std::size_t c = 0; c < count; ++c) {
-                if ((wanted >> c & 1U) != 0) describe(context, children[c], family, c);
+                if ((wanted >> c & 1U) == 0) continue;
+                describe_member(*grid_, this->facts_, context, children[c], family, c, masks);
             }
+            family.split = masks.split;
+            family.leaves = masks.leaves;
+            family.hidden = masks.hidden;
             return missing;
         });
     }
@@ -360,12 +385,6 @@ private:
         } else {
             return call_new_values(*field_, context, e, which, out);
         }
-    }
-
-    /// Sets member c of a family.
-    template <class AnyContext>
-    void describe(AnyContext& context, const Element& e, Family& family, std::size_t c) const {
-        describe_member(*grid_, this->facts_, context, e, family, c);
     }
 
     const Grid* grid_;

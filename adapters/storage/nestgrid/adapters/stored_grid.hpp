@@ -99,13 +99,21 @@ public:
         Place place;
     };
 
-    /// New nodes of the element that was asked about last: one operation after the other wants
-    /// them. Of the grid as it is: adapt() and renumber() make it void.
+    /// New nodes of the elements that were asked about last: one operation after the other wants
+    /// them, and a walk describes all children of an element before it enters the first one. Of
+    /// the grid as it is: adapt() and renumber() make it void.
     class Context {
         friend StoredGrid;
-        Place place_{none_, 0, 0, 0};
-        std::uint32_t count_ = 0;
-        std::array<std::uint32_t, static_cast<std::size_t>(Family::max_new_nodes)> node_;
+        struct Known {
+            Place place{none_, 0, 0, 0};
+            std::uint32_t count = 0;
+            std::array<std::uint32_t, static_cast<std::size_t>(Family::max_new_nodes)> node;
+        };
+        /// Where the nodes of an element are kept, if they are.
+        Known& known(const Place& place) {
+            return known_[(place.record + place.inner * 5U + place.exit * 3U) % known_.size()];
+        }
+        std::array<Known, 32> known_;
     };
     Context make_context() const { return {}; }
 

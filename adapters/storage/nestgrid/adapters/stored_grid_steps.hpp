@@ -58,7 +58,8 @@ template <class Family>
 std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
                                                              Context& context) const {
     const Place& place = e.place;
-    if (context.place_ == place) return {context.node_.data(), context.count_};
+    auto& known = context.known(place);
+    if (known.place == place) return {known.node.data(), known.count};
     const Record r = record(place);
     const Pattern& pattern = table_[place.pattern];
     const auto& entity_of_exit = pattern.exits[place.exit].entity;
@@ -73,11 +74,11 @@ std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
     for (std::size_t k = 0; k < count; ++k) {
         const unsigned entity = entity_of_exit[inner.entity[k]];
         const std::uint32_t lower = r.mask[entity / 32] & ((1U << entity % 32) - 1U);
-        context.node_[k] = r.references[before[entity / 32] + detail::count_ones(lower)];
+        known.node[k] = r.references[before[entity / 32] + detail::count_ones(lower)];
     }
-    context.place_ = place;
-    context.count_ = static_cast<std::uint32_t>(count);
-    return {context.node_.data(), count};
+    known.place = place;
+    known.count = static_cast<std::uint32_t>(count);
+    return {known.node.data(), count};
 }
 
 template <class Family>

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How an ElementContour draws plain contours, to be compiled into the walk that draws.
+#pragma once
+
+#include <levels/element_contour.hpp>
+
+namespace nestgrid::engine {
+
+template <int dimension, class Real>
+NESTGRID_INLINE std::size_t ElementContour<dimension, Real>::simplices_of(const Contour& plain) {
+    std::size_t count = 0;
+    for (std::size_t l = 0; l < plain.loop_count; ++l) {
+        const std::size_t cuts = plain.loop[l].count;
+        count += cuts <= 3 ? 1 : cuts - 2;
+    }
+    return count;
+}
+
+template <int dimension, class Real>
+NESTGRID_INLINE void ElementContour<dimension, Real>::draw_plainly(LevelSurface<dimension>& surface,
+                                                                   const Contour& contour,
+                                                                   unsigned inside) {
+    const ElementView<Real>& view = cuts_->view();
+    surface_ = &surface;
+    surface.builder().add_element(view.element(), view.shape, view.level);
+    tally_->add(simplices_of(contour));
+    const bool names = surface.names_vertices();
+    const unsigned boundary = names ? cuts_->walk().boundary(view) : 0;
+    for (std::size_t l = 0; l < contour.loop_count; ++l) {
+        const ContourLoop& loop = contour.loop[l];
+        const Vertices v = names ? find_vertices(loop, inside) : make_vertices(loop, inside);
+        put_loop(loop, v, view.orientation < 0);
+        if (boundary != 0) put_boundary(loop, v, boundary);
+    }
+}
+
+/// Finds the vertices of a loop. Fetches the slots of all names first, so that no look-up waits for
+/// the slot of another name.
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::find_vertices(const ContourLoop& loop, unsigned inside)
+    -> Vertices {
+    std::array<VertexNumbers::Name, max_edges> names;
+    for (std::size_t i = 0; i < loop.count; ++i) {
+        names[i] = surface_->name(cuts_->name(loop.edge[i]));
+        surface_->prefetch(names[i]);
+    }
+    Vertices v;
+    for (std::size_t i = 0; i < loop.count; ++i) {
+        v[i] = surface_->vertex(names[i], [&] {
+            const bool closed = cuts_->view().closed.edge(loop.edge[i]) != nullptr;
+            return closed ? cuts_->cut(loop.edge[i]) : cuts_->plain_cut(loop.edge[i], inside);
+        });
+    }
+    return v;
+}
+
+template <int dimension, class Real>
+NESTGRID_INLINE auto ElementContour<dimension, Real>::make_vertices(const ContourLoop& loop,
+                                                                    unsigned inside) -> Vertices {
+    std::array<Point, max_edges> x;
+    cuts_->positions_of(std::span(loop.edge).first(loop.count), inside, x.data());
+    Number next = surface_->add_unnamed(std::span(x).first(loop.count), {});
+    Vertices v;
+    for (std::size_t i = 0; i < loop.count; ++i) v[i] = next++;
+    return v;
+}
+
+/// Adds the simplices of a loop: a segment, the triangles of the table, or two with the shorter
+/// diagonal. Both diagonals lie inside the element, so that its neighbours do not depend on the
+/// choice.
+template <int dimension, class Real>
+NESTGRID_INLINE void ElementContour<dimension, Real>::put_loop(const ContourLoop& loop,
+                                                               const Vertices& v, bool mirrored) {
+    if (loop.count <= 3) return put_triangle(v, {0, 1, 2}, mirrored);
+    if (loop.any_diagonal) {
+        const auto x = [&](std::size_t i) { return surface_->position(v[i]); };
+        const std::size_t first = shorter(x(0), x(2), x(1), x(3)) ? 0 : 1;
+        put_triangle(v, {first, first + 1, first + 2}, mirrored);
+        put_triangle(v, {first + 2, (first + 3) % 4, first}, mirrored);
+        return;
+    }
+    for (std::size_t i = 0; i < loop.triangle_count; ++i) {
+        const auto& corner = loop.triangle[i];
+        put_triangle(v, {corner[0], corner[1], corner[2]}, mirrored);
+    }
+}
+
+/// Adds the triangle between three places of a loop; in two dimensions the segment between the
+/// first two.
+template <int dimension, class Real>
+NESTGRID_INLINE void ElementContour<dimension, Real>::put_triangle(
+    const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored) {
+    // Branch-free: mirroring is unpredictable.
+    const std::size_t swap = (corner[0] ^ corner[1]) & (std::size_t{0} - (mirrored ? 1U : 0U));
+    Locals simplex;
+    simplex[0] = v[corner[0] ^ swap];
+    simplex[1] = v[corner[1] ^ swap];
+    if constexpr (dimension == 3) simplex[2] = v[corner[2]];
+    surface_->add_simplex(simplex, {});
+}
+
+/// Adds the sides of a loop that lie on the boundary of the domain.
+/// \param boundary the element's faces on it, one bit each
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::put_boundary(const ContourLoop& loop, const Vertices& v,
+                                                   unsigned boundary) {
+    for (std::size_t i = 0; i < loop.count; ++i) {
+        if ((boundary >> loop.face[i] & 1U) == 0) continue;
+        typename Surface<dimension>::Ridge ridge;
+        for (std::size_t k = 0; k < ridge.size(); ++k) ridge[k] = v[(i + k) % loop.count];
+        surface_->builder().add_boundary(ridge);
+    }
+}
+
+}  // namespace nestgrid::engine
