@@ -42,6 +42,68 @@ detail::BlockReader<dim, Real>::BlockReader(const BlockGrid<dim>& grid,
 }
 
 template <int dim, class Real>
+template <std::size_t width>
+bool detail::BlockReader<dim, Real>::read_patch(const typename BlockGrid<dim>::Element& divided,
+                                                PatchNumbers<dim, width>& numbers) const {
+    BlockPatch<dim> patch;
+    if (!grid_->patch_around(divided, (width - 2) / 2, patch)) return false;
+    CellRange<dim> range{patch.low, patch.low};
+    for (std::int32_t& x : range.high) x += static_cast<std::int32_t>(width);
+    std::size_t i = 0;
+    if (patch.is_in_box) {
+        const BlockCell<dim> first = grid_->cell_at(patch.level, patch.low, patch.box);
+        if (!has(first)) return false;
+        for (std::size_t d = 0; d < range.low.size(); ++d) {
+            range.high[d] += first.place[d] - range.low[d];
+            range.low[d] = first.place[d];
+        }
+        const BlockArray<dim, Real>& of_box = array(first);
+        for_each_place(range, [&](const BlockPlace<dim>& place) {
+            numbers[i++] = static_cast<double>(of_box.at(place));
+        });
+        return true;
+    }
+    BlockCell<dim> cell;
+    cell.box = patch.box;
+    bool is_here = true;
+    for_each_place(range, [&](const BlockPlace<dim>& place) {
+        cell = grid_->cell_at(patch.level, place, cell.box);
+        is_here = is_here && has(cell);
+        if (is_here) numbers[i++] = static_cast<double>(read(cell));
+    });
+    return is_here;
+}
+
+namespace detail {
+
+/// The number of a node among those of a split in tensor order.
+/// \param half its place in halves of an edge
+template <std::size_t size>
+std::size_t number_in_split(const std::array<std::int32_t, size>& half) {
+    std::size_t number = 0;
+    for (std::size_t d = size; d-- > 0;) number = 3 * number + static_cast<std::size_t>(half[d]);
+    return number;
+}
+
+/// Whether there are leaves of one level all around a node.
+template <std::size_t count, int dim>
+bool of_one_size(const std::array<BlockCell<dim>, count>& around) {
+    bool same = true;
+    for (const BlockCell<dim>& cell : around) {
+        same = same && cell.box >= 0 && cell.level == around[0].level;
+    }
+    return same;
+}
+
+/// A mean and what a sharp rule adds, within the range of the cells. One function for all places
+/// where it is computed, so that these have the same bits.
+NESTGRID_NOINLINE inline double sharpened(double mean, double more, double low, double high) {
+    return std::clamp(mean + more, std::min(low, mean), std::max(high, mean));
+}
+
+}  // namespace detail
+
+template <int dim, class Real>
 auto BlockCells<dim, Real>::hangs_on(const Around& around, const Place& node) const
     -> const BlockCell<dim>* {
     const BlockCell<dim>* largest = nullptr;
@@ -84,6 +146,14 @@ double BlockCells<dim, Real>::interpolant(const BlockCell<dim>& leaf, const Plac
 template <int dim, class Real>
 template <class ValueOf>
 auto BlockCells<dim, Real>::mean(const Around& around, const ValueOf& of) const -> Mean {
+    if (detail::of_one_size(around)) {
+        detail::PatchNumbers<dim, 2> values;
+        for (std::size_t k = 0; k < around.size(); ++k) values[k] = of(around[k]);
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        const double offset =
+            reader_.grid().extent(static_cast<std::size_t>(around[0].level)) / 2.0;
+        return {detail::means_in<dim, 2>(values)[0], offset, *low, *high};
+    }
     double total = 0;
     int count = 0;
     std::array<double, static_cast<std::size_t>(1 << dim)> weight{};
@@ -187,21 +257,16 @@ double BlockCells<dim, Real>::smooth(const Node& node, Smooth& known) const {
 template <int dim, class Real>
 double BlockCells<dim, Real>::residual(const BlockCell<dim>& cell, Smooth& known) const {
     const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(cell.level));
-    double sum = 0;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (std::size_t k = 0; k < std::size_t{1} << size_; ++k) {
+    detail::PatchNumbers<dim, 2> values;
+    for (std::size_t k = 0; k < values.size(); ++k) {
         Node corner{cell.low, cell};
         for (std::size_t d = 0; d < size_; ++d) {
             corner.place[d] += (k >> d & 1U) != 0 ? extent : 0;
         }
-        const double value = known.at(corner);
-        sum += value / static_cast<double>(std::size_t{1} << size_);
-        low = std::min(low, value);
-        high = std::max(high, value);
+        values[k] = known.at(corner);
     }
-    if (!std::isfinite(sum)) return 0;
-    return cell_value(cell, known) - std::clamp(sum, low, high);
+    const double mean = detail::means_in<dim, 2>(values)[0];
+    return std::isfinite(mean) ? cell_value(cell, known) - mean : 0;
 }
 
 template <int dim, class Real>
@@ -222,9 +287,48 @@ double BlockCells<dim, Real>::value(const Node& node, Smooth& known) const {
     const double more = brought(node.place, around, [&](const BlockCell<dim>& cell) {
                             return residual(cell, known);
                         }).value;
-    const double part = rule_ == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3;
-    return std::clamp(means.value + part * more, std::min(means.low, means.value),
-                      std::max(means.high, means.value));
+    return detail::sharpened(means.value, part() * more, means.low, means.high);
+}
+
+template <int dim, class Real>
+bool BlockCells<dim, Real>::smooth_in_patch(const Element& e, NodeMask which,
+                                            std::span<Real> out) const {
+    detail::PatchNumbers<dim, 4> cells;
+    if (!reader_.template read_patch<4>(e, cells)) return false;
+    const auto means = detail::means_in<dim, 4>(cells);
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        if ((which >> n & 1U) == 0) continue;
+        out[n] = static_cast<Real>(means[detail::number_in_split(reader_.grid().half(n))]);
+    }
+    return true;
+}
+
+template <int dim, class Real>
+bool BlockCells<dim, Real>::sharp_in_patch(const Element& e, NodeMask which,
+                                           std::span<Real> out) const {
+    detail::PatchNumbers<dim, 6> cells;
+    if (!reader_.template read_patch<6>(e, cells)) return false;
+    const auto smooth = detail::means_in<dim, 6>(cells);
+    const auto inner = detail::middle_of<dim, 6>(cells);
+    auto residual = detail::means_in<dim, 5>(smooth);
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+        residual[i] = std::isfinite(residual[i]) ? inner[i] - residual[i] : 0;
+    }
+    const auto means = detail::middle_of<dim, 5>(smooth);
+    const auto more = detail::means_in<dim, 4>(residual);
+    const auto low =
+        detail::combined<dim, 4>(inner, [](double a, double b) { return std::min(a, b); });
+    const auto high =
+        detail::combined<dim, 4>(inner, [](double a, double b) { return std::max(a, b); });
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        if ((which >> n & 1U) == 0) continue;
+        const std::size_t at = detail::number_in_split(reader_.grid().half(n));
+        const bool is_number = std::isfinite(means[at]);
+        out[n] = static_cast<Real>(
+            is_number ? detail::sharpened(means[at], part() * more[at], low[at], high[at])
+                      : means[at]);
+    }
+    return true;
 }
 
 template <int dim, class Real>
