@@ -59,6 +59,13 @@ auto with_field(Prerolls& prerolls, const Work& work, int dimension, const Funct
     return field.visit(function);
 }
 
+/// The projection with its threshold, where it draws everything by saying nothing.
+Projection told(Projection projection) {
+    projection.check();
+    if (projection.draws_everything()) projection.threshold = 0;
+    return projection;
+}
+
 auto criteria_at(const Criteria& criteria) {
     return [&criteria](double threshold) { return criteria.at(threshold); };
 }
@@ -252,7 +259,7 @@ Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
     refuse_distance(projection);
     refuse_slice_distance(projection);
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, projection, {}, work);
+        const Criteria criteria(prerolls, told(projection), {}, work);
         return draw_shading(hierarchy, scale, criteria, options, work.executor);
     });
 }
@@ -266,7 +273,7 @@ Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
     check_isosurface(projection, options, dimension);
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const Executor& executor = work.executor;
-        const Criteria criteria(prerolls, projection, std::span(&isovalue, 1), work);
+        const Criteria criteria(prerolls, told(projection), std::span(&isovalue, 1), work);
         Projected<Isosurface<dimension>> drawn;
         if constexpr (dimension == 3) {
             KeptIsosurface surface(hierarchy, isovalue, criteria, options, executor);
@@ -303,7 +310,7 @@ Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
             everything.max_triangles = 0;
             return Projected<Slice>{slice(hierarchy, function, everything, work.executor)};
         }
-        const Criteria criteria(prerolls, projection, {}, work);
+        const Criteria criteria(prerolls, told(projection), {}, work);
         return draw_slice(hierarchy, function, criteria, options, work.executor);
     });
 }
@@ -323,7 +330,7 @@ Projected<Isosurface<dimension>> isoband(Prerolls& prerolls, double low, double 
     refuse_distance(projection);
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const std::array<double, 2> isovalues{low, high};
-        const Criteria criteria(prerolls, projection, isovalues, work);
+        const Criteria criteria(prerolls, told(projection), isovalues, work);
         return Projected<Isosurface<dimension>>{
             isoband<dimension>(hierarchy, low, high, criteria.criterion(), criteria.bounds(),
                                options, work.executor),
@@ -342,7 +349,7 @@ Projected<Isolines> isolines(Prerolls& prerolls, std::span<const double> values,
     refuse_budget(projection, "isolines");
     refuse_distance(projection);
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, projection, values, work);
+        const Criteria criteria(prerolls, told(projection), values, work);
         return Projected<Isolines>{isolines(hierarchy, values, criteria.criterion(),
                                             criteria.bounds(), options, work.executor),
                                    {.threshold = projection.least_threshold()}};
@@ -367,7 +374,7 @@ ProbeResult probe(Prerolls& prerolls, std::span<const Point> points, const Proje
     const FieldOnGrid field = work.on(prerolls.field());
     return field.visit([&](const auto& hierarchy) {
         if (projection.draws_everything()) return probe(hierarchy, points);
-        const Criteria criteria(prerolls, projection, {}, work);
+        const Criteria criteria(prerolls, told(projection), {}, work);
         return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
     });
 }
