@@ -6,73 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace nestgrid {
-
-template <int dim, class Real>
-detail::BlockReader<dim, Real>::BlockReader(const BlockGrid<dim>& grid,
-                                            BlockArrays<dim, Real> arrays, BlockCentring centring)
-    : grid_{&grid}, arrays_{std::move(arrays)} {
-    if (arrays_.size() != grid.level_count()) {
-        throw InvalidInput("there are arrays of " + std::to_string(arrays_.size()) +
-                           " levels, but the grid has " + std::to_string(grid.level_count()));
-    }
-    const std::int32_t more = centring == BlockCentring::nodes ? 1 : 0;
-    for (std::size_t l = 0; l < arrays_.size(); ++l) {
-        if (arrays_[l].size() != grid.box_count(l)) {
-            throw InvalidInput("level " + std::to_string(l) + " has " +
-                               std::to_string(grid.box_count(l)) + " boxes, but " +
-                               std::to_string(arrays_[l].size()) + " arrays");
-        }
-        for (std::size_t b = 0; b < arrays_[l].size(); ++b) {
-            const BlockArray<dim, Real>& array = arrays_[l][b];
-            if (array.first == nullptr) continue;
-            const auto size = grid.box_size(l, b);
-            for (std::size_t d = 0; d < size.size(); ++d) {
-                const auto stride = array.stride[d];
-                const auto step = static_cast<std::ptrdiff_t>(sizeof(Real));
-                if (size[d] + more == 1 || stride >= step || stride <= -step) continue;
-                throw InvalidInput("the array of box " + std::to_string(b) + " of level " +
-                                   std::to_string(l) + " has the stride " + std::to_string(stride) +
-                                   " in direction " + std::to_string(d) +
-                                   ", less than a number of " + std::to_string(step) + " bytes");
-            }
-        }
-    }
-}
-
-template <int dim, class Real>
-template <std::size_t width>
-bool detail::BlockReader<dim, Real>::read_patch(const typename BlockGrid<dim>::Element& divided,
-                                                PatchNumbers<dim, width>& numbers) const {
-    BlockPatch<dim> patch;
-    if (!grid_->patch_around(divided, (width - 2) / 2, patch)) return false;
-    CellRange<dim> range{patch.low, patch.low};
-    for (std::int32_t& x : range.high) x += static_cast<std::int32_t>(width);
-    std::size_t i = 0;
-    if (patch.is_in_box) {
-        const BlockCell<dim> first = grid_->cell_at(patch.level, patch.low, patch.box);
-        if (!has(first)) return false;
-        for (std::size_t d = 0; d < range.low.size(); ++d) {
-            range.high[d] += first.place[d] - range.low[d];
-            range.low[d] = first.place[d];
-        }
-        const BlockArray<dim, Real>& of_box = array(first);
-        for_each_place(range, [&](const BlockPlace<dim>& place) {
-            numbers[i++] = static_cast<double>(of_box.at(place));
-        });
-        return true;
-    }
-    BlockCell<dim> cell;
-    cell.box = patch.box;
-    bool is_here = true;
-    for_each_place(range, [&](const BlockPlace<dim>& place) {
-        cell = grid_->cell_at(patch.level, place, cell.box);
-        is_here = is_here && has(cell);
-        if (is_here) numbers[i++] = static_cast<double>(read(cell));
-    });
-    return is_here;
-}
 
 namespace detail {
 
@@ -213,24 +149,39 @@ public:
     bool is_missing = false;
 
     double at(const Node& node) {
-        for (std::size_t i = 0; i < count_; ++i) {
-            if (place_[i] == node.place) return value_[i];
+        std::size_t slot = hash(node.place);
+        for (; state_[slot] != State::free; slot = (slot + 1) % slots) {
+            if (place_[slot] != node.place) continue;
+            is_missing = is_missing || state_[slot] == State::missing;
+            return value_[slot];
         }
+        const bool was_missing = std::exchange(is_missing, false);
         const double value = cells_->smooth(node, *this);
-        if (count_ < value_.size()) {
-            place_[count_] = node.place;
-            value_[count_++] = value;
+        if (count_ < slots / 2) {
+            ++count_;
+            place_[slot] = node.place;
+            value_[slot] = value;
+            state_[slot] = is_missing ? State::missing : State::known;
         }
+        is_missing = is_missing || was_missing;
         return value;
     }
 
 private:
-    static constexpr std::size_t most = dim == 2 ? 9 : 27;  // around a node
+    enum class State : std::uint8_t { free, known, missing };
+    static constexpr std::size_t slots = 512;  // around an element there are up to 5^3 nodes
+
+    static std::size_t hash(const Place& place) {
+        std::uint64_t all = 0;
+        for (const std::int32_t x : place) all = detail::mix64(all + static_cast<std::uint32_t>(x));
+        return static_cast<std::size_t>(all % slots);
+    }
 
     const BlockCells* cells_;
     std::size_t count_ = 0;
-    std::array<Place, most> place_;
-    std::array<double, most> value_;
+    std::array<State, slots> state_{};
+    std::array<Place, slots> place_;
+    std::array<double, slots> value_;
 };
 
 template <int dim, class Real>
@@ -275,10 +226,7 @@ double BlockCells<dim, Real>::value(const Node& node, Smooth& known) const {
     const Around around = reader_.grid().leaves_around(node.place, node.near);
     if (const BlockCell<dim>* leaf = hangs_on(around, node.place)) {
         return interpolant(*leaf, node.place, [&](const Place& x) {
-            Smooth around_corner(*this);
-            const double at_corner = value({x, *leaf}, around_corner);
-            known.is_missing = known.is_missing || around_corner.is_missing;
-            return at_corner;
+            return value({x, *leaf}, known);
         });
     }
     const Mean means = brought(node.place, around,

@@ -68,6 +68,10 @@ BlockArray<dim, Real> block_array(const BlockBox<dim>& box, std::span<const Real
     return array;
 }
 
+/// Whether a leaf has no number (NaN). Nobody looks at that of a cell which a finer box covers.
+template <int dim, class Real>
+bool is_leaf_missing(const BlockGrid<dim>& grid, const BlockArrays<dim, Real>& arrays);
+
 namespace detail {
 
 /// Reads numbers of boxes.
@@ -153,13 +157,15 @@ public:
         return static_cast<double>(reader_.read(reader_.grid().cell_of(leaf)));
     }
     NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
-        return reader_.at_corners(i, writer(out));
+        Smooth known(*this);
+        return reader_.at_corners(i, writer(out, known));
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
         const bool is_done = rule_ == CellRule::smooth ? smooth_in_patch(e, which, out)
                                                        : sharp_in_patch(e, which, out);
         if (is_done) return 0;
-        return reader_.at_new_nodes(e, which, writer(out));
+        Smooth known(*this);
+        return reader_.at_new_nodes(e, which, writer(out, known));
     }
 
 private:
@@ -178,12 +184,13 @@ private:
         Place place{};
         BlockCell<dim> near;
     };
-    /// The smooth values around a node, each computed once, and whether all cells are here.
+    /// The smooth values around the nodes of an element, each computed once, and whether all cells
+    /// of one node are here.
     class Smooth;
 
-    auto writer(std::span<Real> out) const {
-        return [this, out](std::size_t i, const Place& node, const BlockCell<dim>& near) {
-            Smooth known(*this);
+    auto writer(std::span<Real> out, Smooth& known) const {
+        return [this, out, &known](std::size_t i, const Place& node, const BlockCell<dim>& near) {
+            known.is_missing = false;
             out[i] = static_cast<Real>(value({node, near}, known));
             return !known.is_missing;
         };
@@ -250,3 +257,4 @@ private:
 }  // namespace nestgrid
 
 #include <nestgrid/adapters/block_cells_steps.hpp>
+#include <nestgrid/adapters/block_reader_steps.hpp>

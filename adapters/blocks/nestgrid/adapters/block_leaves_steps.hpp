@@ -198,7 +198,7 @@ BlockCell<dim> BlockGrid<dim>::cell_at(std::int32_t level, const Place& cell,
 }
 
 /// Whether a node has a box all around it, with cells that are leaves and have it for a corner;
-/// these are written.
+/// these are written then.
 template <int dim>
 bool BlockGrid<dim>::is_within(const Place& node, const BlockCell<dim>& near,
                                Around& around) const {
@@ -210,18 +210,23 @@ bool BlockGrid<dim>::is_within(const Place& node, const BlockCell<dim>& near,
         at[d] >>= shift;
         if (at[d] << shift != node[d] || at[d] <= box.low[d] || at[d] >= box.high[d]) return false;
     }
-    const Level* const next = l + 1 == levels_.size() ? nullptr : &levels_[l + 1];
+    if (l + 1 < levels_.size()) {
+        const Level& next = levels_[l + 1];
+        detail::CellRange<dim> finer;
+        for (std::size_t d = 0; d < size_; ++d) {
+            finer.low[d] = (at[d] - 1) << (next.depth - levels_[l].depth);
+            finer.high[d] = (at[d] + 1) << (next.depth - levels_[l].depth);
+        }
+        if (next.finder.count_within(finer) != 0) return false;
+    }
     for (std::size_t k = 0; k < around.size(); ++k) {
-        Place finer{};
         around[k].level = near.level;
         around[k].box = near.box;
         for (std::size_t d = 0; d < size_; ++d) {
             const std::int32_t cell = at[d] - ((k >> d & 1U) == 0 ? 1 : 0);
             around[k].place[d] = cell - box.low[d];
             around[k].low[d] = cell << shift;
-            if (next != nullptr) finer[d] = cell << (next->depth - levels_[l].depth);
         }
-        if (next != nullptr && next->finder.find(finer) >= 0) return false;
     }
     return true;
 }
@@ -243,6 +248,8 @@ auto BlockGrid<dim>::leaves_around(const Place& node, const BlockCell<dim>& near
         }
         if (!is_inside) continue;
         around[k] = leaf_at(cell, guess);
+        const bool is_elsewhere = around[k].level != near.level || around[k].box != near.box;
+        if (k == 0 && is_elsewhere && is_within(node, around[0], around)) return around;
     }
     return around;
 }
