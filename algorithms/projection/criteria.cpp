@@ -4,6 +4,7 @@
 
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/error.hpp>
 
 namespace nestgrid {
 
@@ -11,7 +12,9 @@ Criteria::Criteria(Prerolls& prerolls, Projection projection, std::span<const do
                    const Work& work)
     : projection_{std::move(projection)} {
     projection_.check();
-    chosen_ = prerolls.choose(projection_.indicator, projection_.blend, isovalues, work);
+    chosen_ = projection_.asks_for_everything()
+                  ? prerolls.finest(work)
+                  : prerolls.choose(projection_.indicator, projection_.blend, isovalues, work);
     if (projection_.lens) sizes_ = prerolls.sizes(projection_.sizes_spread(), work);
     if (projection_.region) {
         region_.emplace(work.on(prerolls.field()),
@@ -21,6 +24,10 @@ Criteria::Criteria(Prerolls& prerolls, Projection projection, std::span<const do
 
 AnyCriterion Criteria::at(double threshold) const {
     const Indicator* const indicator = chosen_.indicator.get();
+    if (indicator == nullptr) {
+        if (threshold == 0) return Exact{};
+        throw InvalidInput("a projection with a threshold of 0 has no criterion for another one");
+    }
     const auto in_lens = [&](auto criterion) -> AnyCriterion {
         if (!projection_.lens) return criterion;
         const LensRequest& lens = *projection_.lens;

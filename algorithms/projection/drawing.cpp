@@ -67,6 +67,13 @@ auto with_field(Prerolls& prerolls, const Work& work, int dimension, const Funct
     return field.visit(function);
 }
 
+/// The projection with its threshold, where it draws everything by saying nothing.
+Projection told(Projection projection) {
+    projection.check();
+    if (projection.draws_everything()) projection.threshold = 0;
+    return projection;
+}
+
 auto criteria_at(const Criteria& criteria) {
     return [&criteria](double threshold) { return criteria.at(threshold); };
 }
@@ -296,7 +303,7 @@ Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
     refuse_slice_distance(projection);
     if (scale) refuse_tolerance(projection);
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, projection, {}, work);
+        const Criteria criteria(prerolls, told(projection), {}, work);
         return draw_shading(hierarchy, scale, criteria, options, work.executor);
     });
 }
@@ -310,7 +317,7 @@ Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
     check_isosurface(projection, options, dimension);
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const Executor& executor = work.executor;
-        const Criteria criteria(prerolls, projection, std::span(&isovalue, 1), work);
+        const Criteria criteria(prerolls, told(projection), std::span(&isovalue, 1), work);
         Projected<Isosurface<dimension>> drawn;
         if constexpr (dimension == 3) {
             KeptIsosurface surface(hierarchy, isovalue, criteria, options, executor);
@@ -342,7 +349,7 @@ std::vector<Isosurface<dimension>> isosurfaces(Prerolls& prerolls,
                                                const IsosurfaceOptions& options, const Work& work) {
     check_one_walk(projection, "several isosurfaces");
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, projection, isovalues, work);
+        const Criteria criteria(prerolls, told(projection), isovalues, work);
         return isosurfaces<dimension>(hierarchy, isovalues, criteria.criterion(), criteria.bounds(),
                                       options, work.executor);
     });
@@ -356,7 +363,7 @@ template std::vector<Isosurface<3>> isosurfaces<3>(Prerolls&, std::span<const do
 
 MeasuredError measure_error(Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
                             std::size_t points, const Work& work) {
-    const std::shared_ptr<const Bounds> bounds = prerolls.bounds(work);
+    const std::shared_ptr<const Bounds> bounds = prerolls.finest(work).bounds;
     return with_field(prerolls, work, 3, [&](const auto& hierarchy) {
         const Surface<3> whole =
             isosurface<3>(hierarchy, isovalue, Exact{}, *bounds, {.elements = false}, work.executor)
@@ -382,7 +389,7 @@ Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
             }
             return drawn;
         }
-        const Criteria criteria(prerolls, projection, {}, work);
+        const Criteria criteria(prerolls, told(projection), {}, work);
         return draw_slice(hierarchy, function, criteria, options, work.executor);
     });
 }
@@ -400,7 +407,7 @@ Projected<Isosurface<dimension>> isoband(Prerolls& prerolls, double low, double 
     check_one_walk(projection, "bands");
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const std::array<double, 2> isovalues{low, high};
-        const Criteria criteria(prerolls, projection, isovalues, work);
+        const Criteria criteria(prerolls, told(projection), isovalues, work);
         return Projected<Isosurface<dimension>>{
             isoband<dimension>(hierarchy, low, high, criteria.criterion(), criteria.bounds(),
                                options, work.executor),
@@ -417,7 +424,7 @@ Projected<Isolines> isolines(Prerolls& prerolls, std::span<const double> values,
                              const Work& work) {
     check_one_walk(projection, "isolines");
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, projection, values, work);
+        const Criteria criteria(prerolls, told(projection), values, work);
         return Projected<Isolines>{isolines(hierarchy, values, criteria.criterion(),
                                             criteria.bounds(), options, work.executor),
                                    {.threshold = projection.least_threshold()}};
@@ -444,7 +451,7 @@ ProbeResult probe(Prerolls& prerolls, std::span<const Point> points, const Proje
     const FieldOnGrid field = work.on(prerolls.field());
     return field.visit([&](const auto& hierarchy) {
         if (projection.draws_everything()) return probe(hierarchy, points);
-        const Criteria criteria(prerolls, projection, {}, work);
+        const Criteria criteria(prerolls, told(projection), {}, work);
         return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
     });
 }

@@ -10,6 +10,7 @@
 
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
+#include <nestgrid/algorithms/split_bounds.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/error.hpp>
 
@@ -93,6 +94,24 @@ public:
         return chosen;
     }
 
+    ChosenIndicator finest(const Work& work) {
+        const IndicatorKind& offset = indicator_named("offset");
+        const FieldOnGrid& field = asked(work);
+        if (between_frames() || !are_split_bounds_worth_while(field.facts())) {
+            return choose(offset, 1, {}, work);
+        }
+        require_unchanged(field);
+        const std::scoped_lock lock(mutex_);
+        const auto offsets = of_nodes_.find({NodeError::offset, 1.0});
+        if (offsets != of_nodes_.end()) return {&offset, nullptr, offsets->second};
+        if (!finest_) {
+            finest_ = work.on(field_).visit([&](const auto& hierarchy) {
+                return std::make_shared<const SplitBounds>(hierarchy, work.executor);
+            });
+        }
+        return {&offset, nullptr, finest_};
+    }
+
     std::shared_ptr<const SweptIndicator> sizes(const Spread& spread, const Work& work) {
         if (between_frames()) return frames_.front()->kept_->sizes(spread, work);
         const std::scoped_lock lock(mutex_);
@@ -117,6 +136,7 @@ public:
         of_nodes_.clear();
         swept_.clear();
         sizes_.reset();
+        finest_.reset();
         of_level_sets_.clear();
     }
 
@@ -126,7 +146,8 @@ public:
         for (const auto& [key, each] : of_level_sets_) bytes += each.memory_bytes();
         for (const auto& [key, each] : of_nodes_) bytes += each->memory_bytes();
         for (const auto& [key, each] : swept_) bytes += each->memory_bytes();
-        return bytes + (sizes_ ? sizes_->memory_bytes() : 0);
+        return bytes + (sizes_ ? sizes_->memory_bytes() : 0) +
+               (finest_ ? finest_->memory_bytes() : 0);
     }
 
 private:
@@ -212,6 +233,7 @@ private:
     std::map<std::pair<NodeError, double>, std::shared_ptr<const HierarchicalIndicator>> of_nodes_;
     std::map<std::pair<const IndicatorKind*, double>, Made> swept_;
     Made sizes_;
+    std::shared_ptr<const SplitBounds> finest_;
     std::map<const IndicatorKind*, OfLevelSets> of_level_sets_;
 };
 
@@ -242,12 +264,15 @@ std::shared_ptr<const Bounds> Prerolls::prepare(const Projection& projection, bo
                                                 const Work& work) {
     const IndicatorKind& kind =
         kept_->kind_of(projection.indicator, shared || between_frames(), work);
+    if (projection.asks_for_everything() && !shared) return finest(work).bounds;
     if (projection.lens) sizes(projection.sizes_spread(), work);
     if (kind.of_nodes || (shared && kind.between_frames)) {
         return kept_->choose(kind, projection.blend, {}, work).bounds;
     }
     return bounds(work);
 }
+
+ChosenIndicator Prerolls::finest(const Work& work) { return kept_->finest(work); }
 
 std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) {
     return choose("offset", 1, {}, work).bounds;

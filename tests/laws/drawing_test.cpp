@@ -52,8 +52,10 @@ TYPED_TEST(Drawing, HasTheBitsOfItsParts) {
     for_each_drawn<TypeParam>(41, [](const auto& hierarchy, Prerolls& prerolls, auto dimension) {
         for (const Projection& projection : projections) {
             const double zero = 0;
-            const Criteria levels(prerolls, projection, std::span(&zero, 1), {});
-            const Criteria criteria(prerolls, projection, {}, {});
+            Projection told = projection;
+            if (told.draws_everything()) told.threshold = 0;
+            const Criteria levels(prerolls, told, std::span(&zero, 1), {});
+            const Criteria criteria(prerolls, told, {}, {});
             const AnyCriterion s = criteria.criterion();
             expect_same(static_cast<const Isosurface<dimension>&>(
                             isosurface<dimension>(prerolls, 0, projection)),
@@ -74,7 +76,7 @@ TYPED_TEST(Drawing, HasTheBitsOfItsParts) {
                                        : boundary_surface(hierarchy, s, criteria.bounds()).surface);
             } else {
                 const std::vector<double> values{0, 0.1};
-                const Criteria lines(prerolls, projection, values, {});
+                const Criteria lines(prerolls, told, values, {});
                 EXPECT_EQ(
                     isolines(prerolls, values, projection).lines.vertices,
                     isolines(hierarchy, values, lines.criterion(), lines.bounds()).lines.vertices);

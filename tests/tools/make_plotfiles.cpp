@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Small plotfiles for the tests of the program, in the folder of the argument: three of a ball that
-// moves, on one grid of three levels, one on another grid, one of fewer cells, and one in the
-// plane.
+// moves, on one grid of three levels, one on another grid, one of fewer cells, one in the plane,
+// and two in which some leaves hold no number, or an infinite one.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -66,6 +66,14 @@ int main(int argc, char** argv) {
         write_plotfile<3, double>(folder / name, blocks, fields, ball(0.1 * step, 3), 0.1 * step);
     }
     write_plotfile<3, double>(folder / "other", three_levels<3>(16, 3), fields, ball(0, 3), 1);
+    const auto broken = [](double number) {
+        return [=](const Point& x, int field) {
+            const double value = ball(0, 3)(x, field);
+            return field == 0 && norm(x - Point{0.75, 0.5, 0.5}) < 0.1 ? number : value;
+        };
+    };
+    write_plotfile<3, double>(folder / "holed", blocks, fields, broken(NAN));
+    write_plotfile<3, double>(folder / "infinite", blocks, fields, broken(INFINITY));
     write_plotfile<3, double>(folder / "small", three_levels<3>(8, 1), fields, ball(0, 3));
     write_plotfile<2, float>(folder / "plane", three_levels<2>(16, 2), fields, ball(0, 2), 0, 1);
     return 0;

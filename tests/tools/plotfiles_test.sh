@@ -47,6 +47,29 @@ run isosurface plt00000 plt00010 plt00020 --array distance --value 0 --threshold
 [ "$(value time | tr '\n' ' ')" = "0 0.5 1 1.5 2 " ] || fail "times of the film: $(cat out)"
 closed "film"
 
+# Where leaves hold no number there is a hole; an infinite one is refused with its place.
+run isosurface holed --array distance --value 0 --threshold 0
+[ "$(value open_edges)" -gt 50 ] || fail "no hole: $(cat out)"
+awk -v area="$(value area)" 'BEGIN { exit !(area > 1.08 && area < 1.11) }' ||
+    fail "a sphere with a hole has the area $(value area)"
+run isosurface holed --array place --value 0.5 --threshold 0
+[ "$(value open_edges)" = 0 ] || fail "holes of another field: $(cat out)"
+refused 1 "a value of the field is not a usable number: inf, at \(0\.[0-9]+, 0\.[0-9]+, 0\.[0-9]+\)" \
+    isosurface infinite --array distance --value 0
+run info infinite
+grep -qE '^distance +-0\.2[0-9]+ +inf$' out || fail "info of infinite values: $(cat out)"
+
+# Sharper values bring a sphere nearer to its area, 0.36 pi.
+off() { awk -v area="$(value area)" 'BEGIN { off = area / 1.1309734 - 1; print off < 0 ? -off : off }'; }
+run isosurface plt00000 --array distance --value 0 --threshold 0
+smooth=$(off)
+run isosurface plt00000 --array distance --value 0 --threshold 0 --cells centres
+closed "sharp values"
+awk -v smooth="$smooth" -v sharp="$(off)" 'BEGIN { exit !(2 * sharp < smooth) }' ||
+    fail "sharp values are off by $(off), smooth ones by $smooth"
+refused 2 "^nestgrid: --cells: 'sharp' is none of 'smooth', 'centres', 'means'" \
+    isosurface plt00000 --array distance --value 0 --cells sharp
+
 refused 1 "there are several fields, choose one by --array: 'distance', 'place'" isosurface plt00000 --value 0
 refused 1 "there is no field 'distence', only 'distance', 'place': did you mean 'distance'\?" \
     isosurface plt00000 --array distence --value 0

@@ -12,6 +12,7 @@ void run_info(Input& input, Report& report) {
     const Format* const format = format_of(input.path);
     if (format != nullptr && format->describe != nullptr) {
         refuse_options(*input.command, {"--array"}, "chooses nothing: all fields are described");
+        refuse_options(*input.command, {"--cells"}, "changes nothing: cells are described");
         format->describe(input.path, report);
     } else if (is_hierarchy(input.path)) {
         refuse_options(*input.command, {"--array"}, "chooses nothing: all fields are described");

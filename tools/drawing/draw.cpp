@@ -105,6 +105,15 @@ private:
         field_.dimension = read.dimension();
         field_.values = request_.values;
     }
+    /// Whether no other threshold than 0 is drawn at.
+    bool asks_for_everything() const {
+        const SurfaceOptions& s = options_.surface;
+        return s.budgets.empty() && !request_.lens && !request_.box && !request_.collapses &&
+               !request_.keeps_distances &&
+               std::ranges::all_of(s.thresholds, [](const std::string& text) {
+                   return parse_threshold(text).number == 0;
+               });
+    }
     /// Makes the prerolls of all frames, where they are needed.
     void preroll(const Moments& moments) {
         const bool spreads_values = film_ && request_.value_count > 0;
@@ -128,6 +137,7 @@ private:
         nestgrid::Projection projection = options_.surface.projection;
         projection.lens = request_.lens;
         if (request_.box) projection.region = region_of(*request_.box, field_.dimension);
+        if (asks_for_everything()) projection.threshold = 0;
         const Moments moments(part, options_.time, options_.input.path, std::move(projection),
                               request_.isovalue, options_.surface.threads,
                               [&](double share) { progress_.part(share); });

@@ -39,6 +39,12 @@ std::size_t number_of(const AmrexPlotfile& file, const std::string& name) {
     return static_cast<std::size_t>(at - file.fields().begin());
 }
 
+/// \param cells as --cells says it
+nestgrid::CellRule rule_of(const std::string& cells) {
+    if (cells == "smooth") return nestgrid::CellRule::smooth;
+    return cells == "means" ? nestgrid::CellRule::sharp_means : nestgrid::CellRule::sharp_centres;
+}
+
 /// All cells of all boxes, by numbers.
 template <int dim>
 class CellNumbers {
@@ -83,18 +89,6 @@ double number_at(const nestgrid::BlockArrays<dim, Real>& arrays, const BlockCell
     return static_cast<double>(of_level[static_cast<std::size_t>(cell.box)].at(cell.place));
 }
 
-/// Whether a leaf has no number.
-template <int dim, class Real>
-bool has_missing(const CellNumbers<dim>& cells, const nestgrid::BlockArrays<dim, Real>& arrays) {
-    for (std::size_t i = 0; i < cells.count(); ++i) {
-        const BlockCell<dim> cell = cells.cell(i);
-        if (!std::isnan(number_at(arrays, cell))) continue;
-        const BlockCell<dim> leaf = cells.leaf(cell);
-        if (leaf.level == cell.level) return true;
-    }
-    return false;
-}
-
 /// What fields borrow from.
 template <int dim>
 struct MappedPlotfiles {
@@ -137,8 +131,8 @@ InputField plotfile_frames(std::vector<AmrexPlotfile> files, const Input& input,
     bool any_missing = false;
     const auto add = [&](const AmrexPlotfile& file, const std::string& name) {
         auto arrays = file.arrays<dim, Real>(number_of(file, name));
-        any_missing = any_missing || has_missing(kept->cells, arrays);
-        return Field(*grid, std::move(arrays));
+        any_missing = any_missing || is_leaf_missing(*grid, arrays);
+        return Field(*grid, std::move(arrays), rule_of(input.cells));
     };
     const std::string& first_name =
         kept->files.front().fields()[number_of(kept->files.front(), input.array)];
@@ -250,7 +244,7 @@ void describe_plotfile(const fs::path& path, Report& report) {
 const RegisteredFormat plotfile({.name = "AMReX plotfile",
                                  .endings = {},
                                  .holds = "boxes of cells on levels, several fields",
-                                 .options = {"--array"},
+                                 .options = {"--array", "--cells"},
                                  .recognises = is_plotfile,
                                  .read_field = read_plotfiles,
                                  .describe = describe_plotfile});

@@ -73,6 +73,14 @@ void add_read_options(CLI::App& command, Input& input) {
         ->type_name("NAME")
         ->group("Input");
     command
+        .add_option("--cells", input.cells,
+                    "values at nodes of the cells of a plotfile: smooth means, or sharper ones, "
+                    "which take those of cells for values at centres or for means over cells")
+        ->type_name("RULE")
+        ->group("Input")
+        ->check(one_of({"smooth", "centres", "means"}))
+        ->capture_default_str();
+    command
         .add_option("--frame", input.choice.frame,
                     "one of several volumes in a file, from 0 [the first]")
         ->type_name("NUMBER")

@@ -12,6 +12,7 @@
 from __future__ import annotations
 
 from ._arguments import InvalidType
+from ._blocks import Blocks
 from ._budget import FrameBudget
 from ._fields import Field
 from ._lens import Domain, Lens, Region, ball, box, cone, half_space, polygon, view
@@ -22,6 +23,7 @@ from ._skimage import marching_cubes
 from ._sources import Frames, Octree, Volume
 
 __all__ = [
+    "Blocks",
     "Domain",
     "Field",
     "FrameBudget",

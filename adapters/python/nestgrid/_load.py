@@ -57,11 +57,12 @@ def load(
 
     path        ends in .nestgrid; or in .vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz or .raw,
                 which are volumes: Volume.array[i, j, k] is sample i of row j of slice k; or a folder
-                of DICOM, its DICOMDIR or a slice of it; or a picture. What has one sample along an
+                of DICOM, its DICOMDIR or a slice of it; or a picture; or a plotfile of AMReX, a
+                folder with the file Header, which must stay as it is. What has one sample along an
                 axis is a plane: Volume.array[i, j]. Reading .vti, .nii and pictures needs VTK's
                 Python package, DICOM pydicom
-    array       the name of the field, for .nestgrid and .vti, or of the series of DICOM; "": the
-                only one, or the active one, or that of the slice
+    array       the name of the field, for .nestgrid, plotfiles and .vti, or of the series of DICOM;
+                "": the only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that
                 tells how many there are
     component   which of several numbers per sample, from 0
@@ -76,22 +77,25 @@ def load(
     """
     name = path.lower() if isinstance(path, str) else ""
     suffix = max((each for each in SUFFIXES if name.endswith(each)), key=len, default="")
-    dicom = suffix in (".dcm", ".dicom") or _is_dicom(str(path))
-    if not suffix and not dicom:
+    plotfile = _plotfile(str(path))
+    dicom = not plotfile and (suffix in (".dcm", ".dicom") or _is_dicom(str(path)))
+    if not suffix and not dicom and not plotfile:
         near = suggestion(os.path.splitext(name)[1], SUFFIXES)
         raise InvalidInput(f"load(): '{path}' ends in none of {', '.join(SUFFIXES)}{near}")
     raw = {"dims": dims, "type": type, "big_endian": big_endian or None, "spacing": spacing}
     given = [each for each, value in raw.items() if value is not None]
-    if given and suffix != ".raw":
+    if given and (suffix != ".raw" or plotfile):
         raise InvalidInput(f"load(): {given[0]} is for .raw files: '{path}' describes itself")
-    if array and not dicom and suffix not in (".nestgrid", ".vti"):
+    if array and not dicom and not plotfile and suffix not in (".nestgrid", ".vti"):
         raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
     choice = Choice(frame, component, magnitude)
-    if suffix in (".nestgrid", ".raw") and choice != Choice():
+    if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
         raise InvalidInput(
             f"load(): frame, component and magnitude choose nothing in '{path}', which has one "
             "number per sample"
         )
+    if plotfile:
+        return _hierarchy(plotfile, array)
     if suffix == ".nestgrid":
         return _hierarchy(str(path), array)
     if dicom:
@@ -112,6 +116,12 @@ class Choice:
     frame: int | None = None
     component: int | None = None
     magnitude: bool = False
+
+
+def _plotfile(path: str) -> str:
+    """The folder of a plotfile, which may be named by its Header, too; "" where it is none."""
+    folder = os.path.dirname(path) or "." if os.path.basename(path) == "Header" else path
+    return folder if os.path.isfile(os.path.join(folder, "Header")) else ""
 
 
 def _is_dicom(path: str) -> bool:
@@ -178,7 +188,7 @@ def _chosen(
 
 
 class LoadedField(Field):
-    """The field of a .nestgrid file."""
+    """The field of a .nestgrid file or a plotfile."""
 
     _file: tuple[str, str, tuple[int, int]]
 
@@ -221,7 +231,7 @@ def _hierarchy(path: str, array: str) -> LoadedField | LoadedFrames:
 
 def _stamp(path: str) -> tuple[int, int]:
     """What changes when a file does."""
-    status = os.stat(path)
+    status = os.stat(os.path.join(path, "Header") if os.path.isdir(path) else path)
     return status.st_size, status.st_mtime_ns
 
 

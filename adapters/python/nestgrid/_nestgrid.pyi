@@ -57,6 +57,13 @@ class _VolumeFile(TypedDict):
 def volume(
     array: np.ndarray, spacing: ArrayLike, origin: ArrayLike, direction: ArrayLike
 ) -> Source: ...
+def blocks(
+    boxes: Sequence[tuple[int, Sequence[int], np.ndarray]],
+    ratios: Sequence[int],
+    spacing: ArrayLike,
+    origin: ArrayLike,
+    rule: str,
+) -> Source: ...
 def octree(
     leaves: NDArray[np.int64],
     values: NDArray[np.float64],

@@ -102,6 +102,38 @@ std::shared_ptr<Frames> frames_of(const std::vector<py::array>& arrays,
     });
 }
 
+/// \param boxes level, lowest cell and array of each, of one type
+std::shared_ptr<Source> blocks_of(
+    const std::vector<std::tuple<int, std::vector<int>, py::array>>& boxes,
+    const std::vector<int>& ratios, const Numbers& spacing, const Numbers& origin,
+    const std::string& rule) {
+    BoxArrays arrays;
+    std::vector<std::shared_ptr<const void>> memory;
+    const py::array& first = std::get<2>(boxes.front());
+    const auto indices = static_cast<std::size_t>(first.ndim());
+    arrays.dimension = static_cast<int>(indices);
+    arrays.is_double = first.itemsize() == sizeof(double);
+    for (const auto& [level, lower, array] : boxes) {
+        BoxOfNumbers& box = arrays.boxes.emplace_back();
+        box.level = level;
+        box.data = array.data();
+        for (std::size_t d = 0; d < indices; ++d) {
+            box.lower[d] = lower[d];
+            box.shape[d] = static_cast<int>(array.shape(static_cast<py::ssize_t>(d)));
+            box.stride[d] = array.strides(static_cast<py::ssize_t>(d));
+        }
+        memory.push_back(keep(array));
+    }
+    arrays.ratios = ratios;
+    arrays.spacing = along_indices(spacing, indices, 1, "spacing");
+    arrays.origin = along_indices(origin, indices, 0, "origin");
+    arrays.rule = rule == "smooth"  ? CellRule::smooth
+                  : rule == "means" ? CellRule::sharp_means
+                                    : CellRule::sharp_centres;
+    arrays.memory = std::make_shared<const std::vector<std::shared_ptr<const void>>>(memory);
+    return interruptible(1, [arrays](const Call& call) { return make_blocks(arrays, call); });
+}
+
 using Leaves = py::array_t<std::int64_t, py::array::c_style>;
 using Masks = py::array_t<std::uint8_t, py::array::c_style>;
 
@@ -146,7 +178,9 @@ std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int
 /// The field, or its frames, and its name.
 py::tuple loaded(const std::string& path, const std::string& array) {
     const auto field = interruptible(1, [path, array](const Call& call) {
-        return std::make_shared<LoadedField>(load_hierarchy(path, array, call));
+        const bool is_plotfile = std::filesystem::is_directory(path);
+        return std::make_shared<LoadedField>(is_plotfile ? load_plotfile(path, array, call)
+                                                         : load_hierarchy(path, array, call));
     });
     if (field->frames.count() == 1) {
         return py::make_tuple(std::make_shared<Source>(field->frames[0]), field->name);
@@ -178,6 +212,8 @@ void bind_sources(py::module_& m) {
                 1, [samples](const Call& call) { return make_volume(samples, call); });
         },
         py::arg("array"), py::arg("spacing"), py::arg("origin"), py::arg("direction"));
+    m.def("blocks", &blocks_of, py::arg("boxes"), py::arg("ratios"), py::arg("spacing"),
+          py::arg("origin"), py::arg("rule"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),
           py::arg("max_level"), py::arg("coordinates"));
     py::class_<Frames, std::shared_ptr<Frames>>(m, "Frames")

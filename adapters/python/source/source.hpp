@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/frames.hpp>
 
 #include "call.hpp"
@@ -84,6 +85,29 @@ public:
 /// \throw InvalidInput where the leaves are no forest, or values at one node differ
 std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays, const Call& call);
 
+/// Numbers of the cells of one box, borrowed.
+struct BoxOfNumbers {
+    int level = 0;
+    std::array<int, 3> lower{};  ///< the first cell
+    std::array<int, 3> shape{};  ///< cells along each index
+    std::array<std::ptrdiff_t, 3> stride{};  ///< in bytes
+    const void* data = nullptr;
+};
+/// Boxes of cells on levels.
+struct BoxArrays {
+    int dimension = 3;
+    bool is_double = true;  ///< floats otherwise
+    std::vector<BoxOfNumbers> boxes;
+    std::vector<int> ratios;  ///< of each level to the one before; the first is not looked at
+    Point spacing{1, 1, 1};   ///< extent of the cells of level 0
+    Point origin{0, 0, 0};    ///< where its first cell begins
+    CellRule rule = CellRule::smooth;
+    std::shared_ptr<const void> memory;  ///< keeps the data alive
+};
+/// Leaves without a value (NaN) are hidden, with all that share a node with them.
+/// \throw InvalidInput as BlockGrid
+std::shared_ptr<Source> make_blocks(const BoxArrays& given, const Call& call);
+
 /// The field of a file: one frame, or several.
 struct LoadedField {
     Frames frames;
@@ -95,5 +119,11 @@ struct LoadedField {
 /// \throw IoError where the file cannot be read, is damaged, or holds no hierarchy
 LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array,
                            const Call& call);
+/// Likewise of a plotfile of AMReX, a folder, which is mapped.
+LoadedField load_plotfile(const std::filesystem::path& path, const std::string& array,
+                          const Call& call);
+/// The place of the field with a name; an empty name stands for the only one.
+/// \throw InvalidInput where there is none
+std::size_t index_of_field(const std::vector<std::string>& names, const std::string& name);
 
 }  // namespace nestgrid::python

@@ -16,21 +16,19 @@
 
 namespace nestgrid::python {
 
-namespace {
-
-/// The place of the field with a name; an empty name stands for the only one.
-/// \throw InvalidInput where there is none
-std::size_t index_of(const std::vector<NamedField>& fields, const std::string& name) {
-    if (fields.empty()) throw InvalidInput("the hierarchy has no field");
-    if (name.empty() && fields.size() == 1) return 0;
+std::size_t index_of_field(const std::vector<std::string>& names, const std::string& name) {
+    if (names.empty()) throw InvalidInput("the hierarchy has no field");
+    if (name.empty() && names.size() == 1) return 0;
     std::string known;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-        if (fields[i].name == name) return i;
-        known += (i == 0 ? "'" : ", '") + fields[i].name + "'";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i] == name) return i;
+        known += (i == 0 ? "'" : ", '") + names[i] + "'";
     }
     throw InvalidInput(name.empty() ? "there are several fields, choose one by array: " + known
                                     : "there is no field '" + name + "', only " + known);
 }
+
+namespace {
 
 /// Whether a value of a frame is not a number (NaN).
 bool any_missing(const NamedField& field) {
@@ -42,7 +40,9 @@ LoadedField loaded_field(StoredHierarchy<Family> stored, const std::string& arra
                          const Call& call) {
     using Grid = StoredGrid<Family>;
     using Field = NodeField<Grid, double>;
-    const std::size_t index = index_of(stored.fields, array);
+    std::vector<std::string> names;
+    for (const NamedField& field : stored.fields) names.push_back(field.name);
+    const std::size_t index = index_of_field(names, array);
     const auto kept = std::make_shared<const StoredHierarchy<Family>>(std::move(stored));
     const NamedField& named = kept->fields[index];
     std::vector<Field> fields;

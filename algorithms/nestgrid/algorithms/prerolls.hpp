@@ -30,7 +30,7 @@ namespace nestgrid {
 /// An indicator to compare thresholds with, and bounds of the data for the search and the error.
 struct ChosenIndicator {
     const IndicatorKind* kind = nullptr;
-    std::shared_ptr<const Indicator> indicator;
+    std::shared_ptr<const Indicator> indicator;  ///< or null: S holds nowhere
     std::shared_ptr<const Bounds> bounds;
 };
 
@@ -68,6 +68,10 @@ public:
     /// \return the bounds, which know the range of the data
     std::shared_ptr<const Bounds> prepare(const Projection& projection, bool shared,
                                           const Work& work);
+    /// What a drawing of everything needs. Grids that are walked in stars or patches, and fields
+    /// between frames, take the offsets, with which elements stop where offsets are 0; all others
+    /// have no indicator, and bounds for Exact: SplitBounds, or the offsets where they are kept.
+    ChosenIndicator finest(const Work& work);
     /// The offsets, which bound the data and know their range.
     std::shared_ptr<const Bounds> bounds(const Work& work);
     /// Sizes of elements (mesh_size.hpp), for a lens.

@@ -67,6 +67,8 @@ struct Projection {
         return indicator == "offset" && least_threshold() == 0 && max_triangles == 0 &&
                blend == 1 && !lens;
     }
+    /// Whether it does so with a threshold that is given, so that no other one is asked for.
+    bool asks_for_everything() const { return threshold.has_value() && draws_everything(); }
     /// How the sizes of elements are spread, which the lens is compared with.
     Spread sizes_spread() const { return {.factor = blend, .slope = lens->slope}; }
     /// \throw InvalidInput where a number is out of range, with its name

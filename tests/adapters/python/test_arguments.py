@@ -38,6 +38,7 @@ def callables():
     one = (0.0, 0.0, 1.0)
     yield nestgrid.Volume, {"array": CUBE}
     yield nestgrid.Octree, {"leaves": LEAVES, "values": np.zeros(8)}
+    yield nestgrid.Blocks, {"boxes": [(0, (0, 0, 0), CUBE)]}
     yield nestgrid.Frames, {"arrays": [CUBE, CUBE]}
     yield nestgrid.FrameBudget, {"goal": 1, "greatest": 1}
     yield nestgrid.Lens, {"domain": nestgrid.ball((0, 0, 0), 1)}

@@ -6,40 +6,38 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace nestgrid {
 
-template <int dim, class Real>
-detail::BlockReader<dim, Real>::BlockReader(const BlockGrid<dim>& grid,
-                                            BlockArrays<dim, Real> arrays, BlockCentring centring)
-    : grid_{&grid}, arrays_{std::move(arrays)} {
-    if (arrays_.size() != grid.level_count()) {
-        throw InvalidInput("there are arrays of " + std::to_string(arrays_.size()) +
-                           " levels, but the grid has " + std::to_string(grid.level_count()));
-    }
-    const std::int32_t more = centring == BlockCentring::nodes ? 1 : 0;
-    for (std::size_t l = 0; l < arrays_.size(); ++l) {
-        if (arrays_[l].size() != grid.box_count(l)) {
-            throw InvalidInput("level " + std::to_string(l) + " has " +
-                               std::to_string(grid.box_count(l)) + " boxes, but " +
-                               std::to_string(arrays_[l].size()) + " arrays");
-        }
-        for (std::size_t b = 0; b < arrays_[l].size(); ++b) {
-            const BlockArray<dim, Real>& array = arrays_[l][b];
-            if (array.first == nullptr) continue;
-            const auto size = grid.box_size(l, b);
-            for (std::size_t d = 0; d < size.size(); ++d) {
-                const auto stride = array.stride[d];
-                const auto step = static_cast<std::ptrdiff_t>(sizeof(Real));
-                if (size[d] + more == 1 || stride >= step || stride <= -step) continue;
-                throw InvalidInput("the array of box " + std::to_string(b) + " of level " +
-                                   std::to_string(l) + " has the stride " + std::to_string(stride) +
-                                   " in direction " + std::to_string(d) +
-                                   ", less than a number of " + std::to_string(step) + " bytes");
-            }
-        }
-    }
+namespace detail {
+
+/// The number of a node among those of a split in tensor order.
+/// \param half its place in halves of an edge
+template <std::size_t size>
+std::size_t number_in_split(const std::array<std::int32_t, size>& half) {
+    std::size_t number = 0;
+    for (std::size_t d = size; d-- > 0;) number = 3 * number + static_cast<std::size_t>(half[d]);
+    return number;
 }
+
+/// Whether there are leaves of one level all around a node.
+template <std::size_t count, int dim>
+bool of_one_size(const std::array<BlockCell<dim>, count>& around) {
+    bool same = true;
+    for (const BlockCell<dim>& cell : around) {
+        same = same && cell.box >= 0 && cell.level == around[0].level;
+    }
+    return same;
+}
+
+/// A mean and what a sharp rule adds, within the range of the cells. One function for all places
+/// where it is computed, so that these have the same bits.
+NESTGRID_NOINLINE inline double sharpened(double mean, double more, double low, double high) {
+    return std::clamp(mean + more, std::min(low, mean), std::max(high, mean));
+}
+
+}  // namespace detail
 
 template <int dim, class Real>
 auto BlockCells<dim, Real>::hangs_on(const Around& around, const Place& node) const
@@ -84,6 +82,14 @@ double BlockCells<dim, Real>::interpolant(const BlockCell<dim>& leaf, const Plac
 template <int dim, class Real>
 template <class ValueOf>
 auto BlockCells<dim, Real>::mean(const Around& around, const ValueOf& of) const -> Mean {
+    if (detail::of_one_size(around)) {
+        detail::PatchNumbers<dim, 2> values;
+        for (std::size_t k = 0; k < around.size(); ++k) values[k] = of(around[k]);
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        const double offset =
+            reader_.grid().extent(static_cast<std::size_t>(around[0].level)) / 2.0;
+        return {detail::means_in<dim, 2>(values)[0], offset, *low, *high};
+    }
     double total = 0;
     int count = 0;
     std::array<double, static_cast<std::size_t>(1 << dim)> weight{};
@@ -143,24 +149,39 @@ public:
     bool is_missing = false;
 
     double at(const Node& node) {
-        for (std::size_t i = 0; i < count_; ++i) {
-            if (place_[i] == node.place) return value_[i];
+        std::size_t slot = hash(node.place);
+        for (; state_[slot] != State::free; slot = (slot + 1) % slots) {
+            if (place_[slot] != node.place) continue;
+            is_missing = is_missing || state_[slot] == State::missing;
+            return value_[slot];
         }
+        const bool was_missing = std::exchange(is_missing, false);
         const double value = cells_->smooth(node, *this);
-        if (count_ < value_.size()) {
-            place_[count_] = node.place;
-            value_[count_++] = value;
+        if (count_ < slots / 2) {
+            ++count_;
+            place_[slot] = node.place;
+            value_[slot] = value;
+            state_[slot] = is_missing ? State::missing : State::known;
         }
+        is_missing = is_missing || was_missing;
         return value;
     }
 
 private:
-    static constexpr std::size_t most = dim == 2 ? 9 : 27;  // around a node
+    enum class State : std::uint8_t { free, known, missing };
+    static constexpr std::size_t slots = 512;  // around an element there are up to 5^3 nodes
+
+    static std::size_t hash(const Place& place) {
+        std::uint64_t all = 0;
+        for (const std::int32_t x : place) all = detail::mix64(all + static_cast<std::uint32_t>(x));
+        return static_cast<std::size_t>(all % slots);
+    }
 
     const BlockCells* cells_;
     std::size_t count_ = 0;
-    std::array<Place, most> place_;
-    std::array<double, most> value_;
+    std::array<State, slots> state_{};
+    std::array<Place, slots> place_;
+    std::array<double, slots> value_;
 };
 
 template <int dim, class Real>
@@ -187,21 +208,16 @@ double BlockCells<dim, Real>::smooth(const Node& node, Smooth& known) const {
 template <int dim, class Real>
 double BlockCells<dim, Real>::residual(const BlockCell<dim>& cell, Smooth& known) const {
     const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(cell.level));
-    double sum = 0;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (std::size_t k = 0; k < std::size_t{1} << size_; ++k) {
+    detail::PatchNumbers<dim, 2> values;
+    for (std::size_t k = 0; k < values.size(); ++k) {
         Node corner{cell.low, cell};
         for (std::size_t d = 0; d < size_; ++d) {
             corner.place[d] += (k >> d & 1U) != 0 ? extent : 0;
         }
-        const double value = known.at(corner);
-        sum += value / static_cast<double>(std::size_t{1} << size_);
-        low = std::min(low, value);
-        high = std::max(high, value);
+        values[k] = known.at(corner);
     }
-    if (!std::isfinite(sum)) return 0;
-    return cell_value(cell, known) - std::clamp(sum, low, high);
+    const double mean = detail::means_in<dim, 2>(values)[0];
+    return std::isfinite(mean) ? cell_value(cell, known) - mean : 0;
 }
 
 template <int dim, class Real>
@@ -210,10 +226,7 @@ double BlockCells<dim, Real>::value(const Node& node, Smooth& known) const {
     const Around around = reader_.grid().leaves_around(node.place, node.near);
     if (const BlockCell<dim>* leaf = hangs_on(around, node.place)) {
         return interpolant(*leaf, node.place, [&](const Place& x) {
-            Smooth around_corner(*this);
-            const double at_corner = value({x, *leaf}, around_corner);
-            known.is_missing = known.is_missing || around_corner.is_missing;
-            return at_corner;
+            return value({x, *leaf}, known);
         });
     }
     const Mean means = brought(node.place, around,
@@ -222,9 +235,48 @@ double BlockCells<dim, Real>::value(const Node& node, Smooth& known) const {
     const double more = brought(node.place, around, [&](const BlockCell<dim>& cell) {
                             return residual(cell, known);
                         }).value;
-    const double part = rule_ == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3;
-    return std::clamp(means.value + part * more, std::min(means.low, means.value),
-                      std::max(means.high, means.value));
+    return detail::sharpened(means.value, part() * more, means.low, means.high);
+}
+
+template <int dim, class Real>
+bool BlockCells<dim, Real>::smooth_in_patch(const Element& e, NodeMask which,
+                                            std::span<Real> out) const {
+    detail::PatchNumbers<dim, 4> cells;
+    if (!reader_.template read_patch<4>(e, cells)) return false;
+    const auto means = detail::means_in<dim, 4>(cells);
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        if ((which >> n & 1U) == 0) continue;
+        out[n] = static_cast<Real>(means[detail::number_in_split(reader_.grid().half(n))]);
+    }
+    return true;
+}
+
+template <int dim, class Real>
+bool BlockCells<dim, Real>::sharp_in_patch(const Element& e, NodeMask which,
+                                           std::span<Real> out) const {
+    detail::PatchNumbers<dim, 6> cells;
+    if (!reader_.template read_patch<6>(e, cells)) return false;
+    const auto smooth = detail::means_in<dim, 6>(cells);
+    const auto inner = detail::middle_of<dim, 6>(cells);
+    auto residual = detail::means_in<dim, 5>(smooth);
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+        residual[i] = std::isfinite(residual[i]) ? inner[i] - residual[i] : 0;
+    }
+    const auto means = detail::middle_of<dim, 5>(smooth);
+    const auto more = detail::means_in<dim, 4>(residual);
+    const auto low =
+        detail::combined<dim, 4>(inner, [](double a, double b) { return std::min(a, b); });
+    const auto high =
+        detail::combined<dim, 4>(inner, [](double a, double b) { return std::max(a, b); });
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        if ((which >> n & 1U) == 0) continue;
+        const std::size_t at = detail::number_in_split(reader_.grid().half(n));
+        const bool is_number = std::isfinite(means[at]);
+        out[n] = static_cast<Real>(
+            is_number ? detail::sharpened(means[at], part() * more[at], low[at], high[at])
+                      : means[at]);
+    }
+    return true;
 }
 
 template <int dim, class Real>

@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include <nestgrid/adapters/block_grid.hpp>
+#include <nestgrid/adapters/block_patch.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
 
 namespace nestgrid {
@@ -67,6 +68,10 @@ BlockArray<dim, Real> block_array(const BlockBox<dim>& box, std::span<const Real
     return array;
 }
 
+/// Whether a leaf has no number (NaN). Nobody looks at that of a cell which a finer box covers.
+template <int dim, class Real>
+bool is_leaf_missing(const BlockGrid<dim>& grid, const BlockArrays<dim, Real>& arrays);
+
 namespace detail {
 
 /// Reads numbers of boxes.
@@ -85,6 +90,12 @@ public:
         for (std::size_t d = 0; d < offset.size(); ++d) place[d] += offset[d];
         return array(cell).at(place);
     }
+    /// The numbers of the cells that an element is divided into, and of those around them; false
+    /// unless all are here, and leaves of one level.
+    /// \tparam width of the patch, in cells: 2 and twice the layers around
+    template <std::size_t width>
+    bool read_patch(const typename BlockGrid<dim>::Element& divided,
+                    PatchNumbers<dim, width>& numbers) const;
     /// Calls write(i, its finest place, a cell near it) for the nodes that are asked for. Returns
     /// those for which it answers false.
     template <class Write>
@@ -125,7 +136,8 @@ private:
 /// are reproduced, and no value leaves the range of all cells by more than its length. A node that
 /// hangs has the interpolant.
 ///
-/// Reads 2^dim cells a node; where the rule is sharp, up to 2^(3 dim).
+/// Reads 4^dim cells for all nodes of a split among leaves of one level, 6^dim where the rule is
+/// sharp. Elsewhere it reads 2^dim cells a node, and up to 2^(3 dim) where the rule is sharp.
 template <int dim, class Real>
 class BlockCells {
 public:
@@ -145,10 +157,15 @@ public:
         return static_cast<double>(reader_.read(reader_.grid().cell_of(leaf)));
     }
     NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
-        return reader_.at_corners(i, writer(out));
+        Smooth known(*this);
+        return reader_.at_corners(i, writer(out, known));
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
-        return reader_.at_new_nodes(e, which, writer(out));
+        const bool is_done = rule_ == CellRule::smooth ? smooth_in_patch(e, which, out)
+                                                       : sharp_in_patch(e, which, out);
+        if (is_done) return 0;
+        Smooth known(*this);
+        return reader_.at_new_nodes(e, which, writer(out, known));
     }
 
 private:
@@ -167,12 +184,13 @@ private:
         Place place{};
         BlockCell<dim> near;
     };
-    /// The smooth values around a node, each computed once, and whether all cells are here.
+    /// The smooth values around the nodes of an element, each computed once, and whether all cells
+    /// of one node are here.
     class Smooth;
 
-    auto writer(std::span<Real> out) const {
-        return [this, out](std::size_t i, const Place& node, const BlockCell<dim>& near) {
-            Smooth known(*this);
+    auto writer(std::span<Real> out, Smooth& known) const {
+        return [this, out, &known](std::size_t i, const Place& node, const BlockCell<dim>& near) {
+            known.is_missing = false;
             out[i] = static_cast<Real>(value({node, near}, known));
             return !known.is_missing;
         };
@@ -191,6 +209,12 @@ private:
     double smooth(const Node& node, Smooth& known) const;
     double residual(const BlockCell<dim>& cell, Smooth& known) const;
     double value(const Node& node, Smooth& known) const;
+    /// The share of the residuals that a sharp rule adds.
+    double part() const { return rule_ == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3; }
+    /// Values at new nodes of an element among leaves of one level, with the same bits; false
+    /// where levels meet or the domain ends.
+    bool smooth_in_patch(const Element& e, NodeMask which, std::span<Real> out) const;
+    bool sharp_in_patch(const Element& e, NodeMask which, std::span<Real> out) const;
 
     detail::BlockReader<dim, Real> reader_;
     CellRule rule_;
@@ -233,3 +257,4 @@ private:
 }  // namespace nestgrid
 
 #include <nestgrid/adapters/block_cells_steps.hpp>
+#include <nestgrid/adapters/block_reader_steps.hpp>

@@ -40,6 +40,15 @@ struct BlockCell {
     std::array<std::int32_t, static_cast<std::size_t>(dim)> low{};    ///< finest, of its first node
 };
 
+/// Cells of one level that are leaves: a cube or square of them.
+template <int dim>
+struct BlockPatch {
+    std::int32_t level = 0;
+    std::int32_t box = -1;  ///< that holds the middle
+    bool is_in_box = false;
+    std::array<std::int32_t, static_cast<std::size_t>(dim)> low{};  ///< of the level
+};
+
 /// The grid. What boxes it is made of does not change: after a regrid make another one.
 template <int dim>
 class BlockGrid {
@@ -97,6 +106,8 @@ public:
     Place box_size(std::size_t level, std::size_t box) const;
     /// How many cells there are in each direction, were all as fine as the last level.
     Place finest_size() const;
+    /// The place of a new node in its element, in halves of an edge.
+    const Place& half(std::size_t n) const { return halves_[n]; }
     /// The finest place of a new node of an element, and of a corner.
     Place new_node(const Element& e, std::size_t n) const;
     Place corner(const Element& e, std::size_t k) const;
@@ -109,6 +120,12 @@ public:
     /// The leaf at the first corner of a cell: the cell itself where no finer box covers it.
     /// \param cell with level, box, and place in it
     BlockCell<dim> first_leaf(const BlockCell<dim>& cell) const;
+    /// The cells that an element is divided into, with layers of cells around them; false unless
+    /// all of these are leaves of one level.
+    bool patch_around(const Element& divided, std::int32_t layers, BlockPatch<dim>& patch) const;
+    /// A cell of a level, in its box, which holds it or is looked for.
+    /// \param guess a box of the level, looked at first
+    BlockCell<dim> cell_at(std::int32_t level, const Place& cell, std::int32_t guess) const;
     /// The leaves around a node.
     /// \param node its finest place
     /// \param near whose box is looked at first

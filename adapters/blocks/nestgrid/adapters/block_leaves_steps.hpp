@@ -107,15 +107,7 @@ auto BlockGrid<dim>::corner(const Element& e, std::size_t k) const -> Place {
 
 template <int dim>
 BlockCell<dim> BlockGrid<dim>::cell_of(const Element& leaf) const {
-    const auto level = level_of_[leaf.depth];
-    const auto& finder = levels_[level].finder;
-    BlockCell<dim> cell{level, finder.find(leaf.cell), leaf.cell, leaf.cell};
-    const auto& box = finder.boxes()[static_cast<std::size_t>(cell.box)];
-    for (std::size_t d = 0; d < size_; ++d) {
-        cell.place[d] -= box.low[d];
-        cell.low[d] <<= finest_depth() - leaf.depth;
-    }
-    return cell;
+    return cell_at(level_of_[leaf.depth], leaf.cell, -1);
 }
 
 /// Looks into the boxes that are guessed first, the finest before the others, and into finer levels
@@ -164,8 +156,49 @@ BlockCell<dim> BlockGrid<dim>::first_leaf(const BlockCell<dim>& cell) const {
     return leaf_at(first, guess);
 }
 
+template <int dim>
+bool BlockGrid<dim>::patch_around(const Element& divided, std::int32_t layers,
+                                  BlockPatch<dim>& patch) const {
+    const std::size_t l = level_of_[divided.depth + 1U];
+    const Level& level = levels_[l];
+    if (level.depth != divided.depth + 1U) return false;
+    detail::CellRange<dim> range;
+    Place middle{};
+    for (std::size_t d = 0; d < size_; ++d) {
+        middle[d] = 2 * divided.cell[d];
+        range.low[d] = middle[d] - layers;
+        range.high[d] = middle[d] + 2 + layers;
+    }
+    patch.level = static_cast<std::int32_t>(l);
+    patch.box = l == 0 ? level.finder.find(middle) : divided.finer;
+    patch.low = range.low;
+    const auto& box = level.finder.boxes()[static_cast<std::size_t>(patch.box)];
+    patch.is_in_box = range.clipped(box).count() == range.count();
+    if (!patch.is_in_box && level.finder.count_within(range) != range.count()) return false;
+    if (l + 1 == levels_.size()) return true;
+    const Level& next = levels_[l + 1];
+    for (std::size_t d = 0; d < size_; ++d) {
+        range.low[d] <<= next.depth - level.depth;
+        range.high[d] <<= next.depth - level.depth;
+    }
+    return next.finder.count_within(range) == 0;
+}
+
+template <int dim>
+BlockCell<dim> BlockGrid<dim>::cell_at(std::int32_t level, const Place& cell,
+                                       std::int32_t guess) const {
+    const Level& of = levels_[static_cast<std::size_t>(level)];
+    BlockCell<dim> found{level, of.finder.find(cell, guess), cell, cell};
+    const auto& box = of.finder.boxes()[static_cast<std::size_t>(found.box)];
+    for (std::size_t d = 0; d < size_; ++d) {
+        found.place[d] -= box.low[d];
+        found.low[d] <<= finest_depth() - of.depth;
+    }
+    return found;
+}
+
 /// Whether a node has a box all around it, with cells that are leaves and have it for a corner;
-/// these are written.
+/// these are written then.
 template <int dim>
 bool BlockGrid<dim>::is_within(const Place& node, const BlockCell<dim>& near,
                                Around& around) const {
@@ -177,18 +210,23 @@ bool BlockGrid<dim>::is_within(const Place& node, const BlockCell<dim>& near,
         at[d] >>= shift;
         if (at[d] << shift != node[d] || at[d] <= box.low[d] || at[d] >= box.high[d]) return false;
     }
-    const Level* const next = l + 1 == levels_.size() ? nullptr : &levels_[l + 1];
+    if (l + 1 < levels_.size()) {
+        const Level& next = levels_[l + 1];
+        detail::CellRange<dim> finer;
+        for (std::size_t d = 0; d < size_; ++d) {
+            finer.low[d] = (at[d] - 1) << (next.depth - levels_[l].depth);
+            finer.high[d] = (at[d] + 1) << (next.depth - levels_[l].depth);
+        }
+        if (next.finder.count_within(finer) != 0) return false;
+    }
     for (std::size_t k = 0; k < around.size(); ++k) {
-        Place finer{};
         around[k].level = near.level;
         around[k].box = near.box;
         for (std::size_t d = 0; d < size_; ++d) {
             const std::int32_t cell = at[d] - ((k >> d & 1U) == 0 ? 1 : 0);
             around[k].place[d] = cell - box.low[d];
             around[k].low[d] = cell << shift;
-            if (next != nullptr) finer[d] = cell << (next->depth - levels_[l].depth);
         }
-        if (next != nullptr && next->finder.find(finer) >= 0) return false;
     }
     return true;
 }
@@ -210,6 +248,8 @@ auto BlockGrid<dim>::leaves_around(const Place& node, const BlockCell<dim>& near
         }
         if (!is_inside) continue;
         around[k] = leaf_at(cell, guess);
+        const bool is_elsewhere = around[k].level != near.level || around[k].box != near.box;
+        if (k == 0 && is_elsewhere && is_within(node, around[0], around)) return around;
     }
     return around;
 }

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fields of boxes of cells on levels."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, Sequence
+
+import numpy as np
+
+from . import _arguments as kinds
+from . import _nestgrid
+from ._arguments import Unfit, name_of, not_a, sequence, takes, whole
+from ._fields import Field
+from ._nestgrid import InvalidInput
+from ._sources import Numbers, _placed
+
+Box = tuple[int, Sequence[int], np.ndarray]
+Rule = Literal["smooth", "centres", "means"]
+
+
+def _box(value: Any) -> tuple[int, list[int], np.ndarray]:
+    """Level, lowest cell and array of a box."""
+    if not isinstance(value, (tuple, list)) or len(value) != 3:
+        raise not_a("a level, a lowest cell and an array", value)
+    try:
+        level = whole(0, 30)(value[0])
+        lower = sequence(whole(-(1 << 30), 1 << 30), "the lowest cell")(value[1])
+        array = kinds.array(value[2])
+    except Unfit as unfit:
+        raise Unfit(f"is no box: a part of it {unfit}", unfit.error) from None
+    return level, lower, array
+
+
+def _ratio(value: Any) -> int | list[int]:
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return sequence(whole(2, 1 << 20), "whole numbers")(value)
+    return whole(2, 1 << 20)(value)
+
+
+class Blocks(Field):
+    """Boxes of cells on levels, as codes for block-structured AMR have them; arrays are borrowed.
+
+    boxes    a sequence of (level, lower, array): array[i, j, k] (array[i, j]) is the value of the
+             cell lower + (i, j, k) of the level, counted over the whole domain. Cells that a finer
+             box covers may hold anything. Level 0 fills a box, and each further level lies within
+             the boxes of the one before. Arrays of float32 stay so where all are; others that are
+             not float64 are copied
+    ratio    how many cells of the next level there are along a side of a cell, a power of two; or
+             one number for each level but the first
+    spacing  size of the cells of level 0, in units of length; None: 1
+    origin   where the first cell of level 0 begins; None: 0
+    rule     of the values at nodes: "smooth" means, or sharper ones that take the values for those
+             at "centres", or for "means" over cells, as finite volumes have them
+    name     of the data, for files and tables
+    unit     of length, such as "mm"
+
+    Leaves with the value nan are not drawn. Raises InvalidInput where boxes overlap, are not aligned
+    to the ratio or do not lie in the level before.
+    """
+
+    __module__ = "nestgrid"
+
+    @takes(boxes=sequence(_box, "a sequence of boxes"), ratio=_ratio, rule=name_of(Rule))
+    def __init__(
+        self,
+        boxes: Sequence[Box],
+        *,
+        ratio: int | Sequence[int] = 2,
+        spacing: Numbers | None = None,
+        origin: Numbers | None = None,
+        rule: Rule = "smooth",
+        name: str = "",
+        unit: str = "",
+    ) -> None:
+        if not boxes:
+            raise InvalidInput("Blocks(): there are no boxes")
+        dimension = boxes[0][2].ndim
+        for i, (_, lower, array) in enumerate(boxes):
+            if array.ndim not in (2, 3) or array.ndim != dimension or len(lower) != dimension:
+                raise InvalidInput(
+                    f"Blocks(): box {i} has an array of {array.ndim} indices and a lowest cell of "
+                    f"{len(lower)} numbers: all boxes need 2 of both, or 3"
+                )
+            if array.size == 0 or max(array.shape) > 1 << 20:
+                raise InvalidInput(f"Blocks(): box {i} has no cells, or more than 2^20 on a side")
+        levels = 1 + max(level for level, _, _ in boxes)
+        ratios = [ratio] * (levels - 1) if isinstance(ratio, int) else list(ratio)
+        if len(ratios) != levels - 1:
+            raise InvalidInput(
+                f"Blocks(): there are {len(ratios)} ratios for {levels} levels: one for each but "
+                "the first is needed"
+            )
+        step, start, _ = _placed(dimension, spacing, origin)
+        single = all(array.dtype == np.float32 for _, _, array in boxes)
+        kind = np.float32 if single else np.float64
+        self._built_of = (
+            [(level, lower, np.asarray(array, kind)) for level, lower, array in boxes],
+            ratios,
+            step,
+            start,
+            rule,
+        )
+        source = _nestgrid.blocks(self._built_of[0], [1, *ratios], step, start, rule)
+        self._set(source, name, unit)
+
+    def _size(self) -> str:
+        boxes, ratios = self._built_of[:2]
+        return f"{len(boxes)} boxes of dimension {self.dimension} on {len(ratios) + 1} levels"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _blocks_of, (*self._built_of, self._name, self._unit)
+
+
+def _blocks_of(
+    boxes: list[Box],
+    ratios: list[int],
+    spacing: np.ndarray,
+    origin: np.ndarray,
+    rule: Rule,
+    name: str,
+    unit: str,
+) -> Blocks:
+    return Blocks(
+        boxes, ratio=ratios, spacing=spacing, origin=origin, rule=rule, name=name, unit=unit
+    )

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// VTK's overlapping AMR as blocks (block_grid.hpp), in place: what its readers of AMReX, Enzo and
+// FLASH and of .vthb files give. Of cells that a finer level covers, nothing is read.
+//
+//     const BlockGrid<3> grid(vtk_blocks<3>(*amr));
+//     const BlockCells<3, double> field(grid, vtk_block_arrays<3, double>(*amr, "density"));
+//
+// Readers list the boxes of all levels, and have data of those that they were told to read: the
+// levels from the first one without data on are left out.
+#pragma once
+
+#include <cmath>
+
+#include <vtkAMRBox.h>
+#include <vtkAOSDataArrayTemplate.h>
+#include <vtkCellData.h>
+#include <vtkOverlappingAMR.h>
+#include <vtkStructuredData.h>
+#include <vtkUniformGrid.h>
+
+#include <nestgrid/adapters/block_fields.hpp>
+
+namespace nestgrid {
+
+namespace detail {
+
+inline std::string text_of_block(std::size_t level, std::size_t block) {
+    return "block " + std::to_string(block) + " of level " + std::to_string(level);
+}
+
+inline vtkUniformGrid* amr_block(vtkOverlappingAMR& amr, std::size_t level, std::size_t block) {
+    return amr.GetDataSet(static_cast<unsigned>(level), static_cast<unsigned>(block));
+}
+
+/// How many levels have data.
+/// \throw InvalidInput where some blocks of a level have data and others have none
+inline std::size_t amr_levels_with_data(vtkOverlappingAMR& amr) {
+    for (std::size_t l = 0; l < amr.GetNumberOfLevels(); ++l) {
+        const std::size_t blocks = amr.GetNumberOfDataSets(static_cast<unsigned>(l));
+        std::size_t without = 0;
+        std::size_t last = 0;
+        for (std::size_t b = 0; b < blocks; ++b) {
+            if (amr_block(amr, l, b) != nullptr) continue;
+            ++without;
+            last = b;
+        }
+        if (without == blocks) return l;
+        if (without > 0) {
+            throw InvalidInput(text_of_block(l, last) +
+                               " has no data, but other blocks of the level do");
+        }
+    }
+    return amr.GetNumberOfLevels();
+}
+
+/// The box of a block in its first dim directions.
+template <int dim>
+BlockBox<dim> amr_box(vtkOverlappingAMR& amr, std::size_t level, std::size_t block) {
+    const vtkAMRBox& from =
+        amr.GetAMRBox(static_cast<unsigned>(level), static_cast<unsigned>(block));
+    BlockBox<dim> box;
+    std::copy_n(from.GetLoCorner(), dim, box.lower.begin());
+    std::copy_n(from.GetHiCorner(), dim, box.upper.begin());
+    return box;
+}
+
+/// The numbers of one block.
+/// \throw InvalidInput as vtk_block_arrays()
+template <int dim, class Real>
+BlockArray<dim, Real> amr_array(vtkOverlappingAMR& amr, std::size_t level, std::size_t block,
+                                const std::string& name, int component) {
+    vtkUniformGrid* const grid = amr_block(amr, level, block);
+    vtkDataArray* const data = grid->GetCellData()->GetArray(name.c_str());
+    const auto refuse = [&](const std::string& what) {
+        throw InvalidInput(text_of_block(level, block) + " has " + what);
+    };
+    if (data == nullptr) refuse("no array '" + name + "' of its cells");
+    auto* const numbers = vtkAOSDataArrayTemplate<Real>::FastDownCast(data);
+    if (numbers == nullptr) {
+        refuse("an array '" + name + "' of the type " + data->GetClassName() + ", not of " +
+               (sizeof(Real) == sizeof(double) ? "doubles" : "floats") + " one behind the other");
+    }
+    const int components = numbers->GetNumberOfComponents();
+    if (component < 0 || component >= components) {
+        refuse("an array '" + name + "' of " + std::to_string(components) +
+               " components, without component " + std::to_string(component));
+    }
+    const BlockBox<dim> box = amr_box<dim>(amr, level, block);
+    BlockArray<dim, Real> array;
+    std::ptrdiff_t stride = std::ptrdiff_t{components} * static_cast<std::ptrdiff_t>(sizeof(Real));
+    std::array<int, 3> points{};
+    grid->GetDimensions(points.data());
+    for (std::size_t d = 0; d < array.stride.size(); ++d) {
+        const int cells = box.upper[d] - box.lower[d] + 1;
+        if (points[d] - 1 != cells) {
+            refuse(std::to_string(points[d] - 1) + " cells in direction " + std::to_string(d) +
+                   ", but its box " + std::to_string(cells));
+        }
+        array.stride[d] = stride;
+        stride *= cells;
+    }
+    if (numbers->GetNumberOfValues() * static_cast<vtkIdType>(sizeof(Real)) < stride) {
+        refuse("an array '" + name + "' that is shorter than its cells");
+    }
+    array.first = numbers->GetPointer(component);
+    return array;
+}
+
+}  // namespace detail
+
+/// The boxes of the levels that have data.
+///
+/// \throw InvalidInput where there are none, where a level has data in part, and where the grid
+/// does not lie in space (dim = 3), or in a plane of constant z (dim = 2); BlockGrid checks the
+/// boxes
+template <int dim>
+Blocks<dim> vtk_blocks(vtkOverlappingAMR& amr) {
+    const std::size_t levels = detail::amr_levels_with_data(amr);
+    if (levels == 0) throw InvalidInput("the overlapping AMR has no data");
+    if (amr.GetGridDescription() != (dim == 3 ? VTK_XYZ_GRID : VTK_XY_PLANE)) {
+        throw InvalidInput(dim == 3 ? "the overlapping AMR is not of dimension 3"
+                                    : "the overlapping AMR does not lie in a plane of constant z");
+    }
+    Blocks<dim> blocks;
+    std::array<double, 3> coarse{};
+    for (std::size_t l = 0; l < levels; ++l) {
+        BlockLevel<dim>& level = blocks.levels.emplace_back();
+        for (std::size_t b = 0; b < amr.GetNumberOfDataSets(static_cast<unsigned>(l)); ++b) {
+            level.boxes.push_back(detail::amr_box<dim>(amr, l, b));
+        }
+        std::array<double, 3> spacing{};
+        amr.GetSpacing(static_cast<unsigned>(l), spacing.data());
+        for (std::size_t d = 0; d < level.ratio.size(); ++d) {
+            if (l > 0) level.ratio[d] = static_cast<int>(std::lround(coarse[d] / spacing[d]));
+            if (l == 0) blocks.spacing[d] = spacing[d];
+        }
+        coarse = spacing;
+    }
+    for (std::size_t d = 0; d < 3; ++d) {
+        blocks.origin[d] = amr.GetOrigin()[d];
+        if (d >= static_cast<std::size_t>(dim)) continue;
+        int first = blocks.levels[0].boxes[0].lower[d];
+        for (const BlockBox<dim>& box : blocks.levels[0].boxes) {
+            first = std::min(first, box.lower[d]);
+        }
+        blocks.origin[d] += first * blocks.spacing[d];
+    }
+    return blocks;
+}
+
+/// Where the cells of the levels that have data have one component of an array.
+///
+/// \throw InvalidInput naming block and array where a block lacks it, or has it of another type, or
+/// has another number of cells than its box, as with ghost cells inside
+template <int dim, class Real>
+BlockArrays<dim, Real> vtk_block_arrays(vtkOverlappingAMR& amr, const std::string& name,
+                                        int component = 0) {
+    BlockArrays<dim, Real> arrays(detail::amr_levels_with_data(amr));
+    for (std::size_t l = 0; l < arrays.size(); ++l) {
+        for (std::size_t b = 0; b < amr.GetNumberOfDataSets(static_cast<unsigned>(l)); ++b) {
+            arrays[l].push_back(detail::amr_array<dim, Real>(amr, l, b, name, component));
+        }
+    }
+    return arrays;
+}
+
+}  // namespace nestgrid

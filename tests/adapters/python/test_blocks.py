@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Boxes of cells on levels: of arrays, which are borrowed, and of plotfiles, which are mapped."""
+import os
+import pickle
+from collections import Counter
+
+import numpy as np
+import pytest
+
+import nestgrid
+
+N = 8  # cells of level 0 along the unit cube
+
+
+def centres(level, lower, shape, ratio=2):
+    """The coordinates of the centres of a box."""
+    width = 1 / N / ratio**level
+    along = [(low + np.arange(n) + 0.5) * width for low, n in zip(lower, shape)]
+    return np.meshgrid(*along, indexing="ij")
+
+
+def ball(x, y, z):
+    return np.sqrt((x - 0.5) ** 2 + (y - 0.45) ** 2 + (z - 0.5) ** 2) - 0.3
+
+
+#: Level, lowest cell and size: level 1 covers a part of level 0, level 2 of that.
+PLACES = [(0, (0, 0, 0), (4, 8, 8)), (0, (4, 0, 0), (4, 8, 8)), (1, (4, 4, 4), (8, 8, 8))]
+PLACES += [(2, (12, 12, 12), (8, 4, 4)), (2, (20, 12, 16), (4, 8, 8))]
+
+
+def boxes(f, dtype=float):
+    return [(level, low, f(*centres(level, low, shape)).astype(dtype)) for level, low, shape in PLACES]
+
+
+def blocks(f=ball, **options):
+    return nestgrid.Blocks(boxes(f), spacing=[1 / N] * 3, **options)
+
+
+def edges(surface):
+    """How often each edge is used."""
+    t = surface.triangles
+    pairs = np.sort(np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1)
+    return Counter(map(tuple, pairs.tolist()))
+
+
+@pytest.mark.parametrize("rule", ["smooth", "centres", "means"])
+def test_linear_functions_are_reproduced(rule):
+    field = blocks(lambda x, y, z: 1 + 2 * x - 3 * y + z, rule=rule)
+    points = np.random.default_rng(1).uniform(0, 1, (200, 3))
+    expected = 1 + 2 * points[:, 0] - 3 * points[:, 1] + points[:, 2]
+    np.testing.assert_allclose(field.probe(points), expected, atol=1e-12)
+
+
+def test_surfaces_are_closed():
+    for threshold in (0, 0.01, 0.05):
+        surface = blocks().isosurface(0, threshold)
+        assert len(surface.triangles) > 50
+        assert set(edges(surface).values()) == {2}
+
+
+def test_covered_cells_are_not_looked_at():
+    given = boxes(ball)
+    level, lower, array = given[2]
+    array[2:6, 2:4, 2:4] = np.nan  # below level 2
+    surface = nestgrid.Blocks(given, spacing=[1 / N] * 3).isosurface(0)
+    expected = blocks().isosurface(0)
+    np.testing.assert_array_equal(surface.vertices, expected.vertices)
+    given[0][2][1, 3, 3] = np.nan  # a leaf
+    assert set(edges(nestgrid.Blocks(given, spacing=[1 / N] * 3).isosurface(0)).values()) == {1, 2}
+
+
+def test_any_order_in_memory_and_types():
+    expected = blocks().isosurface(0).vertices
+    for order in ("C", "F"):
+        given = [(level, low, np.array(a, order=order)) for level, low, a in boxes(ball)]
+        np.testing.assert_array_equal(
+            nestgrid.Blocks(given, spacing=[1 / N] * 3).isosurface(0).vertices, expected
+        )
+    backwards = [(level, low, a[::-1].copy()[::-1]) for level, low, a in boxes(ball)]
+    ghosts = [(level, low, np.pad(a, 2, constant_values=np.nan)[2:-2, 2:-2, 2:-2]) for level, low, a in boxes(ball)]
+    for given in (backwards, ghosts):
+        field = nestgrid.Blocks(given, spacing=[1 / N] * 3)
+        np.testing.assert_array_equal(field.isosurface(0).vertices, expected)
+    single = nestgrid.Blocks(boxes(ball, np.float32), spacing=[1 / N] * 3)
+    np.testing.assert_allclose(single.isosurface(0).vertices, expected, atol=1e-5)
+    whole = nestgrid.Blocks([(0, (0, 0), [[0, 1], [2, 3]])])
+    assert whole.probe([[1, 1]])[0] == 1.5
+
+
+def test_arrays_are_borrowed():
+    given = boxes(ball)
+    field = nestgrid.Blocks(given, spacing=[1 / N] * 3)
+    before = field.isosurface(0).vertices
+    for _, _, array in given:
+        array -= 0.05
+    field.changed()
+    assert len(field.isosurface(0).vertices) != len(before)
+    del given, array
+    field.isosurface(0.01)
+
+
+def test_pickle():
+    field = blocks(name="distance", unit="m")
+    again = pickle.loads(pickle.dumps(field))
+    np.testing.assert_array_equal(field.isosurface(0).vertices, again.isosurface(0).vertices)
+    assert repr(again) == repr(field) and "5 boxes of dimension 3 on 3 levels" in repr(field)
+
+
+def write_plotfile(folder, given, name="distance"):
+    """A plotfile as AMReX writes it, of one field."""
+
+    def text(low, shape):
+        high = [a + n - 1 for a, n in zip(low, shape)]
+        return "((%d,%d,%d) (%d,%d,%d) (0,0,0))" % (*low, *high)
+
+    levels = 1 + max(level for level, _, _ in given)
+    header = f"HyperCLaw-V1.1\n1\n{name}\n3\n2.5\n{levels - 1}\n0 0 0\n1 1 1\n" + "2 " * (levels - 1)
+    header += "\n" + " ".join(text((0, 0, 0), [N * 2**k] * 3) for k in range(levels))
+    header += "\n" + "0 " * levels + "\n"
+    header += "".join("%.17g %.17g %.17g\n" % ((1 / (N * 2**k),) * 3) for k in range(levels)) + "0\n0\n"
+    for k in range(levels):
+        own = [(low, array) for level, low, array in given if level == k]
+        header += f"{k} {len(own)} 2.5\n0\n"
+        for low, array in own:
+            for a, n in zip(low, array.shape):
+                header += "%.17g %.17g\n" % (a / (N * 2**k), (a + n) / (N * 2**k))
+        header += f"Level_{k}/Cell\n"
+        os.makedirs(folder / f"Level_{k}")
+        cells = f"1\n1\n1\n0\n({len(own)} 0\n"
+        cells += "".join(text(low, array.shape) + "\n" for low, array in own) + f")\n{len(own)}\n"
+        data = b""
+        for low, array in own:
+            cells += f"FabOnDisk: Cell_D_00000 {len(data)}\n"
+            kind = "((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))"
+            data += f"FAB {kind}{text(low, array.shape)} 1\n".encode() + array.tobytes(order="F")
+        (folder / f"Level_{k}" / "Cell_D_00000").write_bytes(data)
+        (folder / f"Level_{k}" / "Cell_H").write_text(cells + "\n")
+    (folder / "Header").write_text(header)
+
+
+def test_plotfiles(tmp_path):
+    given = boxes(ball)
+    folder = tmp_path / "plt00000"
+    write_plotfile(folder, given)
+    expected = blocks().isosurface(0).vertices
+    for path in (folder, folder / "Header"):
+        for array in ("", "distance"):
+            field = nestgrid.load(path, array)
+            np.testing.assert_array_equal(field.isosurface(0).vertices, expected)
+    assert field.name == "distance" and field.dimension == 3
+    again = pickle.loads(pickle.dumps(field))
+    np.testing.assert_array_equal(again.isosurface(0).vertices, expected)
+    with pytest.raises(nestgrid.InvalidInput, match="there is no field 'x', only 'distance'"):
+        nestgrid.load(folder, "x")
+    with pytest.raises(nestgrid.InvalidInput, match="frame, component and magnitude choose nothing"):
+        nestgrid.load(folder, frame=1)
+    with pytest.raises(nestgrid.InvalidInput, match="dims is for .raw files"):
+        nestgrid.load(folder, dims=(1, 2, 3))
+    data = folder / "Level_2" / "Cell_D_00000"
+    data.write_bytes(data.read_bytes()[:-1])
+    with pytest.raises(nestgrid.IoError, match="is truncated"):
+        nestgrid.load(folder)
