@@ -12,6 +12,7 @@
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/polynomials.hpp>
 
 namespace nestgrid {
 
@@ -107,6 +108,14 @@ public:
         return sizes_;
     }
 
+    std::shared_ptr<const HighOrder> high_order(const Work& work) {
+        if (between_frames()) return nullptr;
+        if (work.same_field != nullptr) return engine::polynomials_of(*work.same_field);
+        const std::scoped_lock lock(mutex_);
+        if (!high_order_) high_order_ = engine::polynomials_of(field_);
+        return *high_order_;
+    }
+
     std::size_t node_count(const Work& work) {
         Kept& frame = between_frames() ? *frames_.front()->kept_ : *this;
         return frame.own_of_nodes(NodeError::offset, 1, work)->node_count();
@@ -118,6 +127,7 @@ public:
         swept_.clear();
         sizes_.reset();
         of_level_sets_.clear();
+        high_order_.reset();
     }
 
     std::size_t memory_bytes() const {
@@ -126,6 +136,7 @@ public:
         for (const auto& [key, each] : of_level_sets_) bytes += each.memory_bytes();
         for (const auto& [key, each] : of_nodes_) bytes += each->memory_bytes();
         for (const auto& [key, each] : swept_) bytes += each->memory_bytes();
+        if (high_order_ && *high_order_ != nullptr) bytes += (*high_order_)->memory_bytes();
         return bytes + (sizes_ ? sizes_->memory_bytes() : 0);
     }
 
@@ -213,6 +224,7 @@ private:
     std::map<std::pair<const IndicatorKind*, double>, Made> swept_;
     Made sizes_;
     std::map<const IndicatorKind*, OfLevelSets> of_level_sets_;
+    std::optional<std::shared_ptr<const HighOrder>> high_order_;  // nothing: not asked for yet
 };
 
 Prerolls::Prerolls(FieldOnGrid field)
@@ -255,6 +267,10 @@ std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) {
 
 std::shared_ptr<const SweptIndicator> Prerolls::sizes(const Spread& spread, const Work& work) {
     return kept_->sizes(spread, work);
+}
+
+std::shared_ptr<const HighOrder> Prerolls::high_order(const Work& work) {
+    return kept_->high_order(work);
 }
 
 std::size_t Prerolls::node_count(const Work& work) { return kept_->node_count(work); }

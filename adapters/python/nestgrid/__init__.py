@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from ._arguments import InvalidType
 from ._budget import FrameBudget
+from ._cells import Cells
 from ._fields import Field
 from ._lens import Domain, Lens, ball, box, cone, half_space, polygon, view
 from ._load import load
@@ -22,6 +23,7 @@ from ._skimage import marching_cubes
 from ._sources import Frames, Octree, Volume
 
 __all__ = [
+    "Cells",
     "Domain",
     "Field",
     "FrameBudget",
