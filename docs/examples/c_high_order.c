@@ -97,12 +97,12 @@ static int degree(const void* self, void* context, const nestgrid_element* leaf,
 }
 
 static int evaluate(const void* self, void* context, const nestgrid_element* leaf, size_t count,
-                    const double* reference, void* out) {
+                    const double (*reference)[3], void* out) {
     const int cell = number_of(leaf);
     (void)self;
     (void)context;
     for (size_t i = 0; i < count; ++i) {
-        const double* at = reference + 3 * i; /* from 0 to 1 in each direction */
+        const double* at = reference[i]; /* from 0 to 1 in each direction */
         ((double*)out)[i] = field_at(place(cell % CELLS) + at[0] * 2 / CELLS,
                                      place(cell / CELLS) + at[1] * 2 / CELLS);
     }

@@ -52,7 +52,8 @@ int run(int argc, char** argv) {
     const dealii_high_order::Exact exact;
     dealii_high_order::Laplace problem(exact);
     std::printf(
-        "cycle  cells    dofs  degrees  L2 error    jump  triangles  open    bound  slice  open    "
+        "cycle  cells    dofs  degrees  L2 error     jump  triangles  open    bound  slice  open   "
+        " "
         "bound   error\n");
     for (int cycle = 0; cycle < cycles; ++cycle) {
         if (cycle > 0) problem.refine();
@@ -73,7 +74,7 @@ int run(int argc, char** argv) {
         const auto closed = nestgrid::surface_report(surface.surface);
         const auto whole = nestgrid::surface_report(slice.surface);
         const double error = turn_into_errors(slice.surface, exact);
-        std::printf("%5d %6u %7u %8zu %9.2e %7.0e %10zu %5zu %8.1e %6zu %5zu %8.1e %7.1e\n", cycle,
+        std::printf("%5d %6u %7u %8zu %9.2e %8.6f %10zu %5zu %8.1e %6zu %5zu %8.1e %7.1e\n", cycle,
                     problem.triangulation.n_active_cells(), problem.dofs.n_dofs(),
                     problem.degree_count(), problem.error(), data.jump(),
                     surface.surface.simplices.size(), std::size_t(closed.open_edges),

@@ -7,14 +7,21 @@
 
 #include <vtkBiQuadraticQuad.h>
 #include <vtkBiQuadraticQuadraticHexahedron.h>
+#include <vtkBiQuadraticQuadraticWedge.h>
 #include <vtkHexahedron.h>
 #include <vtkLagrangeHexahedron.h>
 #include <vtkLagrangeQuadrilateral.h>
+#include <vtkLagrangeTetra.h>
+#include <vtkLagrangeTriangle.h>
+#include <vtkLagrangeWedge.h>
 #include <vtkNew.h>
 #include <vtkPixel.h>
 #include <vtkQuad.h>
 #include <vtkQuadraticHexahedron.h>
 #include <vtkQuadraticQuad.h>
+#include <vtkQuadraticTetra.h>
+#include <vtkQuadraticTriangle.h>
+#include <vtkQuadraticWedge.h>
 #include <vtkTriQuadraticHexahedron.h>
 #include <vtkVoxel.h>
 
@@ -29,17 +36,40 @@ using namespace nestgrid_test;
 
 namespace {
 
+/// The place of a node among the points of a cell, as VTK says.
+vtkIdType vtk_place(Shape shape, const LatticePlace& at, int p) {
+    const std::array<int, 3> order{p, p, p};
+    const auto [i, j, k] = at;
+    switch (shape) {
+        case Shape::triangle: {
+            const std::array<vtkIdType, 3> b{i, j, p - i - j};
+            return vtkLagrangeTriangle::Index(b.data(), p);
+        }
+        case Shape::tetrahedron: {
+            const std::array<vtkIdType, 4> b{i, j, k, p - i - j - k};
+            return vtkLagrangeTetra::Index(b.data(), p);
+        }
+        case Shape::quadrilateral:
+            return vtkLagrangeQuadrilateral::PointIndexFromIJK(i, j, order.data());
+        case Shape::prism:
+            return vtkLagrangeWedge::PointIndexFromIJK(i, j, k, order.data());
+        default:
+            return vtkLagrangeHexahedron::PointIndexFromIJK(i, j, k, order.data());
+    }
+}
+
 TEST(Lagrange, PointsStandInTheOrderOfVtk) {
-    for (int p = 1; p <= max_degree; ++p) {
-        const std::array<int, 3> order{p, p, p};
-        for (std::size_t n = 0; n < nestgrid::detail::lattice_size(Shape::hexahedron, p); ++n) {
-            const auto [i, j, k] = nestgrid::detail::box_node(n, p);
-            ASSERT_EQ(nestgrid::detail::box_point({i, j, k}, p, 3),
-                      std::size_t(vtkLagrangeHexahedron::PointIndexFromIJK(i, j, k, order.data())))
-                << p << ": " << i << ' ' << j << ' ' << k;
-            if (k != 0) continue;
-            ASSERT_EQ(nestgrid::detail::box_point({i, j, 0}, p, 2),
-                      std::size_t(vtkLagrangeQuadrilateral::PointIndexFromIJK(i, j, order.data())));
+    for (const Shape shape : {Shape::triangle, Shape::quadrilateral, Shape::tetrahedron,
+                              Shape::prism, Shape::hexahedron}) {
+        for (int p = 1; p <= max_degree; ++p) {
+            const auto lattice = nestgrid::detail::lattice(shape, p);
+            ASSERT_EQ(lattice.size(), nestgrid::detail::lattice_size(shape, p));
+            for (const LatticePlace& at : lattice) {
+                ASSERT_EQ(nestgrid::detail::lattice_point(shape, at, p),
+                          std::size_t(vtk_place(shape, at, p)))
+                    << topology(shape).name << ", degree " << p << ": " << at[0] << ' ' << at[1]
+                    << ' ' << at[2];
+            }
         }
     }
 }
@@ -69,6 +99,11 @@ void expect_shape_functions_of(std::size_t points, int degree) {
     const LagrangeField<dim> field(grid, values);
     for (int sample = 0; sample < 50; ++sample) {
         std::array<double, 3> x{uniform(random), uniform(random), dim == 3 ? uniform(random) : 0};
+        const Shape shape = grid.kind(0).shape;
+        if (shape != Shape::quadrilateral && shape != Shape::hexahedron) {
+            x[1] *= 1 - x[0];
+            if (shape == Shape::tetrahedron) x[2] *= 1 - x[0] - x[1];
+        }
         std::vector<double> weights(points);
         cell->InterpolateFunctions(x.data(), weights.data());
         double expected = 0;
@@ -90,7 +125,14 @@ TEST(Lagrange, PolynomialsAreThoseOfVtk) {
     expect_shape_functions_of<3, vtkQuadraticHexahedron>(20, 2);
     expect_shape_functions_of<3, vtkBiQuadraticQuadraticHexahedron>(24, 2);
     expect_shape_functions_of<3, vtkTriQuadraticHexahedron>(27, 2);
+    expect_shape_functions_of<2, vtkQuadraticTriangle>(6, 2);
+    expect_shape_functions_of<3, vtkQuadraticTetra>(10, 2);
+    expect_shape_functions_of<3, vtkQuadraticWedge>(15, 2);
+    expect_shape_functions_of<3, vtkBiQuadraticQuadraticWedge>(18, 2);
     for (std::size_t p = 1; p <= max_degree; ++p) {
+        expect_shape_functions_of<2, vtkLagrangeTriangle>((p + 1) * (p + 2) / 2, int(p));
+        expect_shape_functions_of<3, vtkLagrangeTetra>((p + 1) * (p + 2) * (p + 3) / 6, int(p));
+        expect_shape_functions_of<3, vtkLagrangeWedge>((p + 1) * (p + 1) * (p + 2) / 2, int(p));
         expect_shape_functions_of<2, vtkLagrangeQuadrilateral>((p + 1) * (p + 1), int(p));
         expect_shape_functions_of<3, vtkLagrangeHexahedron>((p + 1) * (p + 1) * (p + 1), int(p));
     }
@@ -201,14 +243,12 @@ TEST(Lagrange, RefusalsNameTheCell) {
                             m.first.push_back(std::int64_t(m.points.size()));
                         }),
                         "cell 8 is a triangle among cells of dimension 3");
-    Mesh tetrahedron;
-    tetrahedron.types = {24};
-    tetrahedron.coordinates.resize(30);
-    tetrahedron.first = {0, 10};
-    tetrahedron.points = numbers_to(10);
-    expect_mesh_refused(tetrahedron,
-                        "cell 0, a quadratic tetrahedron, has degree 2; degrees above 1 are drawn "
-                        "on quadrilaterals and hexahedra");
+    Mesh pyramid;
+    pyramid.types = {74};
+    pyramid.coordinates.resize(42);
+    pyramid.first = {0, 14};
+    pyramid.points = numbers_to(14);
+    expect_mesh_refused(pyramid, "cell 0, a Lagrange pyramid, has degree 2; pyramids of degree 1");
     expect_mesh_refused(Mesh{}, "there are no cells");
     expect_mesh_refused(beside_halves(3), "a face of cell 0 is divided on its other side");
     expect_mesh_refused<2>(beside_halves(2), "a face of cell 0 is divided");

@@ -36,16 +36,17 @@ void write(vtkImageData* image, const std::string& name) {
 /// Solutions of degree 4 in hexahedra, and in quadrilaterals.
 void write_solutions(const std::string& folder) {
     using nestgrid::Point;
+    using nestgrid::operator-;
     for (const int dimension : {2, 3}) {
         const vtkNew<vtkUnstructuredGrid> cells;
         const nestgrid_test::Mesh mesh =
             nestgrid_test::lagrange_box(dimension, 3, 4, {.own_points = true});
         nestgrid_test::to_vtk(mesh, *cells);
-        const auto waves = [](const Point& x) {
-            return std::sin(6 * x[0]) * std::cos(5 * x[1]) +
-                   std::sin(5 * x[1]) * std::cos(6 * x[2]);
+        const auto bump = [](const Point& x) {
+            const Point off = x - Point{0.35, 0.6, 0.4};
+            return std::exp(-12 * nestgrid::dot(off, off)) + x[0] / 5;
         };
-        nestgrid_test::add_values(*cells, "u", waves);
+        nestgrid_test::add_values(*cells, "u", bump);
         nestgrid_test::add_values(*cells, "radius",
                                   [](const Point& x) { return nestgrid::norm(x); });
         const vtkNew<vtkXMLUnstructuredGridWriter> writer;

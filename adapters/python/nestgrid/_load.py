@@ -56,13 +56,13 @@ def load(
 ) -> Field | Frames:
     """The field of a file: a Volume, a hierarchy's, Cells, or Frames where there are several.
 
-    path        ends in .nestgrid; or in .vtu, a mesh of linear, quadratic or Lagrange cells; or in .vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz or .raw,
-                which are volumes: Volume.array[i, j, k] is sample i of row j of slice k; or a folder
-                of DICOM, its DICOMDIR or a slice of it; or a picture. What has one sample along an
-                axis is a plane: Volume.array[i, j]. Reading .vtu, .vti, .nii and pictures needs
-                VTK's Python package, DICOM pydicom
-    array       the name of the field, for .nestgrid, .vtu and .vti, or of the series of DICOM; "": the
-                only one, or the active one, or that of the slice
+    path        ends in .nestgrid; or in .vtu, a mesh (Cells); or in .vti, .mhd, .mha, .nrrd,
+                .nhdr, .nii, .nii.gz or .raw, which are volumes: Volume.array[i, j, k] is sample i
+                of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it; or a
+                picture. What has one sample along an axis is a plane: Volume.array[i, j]. Reading
+                .vtu, .vti, .nii and pictures needs VTK's Python package, DICOM pydicom
+    array       the name of the field, for .nestgrid, .vtu and .vti, or of the series of DICOM; "":
+                the only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that
                 tells how many there are
     component   which of several numbers per sample, from 0
@@ -334,9 +334,12 @@ def _mesh(path: str, array: str, choice: Choice) -> Cells:
         values = values[:, None]
     values = _chosen(path, choice, values.T[:, :, None, None, None], 1, 0)[:, 0, 0]
     degrees = parts["degrees"] if parts["degrees"].size else None
-    mesh = (parts[each] for each in ("points", "types", "offsets", "connectivity"))
+    places, types = parts["points"], parts["types"]
+    offsets, connectivity = parts["offsets"], parts["connectivity"]
     try:
-        return Cells(*mesh, values, degrees=degrees, name=place["name"])
+        return Cells(
+            places, types, offsets, connectivity, values, degrees=degrees, name=place["name"]
+        )
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from None
 

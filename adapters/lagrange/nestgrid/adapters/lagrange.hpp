@@ -165,21 +165,42 @@ inline std::array<double, max_degree + 1> lagrange_basis(int degree, double x) {
     return basis;
 }
 
-/// The polynomial of a quadrilateral or hexahedron with values at its lattice.
-/// \param node called with the number of a node, first direction fastest
-template <class Value, class Node>
-Value box_polynomial(int degree, int dimension, const Point& x, const Node& node) {
-    const auto n = static_cast<std::size_t>(degree) + 1;
-    std::array<std::array<double, max_degree + 1>, 3> basis{};
-    for (std::size_t d = 0; d < 3; ++d) {
-        if (d < static_cast<std::size_t>(dimension)) basis[d] = lagrange_basis(degree, x[d]);
+/// The factors of Lagrange polynomials on a simplex, for one barycentric coordinate: the product of
+/// (p x - m) / (m + 1) over all m below i.
+inline std::array<double, max_degree + 1> simplex_factors(int degree, double x) {
+    std::array<double, max_degree + 1> factors{1};
+    for (int i = 0; i < degree; ++i) {
+        const auto n = static_cast<std::size_t>(i);
+        factors[n + 1] = factors[n] * (degree * x - i) / (i + 1);
     }
-    if (dimension == 2) basis[2][0] = 1;
+    return factors;
+}
+
+/// The polynomial of a cell with values at its lattice.
+/// \param node called with the number of a node, i first
+template <class Value, class Node>
+Value lattice_polynomial(Shape shape, int degree, const Point& x, const Node& node) {
+    const bool box = is_box(shape);
+    const bool plane = topology(shape).dimension == 2;
+    const bool tetrahedron = shape == Shape::tetrahedron;
+    const auto factors = [&](bool simplex, double at) {
+        return simplex ? simplex_factors(degree, at) : lagrange_basis(degree, at);
+    };
+    const auto in_x = factors(!box, x[0]);
+    const auto in_y = factors(!box, x[1]);
+    auto in_z = factors(tetrahedron, x[2]);
+    if (plane) in_z = {1};
+    const auto rest = factors(true, 1 - x[0] - x[1] - (tetrahedron ? x[2] : 0));
+    const auto p = static_cast<std::size_t>(degree);
     Value sum{};
-    for (std::size_t k = 0, number = 0; k < (dimension == 3 ? n : 1); ++k) {
-        for (std::size_t j = 0; j < n; ++j) {
-            const double outer = basis[1][j] * basis[2][k];
-            for (std::size_t i = 0; i < n; ++i) sum = sum + basis[0][i] * outer * node(number++);
+    for (std::size_t k = 0, number = 0; k <= (plane ? 0 : p); ++k) {
+        const std::size_t most = tetrahedron ? p - k : p;
+        for (std::size_t j = 0; j <= most; ++j) {
+            const double outer = in_y[j] * in_z[k];
+            for (std::size_t i = 0; i <= (box ? p : most - j); ++i) {
+                const double last = box ? 1 : rest[most - j - i];
+                sum = sum + in_x[i] * outer * last * node(number++);
+            }
         }
     }
     return sum;
@@ -298,10 +319,10 @@ void LagrangeGrid<dim>::look_at_places(const CellArrays& cells, Element cell) {
         for (const CellNode::Part& part : kind.nodes[n].parts) {
             x = x + part.weight * detail::place_of(cells, points(cell)[part.point]);
         }
-        const std::array<int, 3> at = detail::box_node(n, kind.degree);
+        const auto [i, j, k] = kind.nodes[n].at;
         const double p = kind.degree;
-        const Point straight = detail::box_polynomial<Point>(
-            1, dim, {at[0] / p, at[1] / p, at[2] / p}, [&](std::size_t k) { return corners[k]; });
+        const Point straight = detail::lattice_polynomial<Point>(
+            kind.shape, 1, {i / p, j / p, k / p}, [&](std::size_t c) { return corners[c]; });
         off = std::max(off, norm(x - straight));
     }
     if (off <= 4 * rounding_) return;
@@ -345,8 +366,8 @@ void LagrangeField<dim>::evaluate(std::uint32_t cell, std::span<const Point> ref
         }
     }
     for (std::size_t i = 0; i < reference.size(); ++i) {
-        out[i] = detail::box_polynomial<double>(kind.degree, dim, reference[i],
-                                                [&](std::size_t n) { return lattice[n]; });
+        out[i] = detail::lattice_polynomial<double>(kind.shape, kind.degree, reference[i],
+                                                    [&](std::size_t n) { return lattice[n]; });
     }
 }
 

@@ -4,27 +4,28 @@
 // Types of cells as VTK numbers them, and where the points of each lie: what files of solutions
 // are made of. Nothing of VTK is needed.
 //
-// A cell of degree p has nodes on a lattice: node (i, j, k) of a quadrilateral or hexahedron lies
-// at (i, j, k) / p of the reference element (shape.hpp), i first. Points of a cell are such nodes
-// in an order of VTK's own: corners, inner nodes of edges, of faces, of the cell. Quadratic cells
-// have the first points of a Lagrange cell of degree 2; nodes without a point are blends of those
-// around, as in their own shape functions.
+// A cell of degree p has nodes on a lattice: node (i, j, k) lies at (i, j, k) / p of the reference
+// element (shape.hpp), with i + j <= p in triangles and prisms, i + j + k <= p in tetrahedra, i
+// first. Points of a cell are such nodes in an order of VTK's own (lagrange_order.hpp). Quadratic
+// cells have the first points of a Lagrange cell of degree 2; nodes without a point are blends of
+// those around, as in their own shape functions.
 //
-// A type that the library learns to draw is a row in the table of cell_types(), and, where its
-// lattice is another one, a function like box_point().
+// A type that the library learns to draw is a row in the table of cell_types().
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include <nestgrid/adapters/lagrange_order.hpp>
 #include <nestgrid/error.hpp>
 #include <nestgrid/optional.hpp>
-#include <nestgrid/shape.hpp>
 
 namespace nestgrid {
 
@@ -46,7 +47,8 @@ struct CellNode {
         std::uint16_t point;
         double weight;
     };
-    std::vector<Part> parts;
+    LatticePlace at{};
+    std::vector<Part> parts{};
 };
 
 /// What all cells of one type and number of points have in common.
@@ -71,7 +73,7 @@ struct CellType {
     CellOrder order = CellOrder::vtk;
 };
 
-/// The types that are known. Those of degrees above 1 are drawn on quadrilaterals and hexahedra.
+/// The types that are known. Which shapes are drawn at degrees above 1, HighOrder says.
 inline constexpr std::array cell_types{
     CellType{5, "triangle", Shape::triangle, 1, 3},
     CellType{8, "pixel", Shape::quadrilateral, 1, 4, CellOrder::tensor},
@@ -86,12 +88,10 @@ inline constexpr std::array cell_types{
     CellType{24, "quadratic tetrahedron", Shape::tetrahedron, 2, 10},
     CellType{25, "quadratic hexahedron", Shape::hexahedron, 2, 20},
     CellType{26, "quadratic wedge", Shape::prism, 2, 15},
-    CellType{27, "quadratic pyramid", Shape::pyramid, 2, 13},
     CellType{28, "biquadratic quadrilateral", Shape::quadrilateral, 2, 9},
     CellType{29, "triquadratic hexahedron", Shape::hexahedron, 2, 27},
     CellType{32, "biquadratic quadratic wedge", Shape::prism, 2, 18},
     CellType{33, "biquadratic quadratic hexahedron", Shape::hexahedron, 2, 24},
-    CellType{34, "biquadratic triangle", Shape::triangle, 2, 7},
     CellType{69, "Lagrange triangle", Shape::triangle, 0, 0},
     CellType{70, "Lagrange quadrilateral", Shape::quadrilateral, 0, 0},
     CellType{71, "Lagrange tetrahedron", Shape::tetrahedron, 0, 0},
@@ -100,74 +100,16 @@ inline constexpr std::array cell_types{
     CellType{74, "Lagrange pyramid", Shape::pyramid, 0, 0},
 };
 
-constexpr bool is_box(Shape shape) {
-    return shape == Shape::quadrilateral || shape == Shape::hexahedron;
-}
-
-/// How many nodes the lattice of a shape has.
-constexpr std::size_t lattice_size(Shape shape, int degree) {
-    const auto n = static_cast<std::size_t>(degree) + 1;
-    const std::size_t square = n * n;
-    switch (shape) {
-        case Shape::triangle:
-            return n * (n + 1) / 2;
-        case Shape::quadrilateral:
-            return square;
-        case Shape::tetrahedron:
-            return n * (n + 1) * (n + 2) / 6;
-        case Shape::prism:
-            return n * n * (n + 1) / 2;
-        case Shape::pyramid:
-            return n * (n + 1) * (2 * n + 1) / 6;
-        case Shape::hexahedron:
-            return square * n;
-        default:
-            return 0;
-    }
-}
-
-/// The place of node (i, j, k) among the points of a quadrilateral or hexahedron of degree p.
-inline std::size_t box_point(std::array<int, 3> at, int p, int dimension) {
-    const auto inner = [&](int d) { return at[static_cast<std::size_t>(d)] % p != 0; };
-    const auto high = [&](int d) { return at[static_cast<std::size_t>(d)] == p; };
-    const int m = p - 1;  // inner nodes of an edge
-    const auto loop = [](bool x, bool y) { return x ? (y ? 2 : 1) : (y ? 3 : 0); };
-    const int inside = int{inner(0)} + int{inner(1)} + int{dimension == 3 && inner(2)};
-    const int above = dimension == 3 && high(2) ? 1 : 0;
-    const auto number = [&](int base, int i, int j = 0) {
-        return static_cast<std::size_t>(base + i + m * j);
-    };
-    if (inside == 0) return number(loop(high(0), high(1)) + 4 * above, 0);
-    const int edges = dimension == 3 ? 8 : 4;  // where their nodes begin
-    if (inside == 1) {
-        // Edges along x and y run around the lower face, then around the upper one.
-        if (inner(0)) return number(edges + m * ((high(1) ? 2 : 0) + 4 * above), at[0] - 1);
-        if (inner(1)) return number(edges + m * ((high(0) ? 1 : 3) + 4 * above), at[1] - 1);
-        return number(edges + m * (8 + loop(high(0), high(1))), at[2] - 1);
-    }
-    const int faces = edges + m * (dimension == 3 ? 12 : 4);
-    if (dimension == 2) return number(faces, at[0] - 1, at[1] - 1);
-    if (inside == 3) return number(faces + 6 * m * m + m * m * (at[2] - 1), at[0] - 1, at[1] - 1);
-    if (!inner(0)) return number(faces + m * m * int{high(0)}, at[1] - 1, at[2] - 1);
-    if (!inner(1)) return number(faces + m * m * (2 + int{high(1)}), at[0] - 1, at[2] - 1);
-    return number(faces + m * m * (4 + int{high(2)}), at[0] - 1, at[1] - 1);
-}
-
-/// Node `number` of the lattice of a quadrilateral or hexahedron.
-inline std::array<int, 3> box_node(std::size_t number, int p) {
-    const int n = p + 1;
-    const int i = static_cast<int>(number);
-    return {i % n, i / n % n, i / (n * n)};
-}
-
-/// A node of a quadratic cell: a point, or, where that is left out, a blend of those around: half
-/// the sum of the middles of edges less a quarter of that of the corners, on faces, and so within.
-inline CellNode quadratic_node(std::array<int, 3> at, std::size_t points, int dimension) {
-    const std::size_t own = box_point(at, 2, dimension);
-    if (own < points) return {{{static_cast<std::uint16_t>(own), 1.0}}};
-    CellNode node;
-    const auto add = [&](std::array<int, 3> from, double weight) {
-        for (const CellNode::Part& part : quadratic_node(from, points, dimension).parts) {
+/// A node of a quadratic cell: a point, or, where that is left out, a blend of those around it:
+/// from one end to the other in each direction in which the node is inside; what is blended twice
+/// is taken away, and what is blended thrice is added again. On a face that is half the sum of the
+/// middles of edges less a quarter of that of the corners.
+inline CellNode quadratic_node(Shape shape, const LatticePlace& at, std::size_t points) {
+    const std::size_t own = lattice_point(shape, at, 2);
+    if (own < points) return {at, {{static_cast<std::uint16_t>(own), 1.0}}};
+    CellNode node{at, {}};
+    const auto add = [&](const LatticePlace& from, double weight) {
+        for (const CellNode::Part& part : quadratic_node(shape, from, points).parts) {
             const auto known = std::ranges::find(node.parts, part.point, &CellNode::Part::point);
             if (known == node.parts.end()) {
                 node.parts.push_back({part.point, weight * part.weight});
@@ -176,23 +118,17 @@ inline CellNode quadratic_node(std::array<int, 3> at, std::size_t points, int di
             }
         }
     };
-    // Blended from one end to the other in each direction in which the node is inside; what is
-    // blended twice or thrice is taken away, or added again.
-    for (int subset = 1; subset < 1 << dimension; ++subset) {
-        bool fits = true;
-        int count = 0;
-        for (int d = 0; d < dimension; ++d) {
-            if ((subset >> d & 1) == 0) continue;
-            fits = fits && at[static_cast<std::size_t>(d)] == 1;
-            ++count;
-        }
-        if (!fits) continue;
+    const std::vector<std::pair<LatticePlace, LatticePlace>> ends = ends_around(shape, at);
+    for (unsigned subset = 1; subset < 1U << ends.size(); ++subset) {
+        const int count = std::popcount(subset);
         const double weight = (count % 2 == 1 ? 1.0 : -1.0) / (1 << count);
-        for (int ends = 0; ends < 1 << dimension; ++ends) {
-            if ((ends & ~subset) != 0) continue;
-            std::array<int, 3> from = at;
-            for (int d = 0; d < dimension; ++d) {
-                if ((subset >> d & 1) != 0) from[static_cast<std::size_t>(d)] = 2 * (ends >> d & 1);
+        for (unsigned upper = 0; upper < 1U << ends.size(); ++upper) {
+            if ((upper & ~subset) != 0) continue;
+            LatticePlace from = at;
+            for (std::size_t i = 0; i < ends.size(); ++i) {
+                if ((subset >> i & 1U) == 0) continue;
+                const LatticePlace& to = (upper >> i & 1U) != 0 ? ends[i].second : ends[i].first;
+                for (std::size_t d = 0; d < 3; ++d) from[d] += to[d] - at[d];
             }
             add(from, weight);
         }
@@ -212,17 +148,17 @@ inline std::array<std::uint8_t, max_corners> corner_points(const CellType& type)
 inline CellKind make_kind(const CellType& type, int degree, std::size_t points) {
     CellKind kind{type.shape, degree, {}, corner_points(type)};
     if (degree == 1) {
-        for (std::size_t k = 0; k < points; ++k) kind.nodes.push_back({{{kind.corner[k], 1.0}}});
+        for (std::size_t k = 0; k < points; ++k) {
+            kind.nodes.push_back({{}, {{kind.corner[k], 1.0}}});
+        }
         return kind;
     }
-    const int dimension = topology(type.shape).dimension;
-    for (std::size_t n = 0; n < lattice_size(type.shape, degree); ++n) {
-        const std::array<int, 3> at = box_node(n, degree);
+    for (const LatticePlace& at : lattice(type.shape, degree)) {
         if (degree == 2) {
-            kind.nodes.push_back(quadratic_node(at, points, dimension));
+            kind.nodes.push_back(quadratic_node(type.shape, at, points));
         } else {
-            const auto point = static_cast<std::uint16_t>(box_point(at, degree, dimension));
-            kind.nodes.push_back({{{point, 1.0}}});
+            const std::size_t point = lattice_point(type.shape, at, degree);
+            kind.nodes.push_back({at, {{static_cast<std::uint16_t>(point), 1.0}}});
         }
     }
     return kind;
@@ -296,9 +232,9 @@ private:
             throw InvalidInput(described + " has degree " + std::to_string(degree) +
                                "; degrees to " + std::to_string(max_degree) + " are drawn");
         }
-        if (degree > 1 && !detail::is_box(type->shape)) {
+        if (degree > 1 && type->shape == Shape::pyramid) {
             throw InvalidInput(described + " has degree " + std::to_string(degree) +
-                               "; degrees above 1 are drawn on quadrilaterals and hexahedra");
+                               "; pyramids of degree 1 are drawn");
         }
         return detail::make_kind(*type, degree, points);
     }
