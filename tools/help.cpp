@@ -68,7 +68,11 @@ Lines described(const OptionGroup& group, std::size_t width) {
 
 Lines named(const OptionGroup& group, std::size_t width) {
     std::string names;
-    for (const OptionText& o : group.options) names += o.names.back() + " ";
+    for (const OptionText& o : group.options) {
+        for (const std::string& name : o.names) {
+            if (name.starts_with("--") || &name == &o.names.back()) names += name + " ";
+        }
+    }
     return entry(group.title, names, width);
 }
 

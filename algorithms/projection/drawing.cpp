@@ -3,12 +3,14 @@
 #include <nestgrid/algorithms/drawing.hpp>
 
 #include <algorithm>
+#include <limits>
 
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/collapse_colours.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
@@ -72,6 +74,29 @@ Projection told(Projection projection) {
     projection.check();
     if (projection.draws_everything()) projection.threshold = 0;
     return projection;
+}
+
+/// The polynomials of a field that the projection asks for within an error; or null.
+std::shared_ptr<const HighOrder> polynomials_for(Prerolls& prerolls, const Projection& projection,
+                                                 const Work& work) {
+    const bool exactly = projection.least_threshold() == 0 && projection.max_triangles == 0;
+    if (!projection.asks_for_error() || exactly) return nullptr;
+    auto data = prerolls.high_order(work);
+    if (data != nullptr) projection.require_error_alone(data->greatest_degree());
+    return data;
+}
+
+/// Draws a field of higher degree within the error that the projection asks for; nothing where it
+/// asks for none, or where all degrees are 1.
+/// \param draw called with the VirtualRefinement
+template <class Result, class Draw>
+std::optional<Projected<Result>> within_error(Prerolls& prerolls, const Projection& projection,
+                                              const Work& work, int dimension, const Draw& draw) {
+    const std::shared_ptr<const HighOrder> data = polynomials_for(prerolls, projection, work);
+    if (data == nullptr) return std::nullopt;
+    prerolls.field().facts().require_dimension(dimension);
+    const VirtualRefinement fine(*data, {.tolerance = projection.least_threshold()});
+    return Projected<Result>{draw(fine), {.threshold = projection.least_threshold()}};
 }
 
 auto criteria_at(const Criteria& criteria) {
@@ -302,6 +327,14 @@ Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
     refuse_distance(projection);
     refuse_slice_distance(projection);
     if (scale) refuse_tolerance(projection);
+    const auto within = [&](const VirtualRefinement& fine) {
+        return scale ? height_field(fine, *scale, fine.criterion(), fine.bounds(), options,
+                                    work.executor)
+                     : shading(fine, fine.criterion(), fine.bounds(), options, work.executor);
+    };
+    if (auto drawn = within_error<Shading>(prerolls, projection, work, 2, within)) {
+        return *std::move(drawn);
+    }
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, told(projection), {}, work);
         return draw_shading(hierarchy, scale, criteria, options, work.executor);
@@ -310,11 +343,37 @@ Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
 
 }  // namespace
 
+double default_error(const HighOrder& data) {
+    // Bounds are the same at any tolerance.
+    const VirtualRefinement coarsest(data, {.tolerance = std::numeric_limits<double>::max()});
+    const double range = coarsest.bounds().greatest() - coarsest.bounds().least();
+    return range > 0 ? 1e-3 * range : 1;
+}
+
+Projection with_error(Prerolls& prerolls, Projection projection, const Work& work) {
+    const std::shared_ptr<const HighOrder> data = prerolls.high_order(work);
+    if (data == nullptr) return projection;
+    if (projection.draws_everything()) {
+        projection.indicator = "error";
+        projection.threshold = default_error(*data);
+    }
+    projection.require_error_alone(data->greatest_degree());
+    return projection;
+}
+
 template <int dimension>
 Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
                                             const Projection& projection,
                                             const IsosurfaceOptions& options, const Work& work) {
     check_isosurface(projection, options, dimension);
+    const auto within = [&](const VirtualRefinement& fine) {
+        return isosurface<dimension>(fine, isovalue, fine.criterion(), fine.bounds(), options,
+                                     work.executor);
+    };
+    if (auto drawn =
+            within_error<Isosurface<dimension>>(prerolls, projection, work, dimension, within)) {
+        return *std::move(drawn);
+    }
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const Executor& executor = work.executor;
         const Criteria criteria(prerolls, told(projection), std::span(&isovalue, 1), work);
@@ -348,6 +407,12 @@ std::vector<Isosurface<dimension>> isosurfaces(Prerolls& prerolls,
                                                const Projection& projection,
                                                const IsosurfaceOptions& options, const Work& work) {
     check_one_walk(projection, "several isosurfaces");
+    if (const auto data = polynomials_for(prerolls, projection, work)) {
+        prerolls.field().facts().require_dimension(dimension);
+        const VirtualRefinement fine(*data, {.tolerance = projection.least_threshold()});
+        return isosurfaces<dimension>(fine, isovalues, fine.criterion(), fine.bounds(), options,
+                                      work.executor);
+    }
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, told(projection), isovalues, work);
         return isosurfaces<dimension>(hierarchy, isovalues, criteria.criterion(), criteria.bounds(),
@@ -378,6 +443,12 @@ Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
     projection.check();
     refuse_distance(projection);
     if (options.cap) refuse_slice_distance(projection);
+    const auto within = [&](const VirtualRefinement& fine) {
+        return slice(fine, function, fine.criterion(), fine.bounds(), options, work.executor);
+    };
+    if (auto drawn = within_error<Slice>(prerolls, projection, work, 3, within)) {
+        return *std::move(drawn);
+    }
     return with_field(prerolls, work, 3, [&](const auto& hierarchy) {
         if (projection.draws_everything()) {
             IsosurfaceOptions everything = options;
@@ -405,6 +476,14 @@ Projected<Isosurface<dimension>> isoband(Prerolls& prerolls, double low, double 
                                          const Projection& projection,
                                          const IsosurfaceOptions& options, const Work& work) {
     check_one_walk(projection, "bands");
+    const auto within = [&](const VirtualRefinement& fine) {
+        return isoband<dimension>(fine, low, high, fine.criterion(), fine.bounds(), options,
+                                  work.executor);
+    };
+    if (auto drawn =
+            within_error<Isosurface<dimension>>(prerolls, projection, work, dimension, within)) {
+        return *std::move(drawn);
+    }
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const std::array<double, 2> isovalues{low, high};
         const Criteria criteria(prerolls, told(projection), isovalues, work);
@@ -423,6 +502,12 @@ Projected<Isolines> isolines(Prerolls& prerolls, std::span<const double> values,
                              const Projection& projection, const IsosurfaceOptions& options,
                              const Work& work) {
     check_one_walk(projection, "isolines");
+    const auto within = [&](const VirtualRefinement& fine) {
+        return isolines(fine, values, fine.criterion(), fine.bounds(), options, work.executor);
+    };
+    if (auto drawn = within_error<Isolines>(prerolls, projection, work, 2, within)) {
+        return *std::move(drawn);
+    }
     return with_field(prerolls, work, 2, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, told(projection), values, work);
         return Projected<Isolines>{isolines(hierarchy, values, criteria.criterion(),
@@ -448,6 +533,10 @@ ProbeResult probe(Prerolls& prerolls, std::span<const Point> points, const Proje
     refuse_budget(projection, "a probe, which draws none");
     refuse_distance(projection);
     refuse_tolerance(projection);
+    if (const auto data = polynomials_for(prerolls, projection, work)) {
+        const VirtualRefinement fine(*data, {.tolerance = projection.least_threshold()});
+        return probe(fine, points, fine.criterion(), fine.bounds());
+    }
     const FieldOnGrid field = work.on(prerolls.field());
     return field.visit([&](const auto& hierarchy) {
         if (projection.draws_everything()) return probe(hierarchy, points);

@@ -13,6 +13,7 @@
 #include <nestgrid/algorithms/split_bounds.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/polynomials.hpp>
 
 namespace nestgrid {
 
@@ -126,6 +127,14 @@ public:
         return sizes_;
     }
 
+    std::shared_ptr<const HighOrder> high_order(const Work& work) {
+        if (between_frames()) return nullptr;
+        if (work.same_field != nullptr) return engine::polynomials_of(*work.same_field);
+        const std::scoped_lock lock(mutex_);
+        if (!high_order_) high_order_ = engine::polynomials_of(field_);
+        return *high_order_;
+    }
+
     std::size_t node_count(const Work& work) {
         Kept& frame = between_frames() ? *frames_.front()->kept_ : *this;
         return frame.own_of_nodes(NodeError::offset, 1, work)->node_count();
@@ -138,6 +147,7 @@ public:
         sizes_.reset();
         finest_.reset();
         of_level_sets_.clear();
+        high_order_.reset();
     }
 
     std::size_t memory_bytes() const {
@@ -146,6 +156,7 @@ public:
         for (const auto& [key, each] : of_level_sets_) bytes += each.memory_bytes();
         for (const auto& [key, each] : of_nodes_) bytes += each->memory_bytes();
         for (const auto& [key, each] : swept_) bytes += each->memory_bytes();
+        if (high_order_ && *high_order_ != nullptr) bytes += (*high_order_)->memory_bytes();
         return bytes + (sizes_ ? sizes_->memory_bytes() : 0) +
                (finest_ ? finest_->memory_bytes() : 0);
     }
@@ -235,6 +246,7 @@ private:
     Made sizes_;
     std::shared_ptr<const SplitBounds> finest_;
     std::map<const IndicatorKind*, OfLevelSets> of_level_sets_;
+    std::optional<std::shared_ptr<const HighOrder>> high_order_;  // nothing: not asked for yet
 };
 
 Prerolls::Prerolls(FieldOnGrid field)
@@ -280,6 +292,10 @@ std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) {
 
 std::shared_ptr<const SweptIndicator> Prerolls::sizes(const Spread& spread, const Work& work) {
     return kept_->sizes(spread, work);
+}
+
+std::shared_ptr<const HighOrder> Prerolls::high_order(const Work& work) {
+    return kept_->high_order(work);
 }
 
 std::size_t Prerolls::node_count(const Work& work) { return kept_->node_count(work); }

@@ -47,4 +47,28 @@ void Projection::check() const {
     }
 }
 
+void Projection::require_error_alone(int degree) const {
+    std::string what;
+    if (max_triangles > 0) {
+        what = "no number of triangles";
+    } else if (collapse) {
+        what = "no collapse of edges";
+    } else if (keeps_distance || indicator == "slope") {
+        what = "no distance";
+    } else if (lens) {
+        what = "no lens";
+    } else if (region) {
+        what = "no region";
+    } else if (colour_tolerance > 0) {
+        what = "no tolerance of colours";
+    } else if (blend != 1) {
+        what = "no blend";
+    } else if (!asks_for_error()) {
+        what = "no threshold of nodes";
+    }
+    if (what.empty()) return;
+    throw InvalidInput("the field has degree " + std::to_string(degree) +
+                       " and is drawn within an error, by " + what + " yet");
+}
+
 }  // namespace nestgrid

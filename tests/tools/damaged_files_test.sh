@@ -44,6 +44,7 @@ nrrd)
 plotfile)
     mutate small/Header small/Level_{0,1,2}/Cell_{H,D_00000,D_00001} -- "${isosurface[@]}" --array distance --value 0
     ;;
+vtu) mutate solution.vtu -- isosurface IN --field u --value 0.3 --error 0.3 --read-limit 2 -o OUT.vtp ;;
 raw) mutate v.raw -- "${volume[@]}" --dims 20,24,18 --type uint8 ;;
 vti | mha | nii | nii.gz) mutate v.$format -- "${volume[@]}" ;;
 off | obj | ply | stl) mutate t.$format -- "${mesh[@]}" --family red-green ;;

@@ -15,6 +15,9 @@
 #include <vtkNIFTIImageWriter.h>
 #include <vtkNew.h>
 #include <vtkXMLImageDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include "lagrange_meshes.hpp"
 
 namespace {
 
@@ -28,6 +31,29 @@ void write(vtkImageData* image, const std::string& name) {
     writer->SetInputData(image);
     writer->SetFileName(name.c_str());
     writer->Write();
+}
+
+/// Solutions of degree 4 in hexahedra, and in quadrilaterals.
+void write_solutions(const std::string& folder) {
+    using nestgrid::Point;
+    using nestgrid::operator-;
+    for (const int dimension : {2, 3}) {
+        const vtkNew<vtkUnstructuredGrid> cells;
+        const nestgrid_test::Mesh mesh =
+            nestgrid_test::lagrange_box(dimension, 3, 4, {.own_points = true});
+        nestgrid_test::to_vtk(mesh, *cells);
+        const auto bump = [](const Point& x) {
+            const Point off = x - Point{0.35, 0.6, 0.4};
+            return std::exp(-12 * nestgrid::dot(off, off)) + x[0] / 5;
+        };
+        nestgrid_test::add_values(*cells, "u", bump);
+        nestgrid_test::add_values(*cells, "radius",
+                                  [](const Point& x) { return nestgrid::norm(x); });
+        const vtkNew<vtkXMLUnstructuredGridWriter> writer;
+        writer->SetInputData(cells);
+        writer->SetFileName((folder + (dimension == 3 ? "solution.vtu" : "plane.vtu")).c_str());
+        writer->Write();
+    }
 }
 
 /// A ball of radius 50 and value 600 around the centre, and noise.
@@ -111,5 +137,6 @@ int main(int argc, char** argv) {
     colours->SetDimensions(5, 5, 5);
     colours->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
     write<vtkXMLImageDataWriter>(colours, folder + "colours.vti");
+    write_solutions(folder);
     return 0;
 }

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/probe_line.hpp>
 #include <nestgrid/error.hpp>
 
@@ -68,11 +70,23 @@ std::vector<Point> read_points(const fs::path& path) {
     return points;
 }
 
+/// Values within the error that nobody asks for.
+nestgrid::ProbeResult probe_within(const nestgrid::HighOrder& data,
+                                   const std::vector<Point>& points) {
+    const nestgrid::VirtualRefinement fine(data, {.tolerance = nestgrid::default_error(data)});
+    return nestgrid::probe(fine, points, fine.criterion(), fine.bounds());
+}
+
 /// Takes points down at one moment.
 /// \param threshold at most one; default: 0, or with a lens whatever the data are
 nestgrid::ProbeResult probe_at(const Moment& moment, const std::vector<Point>& points,
                                std::vector<ThresholdText> threshold, bool with_lens) {
     const bool exactly = !with_lens && (threshold.empty() || threshold.front().number == 0);
+    if (const std::shared_ptr<const nestgrid::HighOrder> data = moment.high_order()) {
+        if (exactly) return probe_within(*data, points);
+        throw InvalidInput("the field has degree " + std::to_string(data->greatest_degree()) +
+                           ": neither a threshold nor a lens leaves out a part of it");
+    }
     return moment.visit([&](const auto& hierarchy) {
         if (exactly) return nestgrid::probe(hierarchy, points);
         set_default_threshold(threshold, with_lens);

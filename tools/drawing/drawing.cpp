@@ -6,7 +6,9 @@
 
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/collapse_colours.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/error.hpp>
@@ -16,6 +18,8 @@
 namespace {
 
 using nestgrid::AnyCriterion;
+using nestgrid::Bounds;
+using nestgrid::Criterion;
 using nestgrid::InvalidInput;
 using nestgrid::Isosurface;
 using nestgrid::IsosurfaceOptions;
@@ -38,6 +42,20 @@ std::string millions(std::uint64_t count) {
     return std::to_string(count / 100000 / 10) + "." + std::to_string(count / 100000 % 10) +
            " million";
 }
+
+/// A criterion that another object keeps, as a value.
+class Borrowed final : public Criterion {
+public:
+    explicit Borrowed(const Criterion& criterion) : criterion_{&criterion} {}
+    nestgrid::NodeMask holds(const nestgrid::NewNodes& nodes) const override {
+        return criterion_->holds(nodes);
+    }
+    bool saturated() const override { return criterion_->saturated(); }
+    bool made_for(std::uint64_t epoch) const override { return criterion_->made_for(epoch); }
+
+private:
+    const Criterion* criterion_;
+};
 
 /// Draws the surfaces at one moment.
 template <class Real>
@@ -76,6 +94,14 @@ public:
             d.threshold = moment_.threshold(t);
             take(draw_at(std::move(d)));
         }
+    }
+
+    /// Draws the leaves of a field of higher degree as finely as they are halved.
+    Drawn draw_within(const nestgrid::VirtualRefinement& fine, Drawn d) const {
+        tell_({});
+        return reported(draw(std::move(d), [&](Drawn& to) {
+            draw_with(Borrowed(fine.criterion()), fine.bounds(), to.threshold, {}, to);
+        }));
     }
 
 private:
@@ -204,7 +230,7 @@ private:
         const double first = collapses ? part * d.threshold : d.threshold;
         return draw(std::move(d), [&](Drawn& to) {
             if (!collapses || request_.slice_distance == 0) {
-                return draw_with(criterion_at(first), first, whole, to);
+                return draw_with(criterion_at(first), bounds(), first, whole, to);
             }
             // Only a slice of all data is as near to its function as the grid allows.
             draw_exactly(to);
@@ -238,37 +264,36 @@ private:
                                {.cap = request_.cap, .elements = keeps_elements()}, executor_);
         refine(d.result.surface, request_.colour_tolerance);
     }
-    void draw_with(const AnyCriterion& criterion, double threshold,
+    void draw_with(const AnyCriterion& criterion, const Bounds& bounds, double threshold,
                    const nestgrid::Surface<3>& whole, Drawn& d) const {
         if (request_.function == nullptr && request_.isovalue) {
-            return draw_isosurface(criterion, threshold, whole, d);
+            return draw_isosurface(criterion, bounds, threshold, whole, d);
         }
         const IsosurfaceOptions options{.cap = request_.cap, .elements = keeps_elements()};
         if (request_.isovalue) {
             auto both = slices(hierarchy_, {{request_.function}, {*request_.isovalue}}, criterion,
-                               bounds(), options, executor_);
+                               bounds, options, executor_);
             d.result = std::move(both[0]);
             d.isosurface = std::move(both[1].surface);
         } else if (request_.function != nullptr) {
-            d.result =
-                slice(hierarchy_, *request_.function, criterion, bounds(), options, executor_);
+            d.result = slice(hierarchy_, *request_.function, criterion, bounds, options, executor_);
         } else {
-            d.result = triangles(threshold, criterion, bounds());
+            d.result = triangles(threshold, criterion, bounds);
         }
         if (request_.collapses && request_.scale == 0) {
-            refine(d.result.surface, threshold, criterion, bounds());
+            refine(d.result.surface, threshold, criterion, bounds);
         }
-        refine(d.result.surface, request_.colour_tolerance, criterion, bounds());
+        refine(d.result.surface, request_.colour_tolerance, criterion, bounds);
         if (!d.isosurface.attributes.empty()) {
-            refine(d.isosurface, request_.colour_tolerance, criterion, bounds());
+            refine(d.isosurface, request_.colour_tolerance, criterion, bounds);
         }
     }
-    void draw_isosurface(const AnyCriterion& criterion, double threshold,
+    void draw_isosurface(const AnyCriterion& criterion, const Bounds& bounds, double threshold,
                          const nestgrid::Surface<3>& whole, Drawn& d) const {
         const double isovalue = *request_.isovalue;
         const IsosurfaceOptions options = isosurface_options(executor_.concurrency() == 1);
         if (in_plane()) {
-            auto lines = nestgrid::isosurface<2>(hierarchy_, isovalue, criterion, bounds(), options,
+            auto lines = nestgrid::isosurface<2>(hierarchy_, isovalue, criterion, bounds, options,
                                                  executor_);
             d.segments = std::move(lines.surface);
             d.result = {lines, {}, lines.counts};
@@ -276,11 +301,11 @@ private:
             d.result.stack_bytes = lines.stack_bytes;
         } else if (request_.keeps_distances && threshold > 0) {
             auto within = nestgrid::isosurface_within(hierarchy_, isovalue, {whole, threshold},
-                                                      criterion, bounds(), options, executor_);
+                                                      criterion, bounds, options, executor_);
             d.far_points = within.points;
             d.result = std::move(within.isosurface);
         } else {
-            d.result = nestgrid::isosurface<3>(hierarchy_, isovalue, criterion, bounds(), options,
+            d.result = nestgrid::isosurface<3>(hierarchy_, isovalue, criterion, bounds, options,
                                                executor_);
         }
     }
@@ -347,6 +372,21 @@ private:
     const Telling& tell_;
 };
 
+/// \throw nestgrid::InvalidInput where options ask for more than an error
+void require_error_alone(const DrawingRequest& request, const SurfaceOptions& options, int degree) {
+    nestgrid::Projection projection = options.projection;
+    const bool is_asked = !options.thresholds.empty() || !options.budgets.empty();
+    if (!is_asked && !request.lens) projection.indicator = "error";
+    projection.max_triangles = options.budgets.empty() ? 0 : 1;
+    projection.lens = request.lens;
+    projection.collapse = request.collapses;
+    projection.keeps_distance = request.keeps_distances;
+    projection.require_error_alone(degree);
+    if (request.box || request.measures || request.colour_tolerance > 0) {
+        throw InvalidInput("--box, --measure and --colour-tolerance are for fields of degree 1");
+    }
+}
+
 }  // namespace
 
 bool is_drawn_exactly(const DrawingRequest& request, const SurfaceOptions& options) {
@@ -357,6 +397,21 @@ bool is_drawn_exactly(const DrawingRequest& request, const SurfaceOptions& optio
 void draw_moment(const Moment& moment, const nestgrid::Executor& executor,
                  const SurfaceOptions& options, const DrawingRequest& request, const Telling& tell,
                  const std::function<void(Drawn&&)>& take) {
+    if (const std::shared_ptr<const nestgrid::HighOrder> data = moment.high_order()) {
+        require_error_alone(request, options, data->greatest_degree());
+        std::vector<Drawn> wanted(std::max<std::size_t>(1, options.thresholds.size()));
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            Drawn& d = wanted[i];
+            d.by_default = options.thresholds.empty();
+            d.threshold = d.by_default ? nestgrid::default_error(*data)
+                                       : moment.error(parse_threshold(options.thresholds[i]));
+            d.degree = data->greatest_degree();
+            const nestgrid::VirtualRefinement fine(*data, {.tolerance = d.threshold});
+            const Drawing<double> drawing(fine, moment, executor, options, request, tell);
+            take(drawing.draw_within(fine, std::move(d)));
+        }
+        return;
+    }
     moment.visit([&]<class Real>(const nestgrid::Hierarchy<Real>& hierarchy) {
         Drawing<Real>(hierarchy, moment, executor, options, request, tell).draw_all(take);
     });

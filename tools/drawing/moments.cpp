@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drawing/moments.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "drawing/meter.hpp"
@@ -24,6 +25,15 @@ double Moment::threshold(const ThresholdText& text) const {
     return text.in_units(criteria().kind(), range[1] - range[0]);
 }
 
+std::shared_ptr<const nestgrid::HighOrder> Moment::high_order() const {
+    return prerolls_->high_order({.executor = all_.executor()});
+}
+
+double Moment::error(const ThresholdText& text) const {
+    const std::array<double, 2>& range = all_.range();
+    return text.percent ? text.number / 100 * (range[1] - range[0]) : text.number;
+}
+
 Moments::Moments(const InputField& field, const TimeOptions& time,
                  const std::filesystem::path& path, nestgrid::Projection projection,
                  std::optional<double> isovalue, int threads,
@@ -40,10 +50,23 @@ Moments::Moments(const InputField& field, const TimeOptions& time,
 const std::array<double, 2>& Moments::range() const {
     if (!range_) {
         const Meter meter;
-        range_ = field_.frames.prepare(projection_, {.executor = executor_});
+        // What is drawn by its polynomials needs them alone.
+        const bool has_degree = field_.frames.count() == 1 &&
+                                field_.frames[0]->high_order({.executor = executor_}) != nullptr;
+        range_ = has_degree ? range_of_values()
+                            : field_.frames.prepare(projection_, {.executor = executor_});
         cost_ = {meter.seconds(), meter.peak_bytes(), field_.frames.memory_bytes()};
     }
     return *range_;
+}
+
+std::array<double, 2> Moments::range_of_values() const {
+    std::array<double, 2> range{field_.value(0), field_.value(0)};
+    for (std::size_t i = 1; i < field_.value_count; ++i) {
+        range[0] = std::min(range[0], field_.value(i));
+        range[1] = std::max(range[1], field_.value(i));
+    }
+    return range;
 }
 
 void Moments::for_each(const std::function<void(const Moment&)>& function) const {

@@ -31,6 +31,11 @@ public:
     const nestgrid::Criteria& criteria() const;
     /// \throw nestgrid::InvalidInput as ThresholdText::in_units()
     double threshold(const ThresholdText& text) const;
+    /// The polynomials of a field of higher degree; null for others.
+    /// \throw nestgrid::InvalidInput, nestgrid::GridError as nestgrid::HighOrder
+    std::shared_ptr<const nestgrid::HighOrder> high_order() const;
+    /// An error that a user gave, in units of the data.
+    double error(const ThresholdText& text) const;
 
 private:
     friend class Moments;
@@ -73,6 +78,8 @@ public:
 
 private:
     friend class Moment;
+
+    std::array<double, 2> range_of_values() const;
 
     const InputField& field_;
     const TimeOptions& time_;

@@ -81,6 +81,8 @@ struct Drawn {
     std::optional<double> label;  ///< of the part, where there are several
     std::optional<double> time;   ///< where it is between frames
     double threshold = 0;
+    int degree = 1;                   ///< of the polynomials within an error of which it is drawn
+    bool by_default = false;          ///< whether nobody has asked for that error
     nestgrid::TriangleBudget search;  ///< of the threshold; max_triangles is 0 where none was
     double search_seconds = 0;
     nestgrid::Isosurface<3> result;   ///< or a slice, or the grid; empty where it is not kept

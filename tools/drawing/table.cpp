@@ -156,6 +156,19 @@ void say_what_is_promised(const Drawn& d, Report& report) {
     report.say(text.data());
 }
 
+/// How a field of higher degree was drawn.
+void say_how_finely(const Drawn& d, Report& report) {
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), "drawn within %.4g of polynomials of degree %d%s",
+                  d.threshold, d.degree,
+                  d.by_default ? ", about a thousandth of their range: --error chooses another" : "");
+    report.say(text.data());
+    if (d.result.counts.limited == 0) return;
+    report.say(grouped(d.result.counts.limited) +
+               " elements were halved as often as they may be, and are further off: the error "
+               "bound counts them");
+}
+
 }  // namespace
 
 std::string outside_range(double isovalue, double least, double greatest) {
@@ -177,6 +190,9 @@ void report_drawn(const DrawnField& field, const DrawingRequest& request, Report
     say_why_not_filled(field.surfaces, report);
     if (field.surfaces.size() == 1 && is_promised(field.surfaces.front(), request)) {
         say_what_is_promised(field.surfaces.front(), report);
+    }
+    for (const Drawn& d : field.surfaces) {
+        if (d.degree > 1) say_how_finely(d, report);
     }
     if (std::ranges::any_of(field.surfaces,
                             [](const Drawn& d) { return d.result.bound_says_nothing(); })) {

@@ -57,9 +57,9 @@ void add_input(CLI::App& command, Input& input) {
     input.command = &command;
     command
         .add_option("INPUT", input.path,
-                    "a volume, a picture or a hierarchy: .nii.gz, .nrrd, .mha, .vti, .raw, .tif, "
-                    ".nestgrid, a plotfile of AMReX and others ('nestgrid formats' lists them); - "
-                    "is standard input")
+                    "a volume, a picture, a mesh or a hierarchy: .nii.gz, .nrrd, .mha, .vti, .raw, "
+                    ".tif, .vtu, .nestgrid, a plotfile of AMReX and others ('nestgrid formats' "
+                    "lists them); - is standard input")
         ->required();
 }
 
@@ -68,8 +68,8 @@ void add_read_options(CLI::App& command, Input& input) {
         ->type_name("ENDING")
         ->group("Input");
     command
-        .add_option("--array", input.array,
-                    "the array of a .vti, the field of a .nestgrid or of a plotfile")
+        .add_option("--array,--field", input.array,
+                    "the array of a .vti, the field of a .vtu, a .nestgrid or a plotfile")
         ->type_name("NAME")
         ->group("Input");
     command

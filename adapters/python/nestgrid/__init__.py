@@ -14,6 +14,7 @@ from __future__ import annotations
 from ._arguments import InvalidType
 from ._blocks import Blocks
 from ._budget import FrameBudget
+from ._cells import Cells
 from ._fields import Field
 from ._lens import Domain, Lens, Region, ball, box, cone, half_space, polygon, view
 from ._load import load
@@ -24,6 +25,7 @@ from ._sources import Frames, Octree, Volume
 
 __all__ = [
     "Blocks",
+    "Cells",
     "Domain",
     "Field",
     "FrameBudget",

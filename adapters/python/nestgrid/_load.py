@@ -19,6 +19,7 @@ from ._arguments import SampleType, flag, numbers, optional, sample_type, sequen
 from ._arguments import path as path_kind
 from ._arguments import takes, text, whole
 from ._fields import Field
+from ._cells import Cells
 from ._nestgrid import InvalidInput, IoError
 from ._sources import Frames, Volume
 
@@ -27,7 +28,7 @@ Numbers = Union[Sequence[float], np.ndarray]
 #: What load() reads, by the end of the name.
 PICTURES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm", ".pnm")
 SUFFIXES = [".nestgrid", ".vti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".raw"]
-SUFFIXES += [".dcm", ".dicom", *PICTURES]
+SUFFIXES += [".vtu", ".dcm", ".dicom", *PICTURES]
 
 
 @takes(
@@ -53,16 +54,16 @@ def load(
     big_endian: bool = False,
     spacing: Numbers | None = None,
 ) -> Field | Frames:
-    """The field of a file: a Volume, the field of a hierarchy, or Frames where there are several.
+    """The field of a file: a Volume, a hierarchy's, Cells, or Frames where there are several.
 
-    path        ends in .nestgrid; or in .vti, .mhd, .mha, .nrrd, .nhdr, .nii, .nii.gz or .raw,
-                which are volumes: Volume.array[i, j, k] is sample i of row j of slice k; or a folder
-                of DICOM, its DICOMDIR or a slice of it; or a picture; or a plotfile of AMReX, a
-                folder with the file Header, which must stay as it is. What has one sample along an
-                axis is a plane: Volume.array[i, j]. Reading .vti, .nii and pictures needs VTK's
-                Python package, DICOM pydicom
-    array       the name of the field, for .nestgrid, plotfiles and .vti, or of the series of DICOM;
-                "": the only one, or the active one, or that of the slice
+    path        ends in .nestgrid; or in .vtu, a mesh (Cells); or in .vti, .mhd, .mha, .nrrd,
+                .nhdr, .nii, .nii.gz or .raw, which are volumes: Volume.array[i, j, k] is sample i
+                of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it; or a
+                picture; or a plotfile of AMReX, a folder with the file Header, which must stay as
+                it is. What has one sample along an axis is a plane: Volume.array[i, j]. Reading
+                .vtu, .vti, .nii and pictures needs VTK's Python package, DICOM pydicom
+    array       the name of the field, for .nestgrid, plotfiles, .vtu and .vti, or of the series of
+                DICOM; "": the only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that
                 tells how many there are
     component   which of several numbers per sample, from 0
@@ -86,7 +87,7 @@ def load(
     given = [each for each, value in raw.items() if value is not None]
     if given and (suffix != ".raw" or plotfile):
         raise InvalidInput(f"load(): {given[0]} is for .raw files: '{path}' describes itself")
-    if array and not dicom and not plotfile and suffix not in (".nestgrid", ".vti"):
+    if array and not dicom and not plotfile and suffix not in (".nestgrid", ".vti", ".vtu"):
         raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
     choice = Choice(frame, component, magnitude)
     if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
@@ -101,6 +102,8 @@ def load(
     if dicom:
         return _read_apart("_read_dicom.py", str(path), array, choice)
     _require_file(str(path))
+    if suffix == ".vtu":
+        return _mesh(str(path), array, choice)
     if suffix == ".raw":
         return _raw(str(path), dims, type, big_endian, spacing)
     if suffix in (".vti", ".nii", ".nii.gz", *PICTURES):
@@ -326,7 +329,44 @@ def _read_into(stream: IO[bytes], part: memoryview) -> int:
     return len(data)
 
 
+def _mesh(path: str, array: str, choice: Choice) -> Cells:
+    if choice.frame is not None or choice.magnitude:
+        given = "magnitude" if choice.magnitude else "frame"
+        raise InvalidInput(f"load(): {given} chooses nothing of a .vtu: one of component alone")
+    place, data = _ask("_read_cells.py", path, array)
+    parts, begin = {}, 0
+    for name, kind, shape in place["arrays"]:
+        size = int(np.prod(shape)) * np.dtype(kind).itemsize
+        parts[name] = data[begin : begin + size].view(kind).reshape(shape)
+        begin += size
+    values = parts["values"]
+    if values.ndim == 1:
+        values = values[:, None]
+    values = _chosen(path, choice, values.T[:, :, None, None, None], 1, 0)[:, 0, 0]
+    degrees = parts["degrees"] if parts["degrees"].size else None
+    places, types = parts["points"], parts["types"]
+    offsets, connectivity = parts["offsets"], parts["connectivity"]
+    try:
+        return Cells(
+            places, types, offsets, connectivity, values, degrees=degrees, name=place["name"]
+        )
+    except InvalidInput as error:
+        raise InvalidInput(f"{path}: {error}") from None
+
+
 def _read_apart(reader_program: str, path: str, array: str, choice: Choice) -> Volume:
+    place, samples = _ask(reader_program, path, array)
+    # The components of a frame are side by side, those of the next one behind them.
+    numbers = samples.T
+    numbers = numbers.reshape((-1, place.pop("frames", 1), *numbers.shape[1:]), order="F")
+    numbers = np.moveaxis(numbers, 1, 4)
+    slope, intercept = place.pop("slope", 1), place.pop("intercept", 0)
+    if note := place.pop("note", ""):
+        warnings.warn(note, stacklevel=3)
+    return _volume(path, _chosen(path, choice, numbers, slope, intercept), **place)
+
+
+def _ask(reader_program: str, path: str, array: str) -> tuple[dict[str, Any], np.ndarray]:
     """Reads in another process: damaged files may crash libraries, and Ctrl-C ends it at once."""
     program = os.path.join(os.path.dirname(__file__), reader_program)
     command = [sys.executable or "python3", program, os.path.abspath(path), array]
@@ -356,11 +396,4 @@ def _read_apart(reader_program: str, path: str, array: str, choice: Choice) -> V
         raise (InvalidInput if place.get("argument") else IoError)(sentence)
     if not place:
         raise IoError(f"{path} cannot be read: its reader ended with {reader.returncode}")
-    # The components of a frame are side by side, those of the next one behind them.
-    numbers = samples.T
-    numbers = numbers.reshape((-1, place.pop("frames", 1), *numbers.shape[1:]), order="F")
-    numbers = np.moveaxis(numbers, 1, 4)
-    slope, intercept = place.pop("slope", 1), place.pop("intercept", 0)
-    if note := place.pop("note", ""):
-        warnings.warn(note, stacklevel=3)
-    return _volume(path, _chosen(path, choice, numbers, slope, intercept), **place)
+    return place, samples

@@ -30,6 +30,14 @@ class Source:
 class OctreeSource(Source):
     def leaves(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.uint8]]: ...
 
+class CellSource(Source):
+    @property
+    def degree(self) -> int: ...
+    @property
+    def curved_cells(self) -> int: ...
+    @property
+    def curved_distance(self) -> float: ...
+
 class Frames:
     def __init__(
         self,
@@ -71,6 +79,14 @@ def octree(
     max_level: int,
     coordinates: Sequence[ArrayLike],
 ) -> OctreeSource: ...
+def cells(
+    points: NDArray[np.float64],
+    types: NDArray[np.uint8],
+    offsets: NDArray[np.int64],
+    connectivity: NDArray[np.int64],
+    values: NDArray[np.float64],
+    degrees: NDArray[np.float64],
+) -> CellSource: ...
 def load(path: str, array: str) -> tuple[Source | Frames, str]: ...
 def volume_file(path: str, is_meta: bool) -> _VolumeFile: ...
 

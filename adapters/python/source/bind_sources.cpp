@@ -165,6 +165,26 @@ py::tuple leaves_of(const OctreeSource& octree) {
                           Masks(static_cast<py::ssize_t>(all.masked.size()), all.masked.data()));
 }
 
+using Types = py::array_t<std::uint8_t, py::array::c_style>;
+
+std::shared_ptr<CellSource> cell_source_of(const Numbers& points, const Types& types,
+                                           const Leaves& offsets, const Leaves& connectivity,
+                                           const Numbers& values, const Numbers& degrees) {
+    const auto span_of = [](const auto& array) {
+        return std::span(array.data(), static_cast<std::size_t>(array.size()));
+    };
+    const CellArrays cells{.coordinates = span_of(points),
+                           .types = span_of(types),
+                           .first = span_of(offsets),
+                           .points = span_of(connectivity),
+                           .degrees = span_of(degrees)};
+    const std::span<const double> numbers = span_of(values);
+    const std::array memory{keep(points), keep(types),   keep(offsets),
+                            keep(values), keep(degrees), keep(connectivity)};
+    return interruptible(
+        1, [cells, numbers, memory](const Call&) { return make_cells(cells, numbers); });
+}
+
 std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int threads) {
     const auto weights =
         cubic ? catmull_rom_weights(frames.times(), t) : linear_weights(frames.times(), t);
@@ -216,6 +236,12 @@ void bind_sources(py::module_& m) {
           py::arg("origin"), py::arg("rule"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),
           py::arg("max_level"), py::arg("coordinates"));
+    py::class_<CellSource, Source, std::shared_ptr<CellSource>>(m, "CellSource")
+        .def_property_readonly("degree", &CellSource::degree)
+        .def_property_readonly("curved_cells", &CellSource::curved_cells)
+        .def_property_readonly("curved_distance", &CellSource::curved_distance);
+    m.def("cells", &cell_source_of, py::arg("points"), py::arg("types"), py::arg("offsets"),
+          py::arg("connectivity"), py::arg("values"), py::arg("degrees"));
     py::class_<Frames, std::shared_ptr<Frames>>(m, "Frames")
         .def(py::init(&frames_of), py::arg("arrays"), py::arg("times"), py::arg("spacing"),
              py::arg("origin"), py::arg("direction"))

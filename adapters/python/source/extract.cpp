@@ -24,11 +24,12 @@ IsosurfaceOptions options_of(const SurfaceRequest& request, const Call& call) {
             .progress = progress_of(call)};
 }
 
-Projection asked(Projection projection, const SurfaceRequest& request) {
+Projection asked(const Source& source, Projection projection, const SurfaceRequest& request,
+                 const Call& call) {
     projection.collapse = request.collapses;
     projection.keeps_distance = request.keeps_distance;
     projection.slice_distance = request.slice_distance;
-    return projection;
+    return with_error(source.prerolls(), std::move(projection), call.work());
 }
 
 template <class Result>
@@ -50,7 +51,8 @@ Drawn drawn_of(Projected<Isosurface<3>> result) {
 
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
                       const Projection& projection, const Call& call) {
-    return drawn_of(isosurface<3>(source.prerolls(), isovalue, asked(projection, request),
+    return drawn_of(isosurface<3>(source.prerolls(), isovalue,
+                                  asked(source, projection, request, call),
                                   options_of(request, call), call.work()));
 }
 
@@ -69,26 +71,28 @@ std::vector<Drawn> draw_isosurfaces(const Source& source, std::span<const double
 
 Drawn draw_isoband(const Source& source, double low, double high, const SurfaceRequest& request,
                    const Projection& projection, const Call& call) {
-    return drawn_of(isoband<3>(source.prerolls(), low, high, asked(projection, request),
-                               options_of(request, call), call.work()));
+    return drawn_of(isoband<3>(source.prerolls(), low, high,
+                               asked(source, projection, request, call), options_of(request, call),
+                               call.work()));
 }
 
 Drawn draw_boundary(const Source& source, const SurfaceRequest& request,
                     const Projection& projection, const Call& call) {
-    return drawn_of(boundary_surface(source.prerolls(), asked(projection, request),
+    return drawn_of(boundary_surface(source.prerolls(), asked(source, projection, request, call),
                                      options_of(request, call), call.work()));
 }
 
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
                  const Projection& projection, const Call& call) {
-    return drawn_of(slice(source.prerolls(), function, asked(projection, request),
+    return drawn_of(slice(source.prerolls(), function, asked(source, projection, request, call),
                           options_of(request, call), call.work()));
 }
 
 DrawnLines draw_isolines(const Source& source, std::span<const double> values,
                          const Projection& projection, const Call& call) {
-    Projected<Isolines> result = isolines(source.prerolls(), values, projection,
-                                          {.progress = progress_of(call)}, call.work());
+    Projected<Isolines> result =
+        isolines(source.prerolls(), values, asked(source, projection, {}, call),
+                 {.progress = progress_of(call)}, call.work());
     return {static_cast<const ErrorBounds&>(result), std::move(result.lines), result.counts,
             result.search.threshold, result.cancelled};
 }
@@ -96,7 +100,7 @@ DrawnLines draw_isolines(const Source& source, std::span<const double> values,
 Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,
                         const SurfaceRequest& request, const Projection& projection,
                         const Call& call) {
-    const Projection finely = asked(projection, request);
+    const Projection finely = asked(source, projection, request, call);
     const ShadingOptions options{
         .flatness = flatness, .elements = request.elements, .progress = progress_of(call)};
     return drawn_of(scale ? height_field(source.prerolls(), *scale, finely, options, call.work())
@@ -106,7 +110,7 @@ Drawn draw_height_field(const Source& source, std::optional<double> scale, doubl
 
 ProbeResult probe_points(const Source& source, std::span<const Point> points,
                          const Projection& projection, const Call& call) {
-    return probe(source.prerolls(), points, projection, call.work());
+    return probe(source.prerolls(), points, asked(source, projection, {}, call), call.work());
 }
 
 }  // namespace nestgrid::python

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <nestgrid/algorithms/cell_data.hpp>
+#include <nestgrid/adapters/lagrange_cells.hpp>
 #include <nestgrid/algorithms/frames.hpp>
 
 #include "call.hpp"
@@ -27,7 +28,7 @@ public:
     const FieldOnGrid& field() const { return prerolls_->field(); }
     int dimension() const { return field().dimension(); }
     /// The least and the greatest value.
-    std::array<double, 2> range(const Call& call) const {
+    virtual std::array<double, 2> range(const Call& call) const {
         const std::shared_ptr<const Bounds> bounds = prerolls_->bounds(call.work());
         return {bounds->least(), bounds->greatest()};
     }
@@ -107,6 +108,18 @@ struct BoxArrays {
 /// Leaves without a value (NaN) are hidden, with all that share a node with them.
 /// \throw InvalidInput as BlockGrid
 std::shared_ptr<Source> make_blocks(const BoxArrays& given, const Call& call);
+/// Linear, quadratic or Lagrange cells.
+class CellSource : public Source {
+public:
+    using Source::Source;
+    virtual int degree() const = 0;                ///< the greatest of a cell
+    virtual std::size_t curved_cells() const = 0;  ///< which are drawn straight
+    virtual double curved_distance() const = 0;    ///< as CurvedCells
+};
+/// \param values one for each point, copied
+/// \throw InvalidInput as LagrangeGrid, and where arrays do not fit each other or a value is not
+///        finite
+std::shared_ptr<CellSource> make_cells(const CellArrays& cells, std::span<const double> values);
 
 /// The field of a file: one frame, or several.
 struct LoadedField {

@@ -13,6 +13,8 @@
 //     have no effect;
 //   - where edges are collapsed, what is drawn first has a part of the threshold, so that the whole
 //     of it is kept in the end;
+//   - a field of higher degree is drawn within an error by virtual refinement (high_order.hpp), by
+//     any other projection at the corners of its leaves;
 //   - it throws InvalidInput as Projection::check() and Prerolls::choose() do, and where the field
 //     has another dimension; GridError where the field has no value, or where the grid has changed.
 #pragma once
@@ -48,6 +50,16 @@ struct Projected : Result {
         return search.max_triangles > 0 ? search.reason() : std::string();
     }
 };
+
+/// The error within which polynomials are drawn where nobody asks for one: a thousandth of their
+/// range.
+double default_error(const HighOrder& data);
+
+/// The projection by which a front end draws a field: this one, but of a field of higher degree
+/// always one within an error, which is default_error() where the projection asks for nothing.
+///
+/// \throw InvalidInput as Projection::require_error_alone(), and as HighOrder
+Projection with_error(Prerolls& prerolls, Projection projection, const Work& work = {});
 
 /// The isosurface of a field of dimension 3, or the isoline of one of dimension 2. Edges are
 /// collapsed, and distances kept, in dimension 3.

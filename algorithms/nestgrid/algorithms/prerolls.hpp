@@ -27,6 +27,8 @@
 
 namespace nestgrid {
 
+class HighOrder;
+
 /// An indicator to compare thresholds with, and bounds of the data for the search and the error.
 struct ChosenIndicator {
     const IndicatorKind* kind = nullptr;
@@ -76,6 +78,13 @@ public:
     std::shared_ptr<const Bounds> bounds(const Work& work);
     /// Sizes of elements (mesh_size.hpp), for a lens.
     std::shared_ptr<const SweptIndicator> sizes(const Spread& spread, const Work& work);
+
+    /// The polynomials of the field (high_order.hpp), within an error of which it is drawn; null
+    /// where all are of degree 1, and between frames. Work that has a field of its own has them
+    /// made anew.
+    ///
+    /// \throw InvalidInput, GridError as HighOrder
+    std::shared_ptr<const HighOrder> high_order(const Work& work);
 
     /// How many nodes the hierarchy has. Makes the offsets.
     std::size_t node_count(const Work& work);

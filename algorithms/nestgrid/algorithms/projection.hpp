@@ -69,6 +69,14 @@ struct Projection {
     }
     /// Whether it does so with a threshold that is given, so that no other one is asked for.
     bool asks_for_everything() const { return threshold.has_value() && draws_everything(); }
+    /// Whether the threshold is the error that is kept, in units of the data.
+    bool asks_for_error() const {
+        return indicator == "error" || indicator == "deviation" || indicator == "cut";
+    }
+    /// \param degree of the field, above 1
+    ///
+    /// \throw InvalidInput where the field is asked for in another way than by an error alone
+    void require_error_alone(int degree) const;
     /// How the sizes of elements are spread, which the lens is compared with.
     Spread sizes_spread() const { return {.factor = blend, .slope = lens->slope}; }
     /// \throw InvalidInput where a number is out of range, with its name

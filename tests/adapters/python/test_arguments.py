@@ -39,6 +39,14 @@ def callables():
     yield nestgrid.Volume, {"array": CUBE}
     yield nestgrid.Octree, {"leaves": LEAVES, "values": np.zeros(8)}
     yield nestgrid.Blocks, {"boxes": [(0, (0, 0, 0), CUBE)]}
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+    yield nestgrid.Cells, {
+        "points": square,
+        "types": np.array([9]),
+        "offsets": np.array([0, 4]),
+        "connectivity": np.arange(4),
+        "values": np.arange(4.0),
+    }
     yield nestgrid.Frames, {"arrays": [CUBE, CUBE]}
     yield nestgrid.FrameBudget, {"goal": 1, "greatest": 1}
     yield nestgrid.Lens, {"domain": nestgrid.ball((0, 0, 0), 1)}

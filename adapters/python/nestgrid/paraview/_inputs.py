@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's image data and hyper tree grids as fields."""
+"""VTK's image data, hyper tree grids and unstructured grids as fields."""
 from __future__ import annotations
 
 import numpy as np
@@ -13,13 +13,19 @@ from vtkmodules.vtkCommonCore import (
     vtkTypeInt64Array,
     vtkUnsignedCharArray,
 )
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkHyperTreeGrid, vtkImageData
+from vtkmodules.vtkCommonDataModel import (
+    vtkDataObject,
+    vtkHyperTreeGrid,
+    vtkImageData,
+    vtkUnstructuredGrid,
+)
 
 import nestgrid
 
 
 def field_of(data: vtkDataObject, array: vtkDataArray | None) -> nestgrid.Field:
-    """The field of image data at points, not copied, or of a hyper tree grid in cells.
+    """The field of image data or of an unstructured grid at points, or of a hyper tree grid in
+    cells. Image data are not copied.
 
     Raises InvalidInput where the data are not of dimension 3 or the array does not fit.
     """
@@ -31,7 +37,26 @@ def field_of(data: vtkDataObject, array: vtkDataArray | None) -> nestgrid.Field:
         )
     if isinstance(data, vtkHyperTreeGrid):
         return _octree(data, array)
+    if isinstance(data, vtkUnstructuredGrid):
+        return _cells(data, array)
     return _volume(data, array)
+
+
+def _cells(grid: vtkUnstructuredGrid, array: vtkDataArray) -> nestgrid.Cells:
+    values = vtk_to_numpy(array)
+    if len(values) != grid.GetNumberOfPoints():
+        raise nestgrid.InvalidInput(f"'{array.GetName()}' is no array of points")
+    if not grid.GetNumberOfCells():
+        raise nestgrid.InvalidInput("the unstructured grid has no cells")
+    degrees = grid.GetCellData().GetHigherOrderDegrees()
+    return nestgrid.Cells(
+        vtk_to_numpy(grid.GetPoints().GetData()),
+        vtk_to_numpy(grid.GetCellTypesArray()),
+        vtk_to_numpy(grid.GetCells().GetOffsetsArray()),
+        vtk_to_numpy(grid.GetCells().GetConnectivityArray()),
+        values,
+        degrees=None if degrees is None else vtk_to_numpy(degrees),
+    )
 
 
 def _volume(image: vtkImageData, array: vtkDataArray) -> nestgrid.Volume:

@@ -11,10 +11,14 @@ import numpy as np
 import paraview.simple as pv
 from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkLagrangeHexahedron, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 import nestgrid
 from nestgrid.paraview import PLUGIN
+from nestgrid.paraview._inputs import field_of
 
 folder = sys.argv[1]
 pv.LoadPlugin(PLUGIN, remote=False)
@@ -132,6 +136,45 @@ def check_where_and_how():
     same(fetch(boundary), volume.boundary(error=5, collapse=True))
 
 
+def check_unstructured_grid():
+    """Lagrange hexahedra of degree 3, read by ParaView."""
+    grid = vtkUnstructuredGrid()
+    points, values = vtkPoints(), vtkDoubleArray()
+    values.SetName("u")
+    points.SetDataTypeToDouble()
+    nodes = np.indices((4, 4, 4)).reshape(3, -1).T
+    for cell in np.indices((2, 2, 2)).reshape(3, -1).T:
+        ids = vtkIdList()
+        ids.SetNumberOfIds(64)
+        for node in nodes:
+            x = (cell + node / 3) / 2
+            place = vtkLagrangeHexahedron.PointIndexFromIJK(*map(int, node), [3, 3, 3])
+            ids.SetId(place, points.InsertNextPoint(*x))
+            values.InsertNextValue(np.sin(5 * x[0]) * np.cos(4 * x[1]) + x[2] ** 2)
+        grid.InsertNextCell(72, ids)
+    grid.SetPoints(points)
+    grid.GetPointData().AddArray(values)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(os.path.join(folder, "solution.vtu"))
+    writer.SetInputData(grid)
+    assert writer.Write()
+    reader = pv.XMLUnstructuredGridReader(FileName=[os.path.join(folder, "solution.vtu")])
+    expected = field_of(grid, values)
+    filter = pv.NestgridIsosurface(Input=reader)
+    filter.Scalars = ["POINTS", "u"]
+    filter.Isovalue = 0.4
+    same(fetch(filter), expected.isosurface(0.4))
+    filter.Error = 0.02
+    same(fetch(filter), expected.isosurface(0.4, error=0.02))
+    slice = pv.NestgridSlice(Input=reader)
+    slice.Scalars = ["POINTS", "u"]
+    slice.Origin, slice.Normal, slice.Error = [0.5, 0.4, 0.45], [1, 2, 3], 0.02
+    data = fetch(slice)
+    same(data, expected.slice(plane=((0.5, 0.4, 0.45), (1, 2, 3)), error=0.02))
+    filter.MaxTriangles, filter.Error = 100, 0
+    assert fetch(filter).GetNumberOfPolys() == 0, "refused, with a sentence in the log"
+
+
 def check_hyper_tree_grid():
     source = pv.HyperTreeGridRandom(Dimensions=[4, 4, 4], MaxDepth=4, SplitFraction=0.4, Seed=3)
     source.UpdatePipeline()
@@ -247,6 +290,7 @@ def check_state_and_picture():
 
 check_image_data()
 check_where_and_how()
+check_unstructured_grid()
 check_hyper_tree_grid()
 check_reader()
 check_times()

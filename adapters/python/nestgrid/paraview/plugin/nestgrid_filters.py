@@ -20,8 +20,8 @@ ARRAY = """
   <ArrayListDomain name="array_list" attribute_type="Scalars">
     <RequiredProperties><Property name="Input" function="Input"/></RequiredProperties>
   </ArrayListDomain>
-  <Documentation>Numbers at the points of image data, or in the cells of a hyper tree
-  grid.</Documentation>
+  <Documentation>Numbers at the points of image data or of an unstructured grid, or in the cells of
+  a hyper tree grid.</Documentation>
 </StringVectorProperty>
 """
 ISOVALUE = """
@@ -227,6 +227,7 @@ INPUT = """
   <ProxyGroupDomain name="groups"><Group name="sources"/><Group name="filters"/></ProxyGroupDomain>
   <DataTypeDomain name="input_type" composite_data_supported="0">
     <DataType value="vtkImageData"/><DataType value="vtkHyperTreeGrid"/>
+    <DataType value="vtkUnstructuredGrid"/>
   </DataTypeDomain>
   <InputArrayDomain name="one_component" attribute_type="any" number_of_components="1"/>
 </InputProperty>
@@ -426,6 +427,7 @@ class Filter(Drawing):
     def FillInputPortInformation(self, port, info):
         info.Set(self.INPUT_REQUIRED_DATA_TYPE(), "vtkImageData")
         info.Append(self.INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid")
+        info.Append(self.INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid")
         return 1
 
     def array(self, data):

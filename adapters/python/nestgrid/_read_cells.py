@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A program of its own, which reads .vtu by VTK.
+
+Arguments: the file, and the name of a point data array or nothing. Answers as _answer.py says, with
+the arrays of the mesh one after the other.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+from _answer import Refused, answer, listed
+from _read_vtk import Errors, names_of
+
+
+def chosen(path: str, name: str, data: Any) -> Any:
+    names = [each for each in names_of(data) if data.GetArray(each) is not None]
+    if not names:
+        raise Refused(f"{path} has no values at points", True)
+    if not name and len(names) > 1:
+        raise Refused(
+            f"{path} has several arrays, choose one by array: {listed(names)}", True, names
+        )
+    found = data.GetArray(name or names[0])
+    if found is None:
+        raise Refused(f"{path} has no point data array '{name}'", True, names)
+    return found
+
+
+def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    reader = vtkXMLUnstructuredGridReader()
+    errors = Errors(path, reader)
+    if not reader.CanReadFile(path):
+        raise Refused(f"{path} is no VTK unstructured grid file")
+    with open(path, "rb") as file:
+        file.seek(max(0, os.path.getsize(path) - 64))
+        if b"</VTKFile>" not in file.read():
+            raise Refused(f"{path} is truncated: it does not end with </VTKFile>")
+    reader.SetFileName(path)
+    reader.Update()
+    errors.check()
+    grid = reader.GetOutput()
+    values = chosen(path, name, grid.GetPointData())
+    if not grid.GetNumberOfCells():
+        raise Refused(f"{path} has no cells")
+    degrees = grid.GetCellData().GetHigherOrderDegrees()
+    arrays = {
+        "points": (vtk_to_numpy(grid.GetPoints().GetData()), "float64"),
+        "types": (vtk_to_numpy(grid.GetCellTypesArray()), "uint8"),
+        "offsets": (vtk_to_numpy(grid.GetCells().GetOffsetsArray()), "int64"),
+        "connectivity": (vtk_to_numpy(grid.GetCells().GetConnectivityArray()), "int64"),
+        "values": (vtk_to_numpy(values), "float64"),
+        "degrees": (np.zeros(0) if degrees is None else vtk_to_numpy(degrees), "float64"),
+    }
+    parts = {each: np.ascontiguousarray(data, kind) for each, (data, kind) in arrays.items()}
+    data = b"".join(part.tobytes() for part in parts.values())
+    told = [(each, arrays[each][1], part.shape) for each, part in parts.items()]
+    place = {"arrays": told, "name": values.GetName() or "", "shape": [len(data)], "type": "uint8"}
+    return place, data
+
+
+if __name__ == "__main__":
+    answer(read)

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <projection/polynomials.hpp>
+
+#include <deque>
+
+namespace nestgrid::engine {
+
+namespace {
+
+/// Looks for a leaf of a degree above 1.
+template <class Real>
+class DegreeSearch {
+public:
+    explicit DegreeSearch(const Hierarchy<Real>& hierarchy)
+        : hierarchy_{&hierarchy}, task_{hierarchy.open()} {}
+
+    bool finds_one() {
+        for (std::size_t i = 0; i < hierarchy_->coarse_count(); ++i) {
+            Coarse coarse;
+            Family& family = at(0);
+            hierarchy_->coarse(task_.get(), i, coarse, family);
+            if (is_below(family.members[0], 1)) return true;
+        }
+        return false;
+    }
+
+private:
+    Family& at(std::size_t level) {
+        while (families_.size() <= level) families_.emplace_back();
+        return families_[level];
+    }
+    bool is_below(const Member& member, std::size_t level) {
+        if (member.rule == nullptr) return hierarchy_->degree(task_.get(), member.element) > 1;
+        Family& family = at(level);
+        hierarchy_->enter(task_.get(), member.element, *member.rule, 0, nullptr, ~NodeMask{0},
+                          family);
+        for (std::size_t c = 0; c < member.rule->children.size(); ++c) {
+            if (is_below(family.members[c], level + 1)) return true;
+        }
+        return false;
+    }
+
+    const Hierarchy<Real>* hierarchy_;
+    std::unique_ptr<Task> task_;
+    std::deque<Family> families_;  // of each level on the way down
+};
+
+}  // namespace
+
+std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field) {
+    return field.visit([&](const auto& hierarchy) -> std::shared_ptr<const HighOrder> {
+        if (!hierarchy.offers(Feature::degree) || !DegreeSearch(hierarchy).finds_one()) {
+            return nullptr;
+        }
+        struct Kept {
+            FieldOnGrid field;
+            HighOrder data;
+        };
+        const auto kept = std::make_shared<const Kept>(Kept{field, HighOrder(hierarchy)});
+        return {kept, &kept->data};
+    });
+}
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,182 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Meshes of Lagrange cells: from arrays, and from files that VTK writes."""
+import pickle
+
+import numpy as np
+import pytest
+
+import nestgrid
+
+pytest.importorskip("vtkmodules.vtkCommonDataModel")
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkPoints  # noqa: E402
+from vtkmodules.vtkCommonDataModel import (  # noqa: E402
+    vtkCellArray,
+    vtkLagrangeHexahedron,
+    vtkLagrangeQuadrilateral,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
+
+
+def waves(x):
+    return np.sin(5 * x[:, 0]) * np.cos(4 * x[:, 1]) + x[:, 2] ** 2
+
+
+def box(dimension, n, degree):
+    """Points of each cell's own, and the cells, of a unit square or cube."""
+    nodes = np.indices((degree + 1,) * dimension).reshape(dimension, -1).T
+    if dimension == 3:
+        place = [vtkLagrangeHexahedron.PointIndexFromIJK(*map(int, at), [degree] * 3) for at in nodes]
+    else:
+        place = [vtkLagrangeQuadrilateral.PointIndexFromIJK(*map(int, at), [degree] * 2) for at in nodes]
+    in_cell = np.empty_like(nodes)
+    in_cell[place] = nodes
+    cells = np.indices((n,) * dimension).reshape(dimension, -1).T
+    points = np.zeros((len(cells), len(nodes), 3))
+    points[:, :, :dimension] = (cells[:, None] + in_cell / degree) / n
+    count = len(nodes)
+    offsets = np.arange(len(cells) + 1) * count
+    types = np.full(len(cells), 72 if dimension == 3 else 70)
+    return points.reshape(-1, 3), types, offsets, np.arange(len(cells) * count)
+
+
+def write(path, mesh, **fields):
+    points, types, offsets, connectivity = mesh
+    grid = vtkUnstructuredGrid()
+    places = vtkPoints()
+    places.SetData(numpy_to_vtk(points, deep=True))
+    grid.SetPoints(places)
+    cells = vtkCellArray()
+    cells.SetData(numpy_to_vtkIdTypeArray(offsets, True), numpy_to_vtkIdTypeArray(connectivity, True))
+    grid.SetCells(numpy_to_vtk(types.astype(np.uint8), deep=True), cells)
+    for name, values in fields.items():
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        grid.GetPointData().AddArray(array)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(grid)
+    assert writer.Write()
+
+
+@pytest.mark.parametrize("degree", [2, 4])
+def test_surfaces_are_closed_and_within_the_error(degree):
+    mesh = box(3, 3, degree)
+    field = nestgrid.Cells(*mesh, waves(mesh[0]))
+    assert (field.dimension, field.degree) == (3, degree)
+    for error in (0.05, 0.005):
+        surface = field.isosurface(0.4, error=error)
+        assert 0 < surface.error_bound <= error * (1 + 1e-6)
+        assert surface.report()["open_edges"] == 0
+    drawn = field.slice(plane=((0.5, 0.5, 0.41), (0.2, 0.1, 1)), error=0.005)
+    assert drawn.error_bound <= 0.005 * (1 + 1e-6)
+    # The polynomial itself is as near to the waves as its degree allows.
+    off = np.abs(drawn.attributes[:, 0] - waves(drawn.vertices)).max()
+    assert off <= 0.005 + {2: 0.1, 4: 0.003}[degree]
+    boundary = field.boundary(error=0.01)
+    assert boundary.report()["open_edges"] == 0
+
+
+def test_a_thousandth_of_the_range_is_the_error_unless_one_is_given():
+    mesh = box(3, 3, 3)
+    values = waves(mesh[0])
+    field = nestgrid.Cells(*mesh, values)
+    assert field.range == (values.min(), values.max())
+    surface = field.isosurface(0.4)
+    size = values.max() - values.min()
+    assert 2e-4 * size < surface.threshold < 2e-3 * size
+    assert surface.error_bound <= surface.threshold * (1 + 1e-6)
+
+
+def test_isolines_and_height_fields():
+    mesh = box(2, 3, 3)
+    field = nestgrid.Cells(*mesh, waves(mesh[0]))
+    assert field.dimension == 2
+    assert field.isolines([0.1, 0.4], error=0.01).error_bound <= 0.01 * (1 + 1e-6)
+    graph = field.height_field(1, error=0.01)
+    assert graph.error_bound <= 0.01 * (1 + 1e-6)
+    np.testing.assert_allclose(graph.vertices[:, 2], graph.attributes[:, 0])
+
+
+def test_linear_cells_are_as_other_fields():
+    mesh = box(3, 4, 1)
+    field = nestgrid.Cells(*mesh, waves(mesh[0]))
+    assert field.degree == 1
+    assert field.isosurface(0.4, max_triangles=1000).report()["open_edges"] == 0
+
+
+def test_files_are_as_arrays(tmp_path):
+    mesh = box(3, 3, 3)
+    values = waves(mesh[0])
+    vectors = np.column_stack([values, -values])
+    write(tmp_path / "mesh.vtu", mesh, u=values, v=vectors)
+    path = str(tmp_path / "mesh.vtu")
+    expected = nestgrid.Cells(*mesh, values).isosurface(0.4, error=0.01)
+    for field in (
+        nestgrid.load(path, "u"),
+        nestgrid.load(path, "v", component=0),
+        pickle.loads(pickle.dumps(nestgrid.load(path, "u"))),
+    ):
+        surface = field.isosurface(0.4, error=0.01)
+        np.testing.assert_array_equal(surface.vertices, expected.vertices)
+        np.testing.assert_array_equal(surface.triangles, expected.triangles)
+    assert "27 cells of dimension 3, degree 3" in repr(nestgrid.load(path, "u"))
+    with pytest.raises(nestgrid.InvalidInput, match="has several arrays, choose one by array: 'u', 'v'"):
+        nestgrid.load(path)
+    with pytest.raises(nestgrid.InvalidInput, match="has no point data array 'w', only 'u', 'v'"):
+        nestgrid.load(path, "w")
+    with pytest.raises(nestgrid.InvalidInput, match="has 2 numbers per sample, not one"):
+        nestgrid.load(path, "v")
+    with pytest.raises(nestgrid.InvalidInput, match="frame chooses nothing of a .vtu"):
+        nestgrid.load(path, "u", frame=1)
+    data = (tmp_path / "mesh.vtu").read_bytes()
+    (tmp_path / "cut.vtu").write_bytes(data[: len(data) // 2])
+    with pytest.raises(nestgrid.IoError, match="cut.vtu"):
+        nestgrid.load(str(tmp_path / "cut.vtu"))
+
+
+def test_refusals_name_what_is_wrong(tmp_path):
+    points, types, offsets, connectivity = box(3, 2, 2)
+    values = waves(points)
+    good = nestgrid.Cells(points, types, offsets, connectivity, values)
+    for arguments in ({"threshold": 0.1}, {"max_triangles": 100}, {"error": 0.1, "collapse": True}):
+        with pytest.raises(nestgrid.InvalidInput, match="the field has degree 2"):
+            good.isosurface(0.4, **arguments)
+    with pytest.raises(nestgrid.InvalidInput, match="cell 3 is of VTK's type 42"):
+        nestgrid.Cells(points, np.where(np.arange(8) == 3, 42, types), offsets, connectivity, values)
+    with pytest.raises(nestgrid.InvalidInput, match="not a finite number at point 7"):
+        nestgrid.Cells(
+            points, types, offsets, connectivity, np.where(np.arange(len(values)) == 7, np.nan, values)
+        )
+    with pytest.raises(nestgrid.InvalidInput, match="has 215 values for 216 points"):
+        nestgrid.Cells(points, types, offsets, connectivity, values[:-1])
+    with pytest.raises(nestgrid.InvalidInput, match="offsets do not say"):
+        nestgrid.Cells(points, types, offsets[:-1], connectivity, values)
+    with pytest.raises(nestgrid.InvalidInput, match="offsets do not say"):
+        nestgrid.Cells(points, types, offsets[::-1], connectivity, values)
+    halves = points.copy()
+    halves[:, 0] += 1
+    # A cell of twice the size beside them.
+    one = box(3, 1, 2)
+    both = np.vstack([one[0], halves])
+    mesh = (
+        both,
+        np.append(72, types),
+        np.append(0, offsets + 27),
+        np.append(one[3], connectivity + 27),
+    )
+    with pytest.raises(nestgrid.InvalidInput, match="a face of cell 0 is divided on its other side"):
+        nestgrid.Cells(*mesh, np.zeros(len(both)))
+    write(tmp_path / "halves.vtu", mesh, u=np.zeros(len(both)))
+    with pytest.raises(nestgrid.InvalidInput, match="halves.vtu: a face of cell 0 is divided"):
+        nestgrid.load(str(tmp_path / "halves.vtu"))
+
+
+def test_curved_cells_warn():
+    mesh = box(3, 1, 3)
+    bent = mesh[0].copy()
+    bent[8, 1] += 0.02
+    with pytest.warns(UserWarning, match="1 cells are curved, by up to 0.02"):
+        nestgrid.Cells(bent, *mesh[1:], waves(mesh[0]))

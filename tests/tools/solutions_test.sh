@@ -1,0 +1,131 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Lagrange cells in .vtu files: what they are taken for, surfaces, slices, lines, probes within errors,
+# and refusals. Arguments: the program, the maker of volumes.
+. "$(dirname "$0")/functions.sh"
+
+# within ERROR WHAT: no open edge, and all bounds at most the error.
+within() {
+    if grep -qw open_edges out; then
+        [ "$(value open_edges | sort -u)" = 0 ] || fail "$2: open edges: $(cat out)"
+    fi
+    [ -n "$(value error_bound)" ] || fail "$2: no bound: $(cat out)"
+    for bound in $(value error_bound); do
+        awk -v bound="$bound" -v error="$1" 'BEGIN { exit !(bound <= error * 1.00001) }' || fail "$2: bound $bound"
+    done
+}
+
+run info solution.vtu
+[ "$(value dimension)" = 3 ] && [ "$(value leaf_elements)" = 27 ] && [ "$(value nodes)" = 64 ] ||
+    fail "info: $(cat out)"
+[ "$(value points)" = 3,375 ] || [ "$(value points)" = 3375 ] || fail "info: points: $(cat out)"
+grep -qE '^hexahedron +4 +27$' out && grep -qE '^u +1 +[0-9.e-]+ +[0-9.]+$' out || fail "info: $(cat out)"
+run info plane.vtu
+[ "$(value dimension)" = 2 ] && grep -qE '^quadrilateral +4 +9$' out || fail "info of a plane: $(cat out)"
+
+for error in 0.1 0.01; do
+    run isosurface solution.vtu --field u --value 0.3 --error $error -o s.vtp
+    within $error isosurface
+    grep -q "^drawn within $error of polynomials of degree 4$" out || fail "nothing on the degree: $(cat out)"
+    run slice solution.vtu --field u --plane 0.4,0.5,0.45,0.2,0.1,1 --error $error --outlines -o c.vtp
+    within $error slice
+    run slice solution.vtu --field u --axis z --at 0.4 --with-isosurface 0.3 --error $error -o c.vtp
+    within $error "slice with an isosurface"
+    run boundary solution.vtu --array u --error $error -o b.vtp
+    within $error boundary
+    run isolines plane.vtu --field u --values 0.2,0.3 --error $error -o l.vtp
+    within $error isolines
+    run isolines solution.vtu --field u --axis x --at 0.3 --count 3 --error $error -o l.vtp
+    within $error "isolines on a slice"
+    run isosurface plane.vtu --field u --value 0.3 --error $error
+    within $error "isosurface of a plane"
+    run height plane.vtu --field u --scale 1 --error $error -o h.vtp
+    within $error height
+done
+run isosurface solution.vtu --field u --value 0.3 --error 1%
+[ "$(value error_bound)" != - ] || fail "percent: $(cat out)"
+run isosurface solution.vtu --field u --value 0.3 --error 0.1 --error 0.01 -o two.vtp
+[ "$(value triangles | wc -l)" = 2 ] || fail "two errors: $(cat out)"
+run isosurface solution.vtu --field u --value 0.3 --cap --error 0.05 -o s.vtp
+[ "$(value boundary_edges)" = 0 ] || fail "a cap leaves $(value boundary_edges) edges"
+
+# Without an error.
+run isosurface solution.vtu --field u --value 0.3
+grep -q 'about a thousandth of their range: --error chooses another$' out || fail "no word on the error: $(cat out)"
+within 0.004 "without an error"
+run slice solution.vtu --field u --axis z --at 0.4
+within 0.004 "a slice without an error"
+printf '0.21,0.33,0.47\n0.5,0.5,0.5\n' >points
+run probe solution.vtu --field u --points points
+awk -F, 'NR > 1 { u = exp(-12 * (($1 - 0.35) ^ 2 + ($2 - 0.6) ^ 2 + ($3 - 0.4) ^ 2)) + $1 / 5; d = $4 - u; if (d > 0.02 || d < -0.02) exit 1 }' out ||
+    fail "probe: $(cat out)"
+
+# Two threads, the same bits.
+run isosurface solution.vtu --field u --value 0.3 --error 0.01 --threads 1 -o one.vtp
+run isosurface solution.vtu --field u --value 0.3 --error 0.01 --threads 2 -o two.vtp
+cmp -s one.vtp two.vtp || fail "two threads draw another surface than one"
+
+refused 1 "there are several fields, choose one by --field: 'u', 'radius'" isosurface solution.vtu --value 0.3
+refused 1 "there is no field 'radios', only 'u', 'radius': did you mean 'radius'\?" \
+    isosurface solution.vtu --field radios --value 0.3
+refused 1 'no threshold of nodes' isosurface solution.vtu --field u --value 0.3 --threshold 0.1 -o x.vtp
+refused 1 'no number of triangles' isosurface solution.vtu --field u --value 0.3 --max-triangles 100 -o x.vtp
+refused 1 'no collapse of edges' isosurface solution.vtu --field u --value 0.3 --error 0.1 --collapse -o x.vtp
+refused 1 'no lens' isosurface solution.vtu --field u --value 0.3 --lens ball:0.5,0.5,0.5,0.1 --finest 0.1 -o x.vtp
+refused 1 'are for fields of degree 1' isosurface solution.vtu --field u --value 0.3 --error 0.1 --measure -o x.vtp
+refused 1 "below 1e-12 of the range" isosurface solution.vtu --field u --value 0.3 --error 1e-15 -o x.vtp
+refused 1 "no frame of several" isosurface solution.vtu solution.vtu --field u --value 0.3 --frames 2 -o x.vtp
+refused 1 "magnitude is for" isosurface solution.vtu --field u --value 0.3 --magnitude
+refused 1 "has 1 components, and none with number 2" isosurface solution.vtu --field u --component 2 --value 0.3
+head -c 3000 solution.vtu >cut.vtu
+refused 1 "cut.vtu is truncated" isosurface cut.vtu --field u --value 0.3
+printf 'no grid' >not.vtu
+refused 1 "'not.vtu' is no VTK unstructured grid file" info not.vtu
+sed 's/UnstructuredGrid/PolyData/g' solution.vtu >poly.vtu
+refused 1 "'poly.vtu' is no VTK unstructured grid file" info poly.vtu
+
+# One file by hand for each thing that a mesh may have wrong.
+# mesh POINTS TYPES VALUES CONNECTIVITY OFFSETS
+mesh() {
+    cat >"$1" <<END
+<VTKFile type="UnstructuredGrid" version="2.2" byte_order="LittleEndian"><UnstructuredGrid>
+<Piece NumberOfPoints="$(($(wc -w <<<"$2") / 3))" NumberOfCells="$(wc -w <<<"$3")">
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">$2</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">$5</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">$6</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">$3</DataArray></Cells>
+<PointData><DataArray type="Float64" Name="u" format="ascii">$4</DataArray></PointData>
+</Piece></UnstructuredGrid></VTKFile>
+END
+}
+square='0 0 0 1 0 0 1 1 0 0 1 0'
+mesh good.vtu "$square" 9 '0 1 2 1' '0 1 2 3' 4
+run isosurface good.vtu --value 0.5
+mesh polygon.vtu "$square" 7 '0 1 2 1' '0 1 2 3' 4
+refused 1 "'polygon.vtu': cell 0 is of VTK's type 7, which is not drawn" isosurface polygon.vtu --value 0.5
+mesh few.vtu "$square" 23 '0 1 2 1' '0 1 2 3' 4
+refused 1 "'few.vtu': cell 0, a quadratic quadrilateral, has 4 points, not 8" isosurface few.vtu --value 0.5
+six='0 0 0 1 0 0 0 1 0 0.5 0 0 0.5 0.5 0 0 0.5 0'
+mesh triangle.vtu "$six" 22 '0 1 2 1 1 1' '0 1 2 3 4 5' 6
+refused 1 'coarse element 0 is a triangle; data of higher degree are drawn on quadrilaterals and hexahedra' \
+    isosurface triangle.vtu --value 0.5
+mesh nan.vtu "$square" 9 '0 1 nan 1' '0 1 2 3' 4
+refused 1 "'nan.vtu': 'u' is not a finite number at point 2" isosurface nan.vtu --value 0.5
+mesh flat.vtu '0 0 0 1 0 0 2 0 0 3 0 0' 9 '0 1 2 1' '0 1 3 2' 4
+refused 1 "'flat.vtu': cell 0 is flat" isosurface flat.vtu --value 0.5
+mesh hanging.vtu "$square 2 0 0 2 0.5 0 1 0.5 0 2 1 0" '9 9 9' '0 1 2 1 2 2 2 2' '0 1 2 3 1 4 5 6 6 5 7 2' '4 8 12'
+refused 1 "'hanging.vtu': a face of cell 0 is divided on its other side" isosurface hanging.vtu --value 0.5
+quadratic='0 0 0 1 0 0 1 1 0 0 1 0 0.5 0.1 0 1 0.5 0 0.5 1 0 0 0.5 0'
+mesh curved.vtu "$quadratic" 23 '0 1 2 1 0.3 1.5 1.5 0.5' '0 1 2 3 4 5 6 7' 8
+run isosurface curved.vtu --value 0.5
+grep -q '^1 cells are curved, by up to 0.1 in units of length' out || fail "curved: $(cat out)"
+mesh empty.vtu "$square" '' '0 1 2 1' '' ''
+refused 1 "'empty.vtu'" isosurface empty.vtu --value 0.5
+mesh two.vtu "0 0 0 1 0 0 1 1 0 0 1 0 1 0 0 2 0 0 2 1 0 1 1 0" '9 9' '0 1 2 1 1.5 2 2 2' '0 1 2 3 4 5 6 7' '4 8'
+run isosurface two.vtu --value 0.5
+grep -q '^cells disagree on values at nodes that they share, by up to 0.25: their mean is drawn' out ||
+    fail "values apart: $(cat out)"
+
+exit $((failures > 0))
