@@ -69,6 +69,7 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     if (options_->normals && !bisects_) normals.gradients = &normals_.sums();
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         surfaces_[i].begin(builders[i], normals, options_->verify);
+        if (merges_across()) surfaces_[i].keep_names(shared()->ranks().rank());
         transitions_[i].record.clear();
         transitions_[i].drawn_below = &transitions_[i].record;
     }
@@ -136,7 +137,7 @@ bool LevelSet<dimension, Real>::bisects_slices() const {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::run(const Executor& executor) {
-    const SharedNodes* const shared = walk_->hierarchy().facts().shared;
+    const SharedNodes* const shared = this->shared();
     const auto alone = [&](const auto& part) {
         together(shared, "isosurfaces",
                  [&] { with_places(walk_->hierarchy(), part, walk_->function_count()); });
@@ -156,6 +157,8 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
         }
         finish();
     });
+    if (!merges_across()) return;
+    for (LevelSurface<dimension>& surface : surfaces_) surface.merge_across(*shared);
 }
 
 template <int dimension, class Real>
@@ -172,7 +175,7 @@ void LevelSet<dimension, Real>::finish() {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         fill_gaps(i);
         surfaces_[i].builder().flush();
-        surfaces_[i].finish(options_->at_nodes && !surfaces_[i].counts_only());
+        surfaces_[i].finish(options_->at_nodes && !surfaces_[i].counts_only() && !merges_across());
     }
 }
 

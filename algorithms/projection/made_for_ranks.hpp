@@ -44,11 +44,10 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid);
 void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& spread);
 
 /// Refuses surfaces that are not made for ranks.
-/// \param of_functions whether levels are those of functions of position
 ///
 /// \throw InvalidInput
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
-                            const IsosurfaceOptions& options, bool of_functions);
+                            const IsosurfaceOptions& options);
 
 /// What a surface is asked for with, as settle() compares it.
 template <class Real>

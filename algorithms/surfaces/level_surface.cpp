@@ -6,6 +6,8 @@
 #include <numeric>
 #include <string>
 
+#include <ranks/merge_across.hpp>
+#include <ranks/vertex_copies.hpp>
 #include <surfaces/merge_at_nodes.hpp>
 #include <surfaces/settle_normals.hpp>
 
@@ -35,6 +37,8 @@ void LevelSurface<dimension>::begin(Builder builder, const VertexNormals& normal
     simplices_.clear();
     at_nodes_.clear();
     is_at_node_.clear();
+    names_.clear();
+    keeps_names_ = false;
     keeps_simplices_ = makes_normals() && builder_.target() == nullptr;
     extracted_ = limited_ = 0;
     error_bound_ = 0;
@@ -52,6 +56,7 @@ auto LevelSurface<dimension>::add(const SurfaceCut& cut) -> Number {
         return number;
     }
     builder_.add_vertex(cut.x, cut.attributes);
+    if (keeps_names_) names_.emplace_back(cut.node[0], cut.node[1]);
     if (normals_.gradients != nullptr) {
         where_.push_back({normals_.gradients->slot(cut.node[0]),
                           normals_.gradients->slot(cut.node[1]), cut.fraction});
@@ -66,6 +71,9 @@ auto LevelSurface<dimension>::add_unnamed(std::span<const Point> x,
     if (none - first < x.size()) throw_too_many_vertices();
     if (normals_.gradients != nullptr) where_.resize(where_.size() + x.size(), {none, none, 0.0});
     builder_.add_vertices(x, attributes);
+    for (Number v = first; keeps_names_ && v < first + x.size(); ++v) {
+        names_.push_back(own_name(rank_, v));
+    }
     return first;
 }
 
@@ -180,6 +188,14 @@ void LevelSurface<2>::merge_at_nodes() {}
 template <>
 void LevelSurface<3>::merge_at_nodes() {
     builder_.change([&](Surface<3>& surface) { engine::merge_at_nodes(surface, at_nodes_); });
+}
+
+template <>
+void LevelSurface<2>::merge_across(const SharedNodes&) {}
+template <>
+void LevelSurface<3>::merge_across(const SharedNodes& shared) {
+    builder_.change(
+        [&](Surface<3>& surface) { merge_at_nodes_across(surface, at_nodes_, names_, shared); });
 }
 
 template <int dimension>

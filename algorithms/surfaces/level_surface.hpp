@@ -11,6 +11,8 @@
 
 namespace nestgrid::engine {
 
+class SharedNodes;
+
 /// How the vertices of a surface get their normals.
 struct VertexNormals {
     NodeGradients* gradients = nullptr;  ///< at nodes, between which they are interpolated; or null
@@ -34,10 +36,18 @@ public:
         : builder_{std::move(builder)},
           numbers_{node_count > 0 && std::uint64_t{node_count} <= std::uint64_t{1} << 32U} {}
 
+    /// Keeps the names of vertices, which then stand for them on other ranks (find_copies()). To be
+    /// called after begin().
+    /// \param rank this one
+    void keep_names(int rank) {
+        keeps_names_ = true;
+        rank_ = rank;
+    }
     /// Begins an empty surface, and keeps its memory.
     void begin(Builder builder, const VertexNormals& normals, bool verify);
     /// Does not complete normals, because another LevelSurface does so for this part.
     void leave_normals() {
+        keeps_names_ = false;
         normals_.gradients = nullptr;
         keeps_simplices_ = false;
     }
@@ -106,10 +116,7 @@ public:
         if (is_at_node(vertex)) return;
         if (is_at_node_.size() <= vertex) is_at_node_.resize(vertex + std::size_t{1}, false);
         is_at_node_[vertex] = true;
-        at_nodes_.vertex.push_back(vertex);
-        at_nodes_.node.push_back(node);
-        at_nodes_.attributes.insert(at_nodes_.attributes.end(), attributes.begin(),
-                                    attributes.end());
+        at_nodes_.add(vertex, node, attributes);
     }
     const VerticesAtNodes& at_nodes() const { return at_nodes_; }
 
@@ -134,10 +141,13 @@ public:
     /// Makes the normals, and merges the vertices at each node (merge_at_nodes.hpp), as far as each
     /// is wanted. Requires that everything is drawn; merging requires a surface of triangles.
     void finish(bool merges_at_nodes);
+    /// Merges the vertices at each node with other ranks, after finish(false). Requires
+    /// keep_names(). Collective.
+    void merge_across(const SharedNodes& shared);
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
                of_vertices_.capacity() * sizeof(Normal) + simplices_.size() * sizeof(Simplex) +
-               at_nodes_.node.capacity() * sizeof(NodePlace);
+               at_nodes_.node.capacity() * sizeof(NodePlace) + names_.capacity() * sizeof(KeyPair);
     }
 
 private:
@@ -171,6 +181,7 @@ private:
     std::vector<Normal> of_vertices_;  // by vertex, where they come with vertices
     VerticesAtNodes at_nodes_;
     std::vector<bool> is_at_node_;   // by vertex: whether it is among at_nodes_
+    std::vector<KeyPair> names_;     // by vertex, where they are kept
     std::deque<Simplex> simplices_;  // all of them, where a sink takes them and normals are wanted
     std::uint64_t extracted_ = 0;
     std::uint64_t limited_ = 0;
@@ -178,6 +189,8 @@ private:
     double off_level_ = 0;
     double leaf_error_ = 0;
     double position_bound_ = 0;
+    int rank_ = 0;
+    bool keeps_names_ = false;
     bool keeps_simplices_ = false;
     bool verifies_ = false;
     bool counts_only_ = false;

@@ -181,8 +181,8 @@ void Walk<Real>::put_coarse_values(View& view) const {
     if (missing != 0 && hierarchy_->facts().far_values != nullptr) {
         std::array<NodeKey, max_corners> keys;
         this->corners(view, keys.data(), nullptr);
-        missing =
-            hierarchy_->facts().far_values->give(std::span(keys).first(corners), missing, value);
+        missing = hierarchy_->facts().far_values->give(std::span(keys).first(corners), missing,
+                                                       value, components_);
     }
     const NodeMask unseen = unseen_corners(view);
     if ((missing & ~unseen) != 0) throw_missing(missing & ~unseen, view.coarse);
@@ -291,7 +291,7 @@ void Walk<Real>::project(const View& view, const Split& split, NodeMask mean, No
                                          wanted, frame.family);
     if ((missing & which) != 0 && hierarchy_->facts().far_values != nullptr) {
         missing = hierarchy_->facts().far_values->give(split.keys, missing & which,
-                                                       value + corners * stride);
+                                                       value + corners * stride, stride);
     }
     if ((missing & which) != 0) throw_missing(missing & which, view);
     if (!needs_.values) return;

@@ -23,7 +23,6 @@
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/shading.hpp>
-#include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
@@ -84,15 +83,10 @@ struct LeafValues {
 };
 
 const std::vector<Refused<3>> in_space{
-    {"slice",
-     [](const auto& s) {
-         slice(s.grid, s.field, Plane({0.5, 0.5, 0.5}, {1, 2, 3}), s.indicator);
-     }},
     {"boundary surface", [](const auto& s) { boundary_surface(s.grid, s.field); }},
     {"normals", [](const auto& s) { s.draw({.normals = true}); }},
     {"number of triangles", [](const auto& s) { s.draw({.max_triangles = 100}); }},
     {"reference coordinates", [](const auto& s) { s.draw({.reference = true}); }},
-    {"vertices at nodes", [](const auto& s) { s.draw({.at_nodes = true}); }},
     {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
     {"bounds of positions", [](const auto& s) { s.draw({.position_bounds = &s.indicator}); }},
     {"volume", [](const auto& s) { volume_between(s.grid, s.field, 0.25, 0.5, s.indicator); }},
