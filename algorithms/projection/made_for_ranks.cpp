@@ -72,26 +72,13 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid) {
     refuse_first(refused);
 }
 
-void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& spread) {
-    const std::array refused{
-        Refused{leaf_errors, "an indicator of errors of leaves"},
-        Refused{error != NodeError::offset, "an indicator of deviations"},
-        Refused{spread.factor != 1 || spread.slope != 0, "an indicator for blends or lenses"},
-    };
-    refuse_first(refused);
-}
-
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
                             const IsosurfaceOptions& options) {
     const auto* const own = dynamic_cast<const HierarchicalIndicator*>(&bounds);
     const bool of_leaves = dynamic_cast<const LeafBounds*>(&bounds) != nullptr;
-    const Threshold* const threshold = criterion.as_threshold();
-    const bool on_own = own != nullptr && threshold != nullptr && threshold->indicator() == own;
     const std::array refused{
         Refused{own == nullptr && !of_leaves, "a surface under other bounds than those of offsets"},
         Refused{criterion.insists(), "a surface under a criterion that is not saturated"},
-        Refused{!on_own && !criterion.never_holds(),
-                "a surface under another criterion than a threshold on offsets"},
         Refused{options.max_triangles != 0, "a number of triangles"},
         Refused{options.normals, "a surface with normals"},
         Refused{options.reference, "a surface with reference coordinates"},

@@ -37,12 +37,6 @@ void require_same_state(const Hierarchy<Real>& hierarchy);
 template <class Real>
 void require_drawn_on_ranks(const Hierarchy<Real>& grid);
 
-/// Refuses prerolls that are not made for ranks.
-/// \param leaf_errors whether leaves have errors
-///
-/// \throw InvalidInput
-void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& spread);
-
 /// Refuses surfaces that are not made for ranks.
 ///
 /// \throw InvalidInput
