@@ -199,7 +199,8 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     together(shared, asked, [&] {
         if (shared != nullptr) {
             require_same_state(*levels.hierarchy);
-            require_drawn_on_ranks(criterion, bounds, options);
+            require_drawn_on_ranks(criterion, bounds, options,
+                                   levels.hierarchy->offers(Feature::gradients));
         }
         require_sound(*levels.hierarchy, criterion, bounds);
         require_options<dimension>(options);

@@ -71,12 +71,9 @@ private:
     friend class LevelTasks<dimension, Real>;
 
     const SharedNodes* shared() const { return walk_->hierarchy().facts().shared; }
-    /// Whether vertices at nodes are merged with those of other ranks.
-    bool merges_across() const { return options_->at_nodes && shared() != nullptr; }
     void join(const LevelSet& leader);
     void walk(const Executor& executor);
     void finish_first_walk();
-    void finish();
     void extract(std::size_t level, const View& view, unsigned inside, unsigned boundary,
                  bool draws);
     void record(std::size_t level, unsigned inside, unsigned boundary);

@@ -73,14 +73,16 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid) {
 }
 
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
-                            const IsosurfaceOptions& options) {
+                            const IsosurfaceOptions& options, bool own_gradients) {
     const auto* const own = dynamic_cast<const HierarchicalIndicator*>(&bounds);
     const bool of_leaves = dynamic_cast<const LeafBounds*>(&bounds) != nullptr;
     const std::array refused{
         Refused{own == nullptr && !of_leaves, "a surface under other bounds than those of offsets"},
         Refused{criterion.insists(), "a surface under a criterion that is not saturated"},
         Refused{options.max_triangles != 0, "a number of triangles"},
-        Refused{options.normals, "a surface with normals"},
+        Refused{options.normals && options.at_nodes,
+                "a surface with normals and vertices at nodes"},
+        Refused{options.normals && own_gradients, "a field with gradients of its own"},
         Refused{options.reference, "a surface with reference coordinates"},
         Refused{options.cuts != Cuts::linear, "a surface with cuts on the finest pieces"},
         Refused{options.position_bounds != nullptr, "a bound of positions"},
@@ -96,6 +98,7 @@ std::string asked_for(std::span<const Level<Real>> levels, const Criterion& crit
     const Threshold* const threshold = criterion.as_threshold();
     asked += "threshold " + (threshold == nullptr ? "none" : all_digits(threshold->epsilon()));
     if (options.at_nodes) asked += ", with vertices at nodes";
+    if (options.normals) asked += ", with normals";
     return asked + (options.cap ? ", with caps" : "");
 }
 

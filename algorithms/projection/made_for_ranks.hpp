@@ -38,10 +38,11 @@ template <class Real>
 void require_drawn_on_ranks(const Hierarchy<Real>& grid);
 
 /// Refuses surfaces that are not made for ranks.
+/// \param own_gradients whether the field has gradients
 ///
 /// \throw InvalidInput
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
-                            const IsosurfaceOptions& options);
+                            const IsosurfaceOptions& options, bool own_gradients);
 
 /// What a surface is asked for with, as settle() compares it.
 template <class Real>

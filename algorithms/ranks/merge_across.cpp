@@ -27,7 +27,7 @@ public:
 
     void run() {
         together(&shared_, "merging at nodes", [&] { begin(); });
-        const std::vector<VertexCopy> copies = find_copies(ranks_, piece_, names_);
+        const std::vector<VertexCopy> copies = find_copies<3>(ranks_, piece_.simplices, names_);
         share_places(copies);
         const Clusters clusters(ranks_, piece_, at_nodes_, copies);
         Outbox parts(ranks_.size());

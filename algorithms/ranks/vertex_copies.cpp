@@ -12,9 +12,10 @@ namespace nestgrid::engine {
 namespace {
 
 /// By vertex: whether it is an end of an edge that one triangle alone has.
-std::vector<bool> at_open_edges(const Surface<3>& piece) {
-    std::vector<bool> open(piece.vertices.size(), false);
-    const std::vector<OrientedSide> sides = sorted_sides(piece.simplices);
+std::vector<bool> at_open_edges(std::span<const std::array<std::uint32_t, 3>> triangles,
+                                std::size_t vertices) {
+    std::vector<bool> open(vertices, false);
+    const std::vector<OrientedSide> sides = sorted_sides(triangles);
     for_each_edge(sides, [&](std::span<const OrientedSide> edge) {
         if (edge.size() == 1) open[edge[0].low] = open[edge[0].high] = true;
     });
@@ -22,9 +23,10 @@ std::vector<bool> at_open_edges(const Surface<3>& piece) {
 }
 
 /// By vertex: whether one segment alone has it.
-std::vector<bool> at_open_edges(const Surface<2>& piece) {
-    std::vector<std::uint8_t> segments(piece.vertices.size(), 0);
-    for (const auto& segment : piece.simplices) {
+std::vector<bool> at_open_edges(std::span<const std::array<std::uint32_t, 2>> all,
+                                std::size_t vertices) {
+    std::vector<std::uint8_t> segments(vertices, 0);
+    for (const auto& segment : all) {
         for (const std::uint32_t v : segment) segments[v] = segments[v] == 0 ? 1 : 2;
     }
     std::vector<bool> open;
@@ -54,10 +56,11 @@ void answer(const Holders& all, Outbox& box) {
 
 }  // namespace
 
-template <int dimension>
-std::vector<VertexCopy> find_copies(Ranks& ranks, const Surface<dimension>& piece,
+template <std::size_t corners>
+std::vector<VertexCopy> find_copies(Ranks& ranks,
+                                    std::span<const std::array<std::uint32_t, corners>> simplices,
                                     std::span<const KeyPair> names) {
-    const std::vector<bool> open = at_open_edges(piece);
+    const std::vector<bool> open = at_open_edges(simplices, names.size());
     Outbox question(ranks.size());
     for (std::uint32_t v = 0; v < names.size(); ++v) {
         if (!open[v]) continue;
@@ -85,7 +88,9 @@ std::vector<VertexCopy> find_copies(Ranks& ranks, const Surface<dimension>& piec
     return copies;
 }
 
-template std::vector<VertexCopy> find_copies(Ranks&, const Surface<2>&, std::span<const KeyPair>);
-template std::vector<VertexCopy> find_copies(Ranks&, const Surface<3>&, std::span<const KeyPair>);
+template std::vector<VertexCopy> find_copies(Ranks&, std::span<const std::array<std::uint32_t, 2>>,
+                                             std::span<const KeyPair>);
+template std::vector<VertexCopy> find_copies(Ranks&, std::span<const std::array<std::uint32_t, 3>>,
+                                             std::span<const KeyPair>);
 
 }  // namespace nestgrid::engine

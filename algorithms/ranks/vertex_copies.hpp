@@ -8,7 +8,6 @@
 // these to homes, that find out who has the same ones. Nobody needs to know who has which nodes.
 #pragma once
 
-#include <nestgrid/algorithms/surface.hpp>
 #include <nestgrid/detail/key_table.hpp>
 #include <ranks/wire.hpp>
 
@@ -28,10 +27,12 @@ inline KeyPair own_name(int rank, std::uint32_t number) {
 }
 
 /// Collective, two exchanges.
+/// \param simplices of the piece: triangles or segments
 /// \param names of the vertices, the same on all ranks
 /// \return in the order of vertices and, for each, of ranks
-template <int dimension>
-std::vector<VertexCopy> find_copies(Ranks& ranks, const Surface<dimension>& piece,
+template <std::size_t corners>
+std::vector<VertexCopy> find_copies(Ranks& ranks,
+                                    std::span<const std::array<std::uint32_t, corners>> simplices,
                                     std::span<const KeyPair> names);
 
 /// Calls write(bytes, vertex) for each copy of each vertex, and take(vertex, reader, rank) for what

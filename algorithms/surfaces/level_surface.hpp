@@ -12,6 +12,7 @@
 namespace nestgrid::engine {
 
 class SharedNodes;
+struct VertexCopy;
 
 /// How the vertices of a surface get their normals.
 struct VertexNormals {
@@ -140,10 +141,9 @@ public:
 
     /// Makes the normals, and merges the vertices at each node (merge_at_nodes.hpp), as far as each
     /// is wanted. Requires that everything is drawn; merging requires a surface of triangles.
-    void finish(bool merges_at_nodes);
-    /// Merges the vertices at each node with other ranks, after finish(false). Requires
-    /// keep_names(). Collective.
-    void merge_across(const SharedNodes& shared);
+    /// Collective where the grid is distributed, which requires keep_names().
+    /// \param shared the nodes that other ranks have, too, or null
+    void finish(bool merges_at_nodes, const SharedNodes* shared);
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
                of_vertices_.capacity() * sizeof(Normal) + simplices_.size() * sizeof(Simplex) +
@@ -170,8 +170,10 @@ private:
     Point gradient_at(const Where& where) const;
     std::vector<Point> normals_from_gradients() const;
     std::vector<Point> normals_of_vertices() const;
-    void settle(std::vector<Point>& normals) const;
-    void merge_at_nodes();
+    void settle(std::vector<Point>& normals, const SharedNodes* shared) const;
+    void share(std::vector<Point>& normals, std::span<const VertexCopy> copies,
+               const SharedNodes& shared) const;
+    void merge_at_nodes(const SharedNodes* shared);
 
     Builder builder_;
     VertexNumbers numbers_;

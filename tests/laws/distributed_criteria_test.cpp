@@ -8,6 +8,8 @@
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/region.hpp>
 
+#include <slices/leaf_bounds.hpp>
+
 #include "program_judge.hpp"
 #include "sample_grids.hpp"
 
@@ -44,6 +46,11 @@ struct DrawUnderCriteria {
         for (const double epsilon : {0.05, 0.2, 0.6}) {
             draw(Threshold(&deviations, epsilon), deviations);
         }
+        for (const double isovalue : {0.0, 0.25}) {
+            take(isosurface(grid, field, isovalue, Threshold(&deviations, 0.2), deviations,
+                            {.normals = true, .cap = isovalue > 0}, executor));
+        }
+        take(isosurface(grid, field, 0.0, Exact(), deviations, {.normals = true}, executor));
         const HierarchicalIndicator errors(
             grid, field, [&](const auto& leaf) { return error_of_leaf(leaf); }, executor);
         draw(Threshold(&errors, 0.7), errors);
@@ -96,5 +103,45 @@ TEST(DistributedCriteria, PiecesAreTheSurfaceOfOneRank) {
     on_family<UnbalancedQuadtree>("unbalanced quadtrees");
     on_family<BisectionTriangles>("bisected triangles");
 }
+
+/// Draws with normals, at full resolution, so that elements that are drawn conform.
+struct DrawNormals {
+    template <class Grid, class Field, class Take>
+    void operator()(const Grid& grid, const Field& field, const Executor& executor,
+                    const Take& take) const {
+        const engine::LeafBounds bounds(erase(grid, field));
+        for (const double isovalue : {0.0, 0.2}) {
+            take(isosurface(grid, field, isovalue, Exact(), bounds, {.normals = true}, executor));
+        }
+    }
+};
+
+/// A library that forgets what ranks tell for normals, from one exchange on.
+class NormalMutants : public testing::TestWithParam<int> {};
+
+TEST_P(NormalMutants, FailTheLaws) {
+    Tally tally;
+    std::mt19937 random(3);
+    for (auto& grid : BisectionTetrahedra::grids()) {
+        refine_at_random(grid, random, 3, 4, 3, 200);
+        const Whole whole(grid);
+        for (unsigned data = 0; data < 3; ++data) {
+            const ProgramJudge<3, double, DrawNormals> judge(whole, some_values(whole, data), {});
+            for (int ranks = 2; ranks <= 5; ++ranks) {
+                Cutting cut{ranks, Whole::Cut::in_runs, 24, true, 1};
+                cut.omission = {"normals", ForgetfulRanks::Step::draw, GetParam(), false};
+                judge.compare(cut, whole.partition(ranks, cut.how, random), tally);
+            }
+        }
+    }
+    std::printf(
+        "normals from exchange %d on forgotten: of %llu surfaces %llu differ, %llu runs end\n",
+        GetParam(), static_cast<unsigned long long>(tally.drawn),
+        static_cast<unsigned long long>(tally.other), static_cast<unsigned long long>(tally.ended));
+    EXPECT_EQ(tally.other + tally.ended > 0, GetParam() < 5);
+}
+
+// Five exchanges, and none behind them.
+INSTANTIATE_TEST_SUITE_P(EveryExchange, NormalMutants, testing::Range(0, 6));
 
 }  // namespace

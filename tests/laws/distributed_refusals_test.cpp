@@ -72,7 +72,7 @@ struct LeafValues {
 };
 
 const std::vector<Refused<3>> in_space{
-    {"normals", [](const auto& s) { s.draw({.normals = true}); }},
+    {"normals", [](const auto& s) { s.draw({.normals = true, .at_nodes = true}); }},
     {"number of triangles", [](const auto& s) { s.draw({.max_triangles = 100}); }},
     {"reference coordinates", [](const auto& s) { s.draw({.reference = true}); }},
     {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
@@ -121,7 +121,6 @@ const std::vector<Refused<2>> in_plane{
      }},
     {"height field", [](const auto& s) { height_field(s.grid, s.field, 1.0, s.indicator); }},
     {"shading", [](const auto& s) { shading(s.grid, s.field, s.indicator); }},
-    {"isolines with normals", [](const auto& s) { s.draw({.normals = true}); }},
 };
 
 /// \return what each of two ranks says
