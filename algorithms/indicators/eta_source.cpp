@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <indicators/spread.hpp>
 #include <indicators/star_sweep.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 #include <walk/hanging_nodes.hpp>
 #include <walk/unusable_values.hpp>
 #include <walk/walk.hpp>
@@ -21,8 +24,10 @@ void NodeEtas::refuse(double eta) {
     throw UnusableValue("the measure of a node is not a usable number: " + std::to_string(eta));
 }
 
-detail::NodeTable<std::uint16_t> NodeEtas::saturate(const Spread& spread) {
-    maxima_.saturate([&](std::uint16_t stop, float reach) { return hand_on(spread, stop, reach); });
+detail::NodeTable<std::uint16_t> NodeEtas::saturate(const Spread& spread,
+                                                    const SharedNodes* shared) {
+    maxima_.saturate([&](std::uint16_t stop, float reach) { return hand_on(spread, stop, reach); },
+                     shared);
     return maxima_.take_table();
 }
 
@@ -111,20 +116,37 @@ private:
 template <class Real>
 SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
                             const Spread& spread) {
-    require_spread(spread);
-    const HangingNodes hanging = find_hanging_nodes(hierarchy);
-    const Walk<Real> walk(
-        hierarchy, {.values = source.wants_values(), .keys = true, .positions = true}, &hanging);
+    const SharedNodes* const shared = hierarchy.facts().shared;
+    HangingNodes hanging;
+    std::optional<Walk<Real>> walk_here;
+    const auto asked = [&] {
+        return "an indicator of measures, factor " + all_digits(spread.factor) + ", slope " +
+               all_digits(spread.slope);
+    };
+    if (!source.is_made_for_ranks()) hierarchy.facts().require_one_process("this indicator");
+    together(shared, asked, [&] {
+        require_spread(spread);
+        if (shared != nullptr) require_same_state(hierarchy);
+        hanging = find_hanging_nodes(hierarchy);
+        const Needs needs{.values = source.wants_values(),
+                          .keys = true,
+                          .positions = true,
+                          .on_ranks = source.is_made_for_ranks()};
+        walk_here.emplace(hierarchy, needs, &hanging);
+    });
+    const Walk<Real>& walk = *walk_here;
     const std::size_t dense = hierarchy.facts().node_count;
     NodeEtas etas(dense);
     const bool in_rows = hierarchy.facts().knows_star_positions;
     const Kept for_splits = spread.slope > 0 ? Kept::nodes_and_reach : Kept::nodes;
     SourceVisitor<Real> visitor(walk, source, in_rows ? Kept::nothing : for_splits, etas);
-    with_places(hierarchy, [&] {
-        walk.run(visitor);
-        source.finish(etas);
+    together(shared, "an indicator of measures", [&] {
+        with_places(hierarchy, [&] {
+            walk.run(visitor);
+            source.finish(etas);
+        });
     });
-    if (!in_rows) return {etas.saturate(spread), spread, hierarchy.epoch()};
+    if (!in_rows) return {etas.saturate(spread, shared), spread, hierarchy.epoch()};
     auto table = etas.take();
     sweep_rows(hierarchy, spread, table.dense);
     return {std::move(table), spread, hierarchy.epoch()};

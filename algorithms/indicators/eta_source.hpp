@@ -37,8 +37,10 @@ public:
         }
     }
     NodeMaxima<std::uint16_t>& maxima() { return maxima_; }
-    /// Sweeps over all splits, and moves the numbers out.
-    detail::NodeTable<std::uint16_t> saturate(const Spread& spread);
+    /// Sweeps over all splits, and moves the numbers out. Collective where nodes are shared.
+    /// \param shared the nodes that other ranks have, too, or null
+    detail::NodeTable<std::uint16_t> saturate(const Spread& spread,
+                                              const SharedNodes* shared = nullptr);
     /// Moves the numbers out as they are.
     detail::NodeTable<std::uint16_t> take() { return maxima_.take_table(); }
 
@@ -59,6 +61,9 @@ double trace_of(double offset);
 /// Measures eta at the splits of a hierarchy. A source may keep numbers by node until finish().
 class EtaSource {
 public:
+    /// Whether eta of a node is the greatest that split() finds in any split that makes it, so that
+    /// ranks may find it together. Others are refused on distributed grids.
+    virtual bool is_made_for_ranks() const { return false; }
     /// Whether the source looks at values.
     virtual bool wants_values() const { return true; }
     /// \param nodes numbers of the corners and, behind them, of the new nodes
@@ -80,7 +85,7 @@ protected:
 };
 
 /// Shows a source all splits, hidden ones included, and sweeps. Nodes at which no element may stop
-/// have the indicator infinity.
+/// have the indicator infinity. Collective where the grid is distributed.
 template <class Real>
 SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
                             const Spread& spread);

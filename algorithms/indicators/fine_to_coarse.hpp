@@ -21,6 +21,7 @@
 #include <indicators/node_numbers.hpp>
 #include <indicators/splits_by_level.hpp>
 #include <nestgrid/algorithms/detail/node_table.hpp>
+#include <ranks/shared_nodes.hpp>
 
 namespace nestgrid::engine {
 
@@ -70,7 +71,7 @@ void sweep(const SplitsByLevel& splits, bool once, const SweepSplit& sweep_split
 }
 
 /// One number per node of a hierarchy, and all splits, over which saturate() takes maxima.
-/// \tparam Number is ordered by <
+/// \tparam Number is ordered by <; where nodes are shared, no greater than 2^16 - 1, nor negative
 template <class Number>
 class NodeMaxima {
 public:
@@ -95,24 +96,17 @@ public:
         splits_.add(static_cast<std::size_t>(level), rule, nodes, reach);
     }
 
-    void saturate() {
-        saturate([](const Number& number, float) { return number; });
+    /// Collective where nodes are shared.
+    /// \param shared the nodes that other ranks have, too, or null
+    void saturate(const SharedNodes* shared = nullptr) {
+        saturate([](const Number& number, float) { return number; }, shared);
     }
     /// \param hand hand(number, reach), monotone, is what a new node with that number hands to its
     ///        parents
     template <class Hand>
-    void saturate(const Hand& hand) {
-        const auto of_node = [&](std::size_t node) { return values_[node]; };
-        const auto raise = [&](std::size_t node, const Number& to) {
-            const bool raises = values_[node] < to;
-            if (raises) values_[node] = to;
-            return raises;
-        };
-        sweep(splits_, false, [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
-            const auto hand_here = [&](const Number& number) { return hand(number, reach); };
-            Number greatest = least_;
-            return raise_parents(rule, of, of_node, hand_here, raise, greatest);
-        });
+    void saturate(const Hand& hand, const SharedNodes* shared = nullptr) {
+        sweep_all(hand);
+        while (shared != nullptr && raise_across(*shared)) sweep_all(hand);
     }
 
     const SplitsByLevel& splits() const { return splits_; }
@@ -136,6 +130,40 @@ public:
     }
 
 private:
+    template <class Hand>
+    void sweep_all(const Hand& hand) {
+        const auto of_node = [&](std::size_t node) { return values_[node]; };
+        const auto raise = [&](std::size_t node, const Number& to) {
+            const bool raises = values_[node] < to;
+            if (raises) values_[node] = to;
+            return raises;
+        };
+        sweep(splits_, false, [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
+            const auto hand_here = [&](const Number& number) { return hand(number, reach); };
+            Number greatest = least_;
+            return raise_parents(rule, of, of_node, hand_here, raise, greatest);
+        });
+    }
+
+    /// Raises shared nodes to the greatest numbers that any rank has for them.
+    /// \return whether some rank was told more than it knew
+    bool raise_across(const SharedNodes& shared) {
+        const auto at = [&](NodeKey key) -> Number& {
+            std::size_t node = 0;
+            find(std::span(&key, 1), std::span(&node, 1));
+            return values_[node];
+        };
+        using Told = std::array<std::uint16_t, 1>;
+        return shared.raise<1>(
+            [&](NodeKey key) { return Told{static_cast<std::uint16_t>(at(key))}; },
+            [&](NodeKey key, const Told& told) {
+                Number& number = at(key);
+                const bool raises = number < told[0];
+                if (raises) number = static_cast<Number>(told[0]);
+                return raises;
+            });
+    }
+
     NodeNumbers numbers_;
     std::vector<Number> values_;
     SplitsByLevel splits_;

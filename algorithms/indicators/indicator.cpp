@@ -122,12 +122,16 @@ template <class Real>
 void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const LeafErrors& leaf_errors,
                                     const Executor& executor) {
     const engine::SharedNodes* const shared = hierarchy.facts().shared;
-    engine::together(shared, "a preroll of offsets", [&] {
+    const auto asked = [&] {
+        const char* const of = leaf_errors                      ? "errors of leaves"
+                               : error_ == NodeError::deviation ? "deviations"
+                                                                : "offsets";
+        return std::string("a preroll of ") + of + ", factor " +
+               engine::all_digits(spread_.factor) + ", slope " + engine::all_digits(spread_.slope);
+    };
+    engine::together(shared, asked, [&] {
         engine::require_spread(spread_);
-        if (shared != nullptr) {
-            engine::require_same_state(hierarchy);
-            engine::require_preroll_on_ranks(static_cast<bool>(leaf_errors), error_, spread_);
-        }
+        if (shared != nullptr) engine::require_same_state(hierarchy);
     });
     epoch_ = hierarchy.epoch();
     roundoff_ = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include <indicators/fine_to_coarse.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 #include <walk/for_each_element.hpp>
 
 namespace nestgrid {
@@ -71,13 +73,18 @@ void Region::sweep_stars(const Hierarchy<Real>& hierarchy, const Inside& inside)
 
 template <class Real>
 void Region::sweep_levels(const Hierarchy<Real>& hierarchy, const Inside& inside) {
-    const engine::Walk<Real> walk(hierarchy, {.values = false, .keys = true, .positions = true});
+    const engine::SharedNodes* const shared = hierarchy.facts().shared;
     Marks marks(hierarchy.facts().node_count, 0);
-    engine::for_each_element(
-        walk, false, [&](const engine::ElementView<Real>& view, const engine::Split& split) {
-            add_element(walk, view, split, inside, marks);
-        });
-    marks.saturate();
+    engine::together(shared, "a region", [&] {
+        if (shared != nullptr) engine::require_same_state(hierarchy);
+        const engine::Walk<Real> walk(
+            hierarchy, {.values = false, .keys = true, .positions = true, .on_ranks = true});
+        engine::for_each_element(
+            walk, false, [&](const engine::ElementView<Real>& view, const engine::Split& split) {
+                add_element(walk, view, split, inside, marks);
+            });
+    });
+    marks.saturate(shared);
     std::vector<std::uint8_t> saturated = marks.take();
     if (hierarchy.facts().node_count != 0) {
         dense_ = std::move(saturated);

@@ -37,20 +37,24 @@ void Sweeps::sweep_all() {
           });
 }
 
-/// Raises shared nodes to the greatest numbers that any rank has for them.
+/// Raises shared nodes to the greatest numbers that any rank has for them. The deviation of an
+/// element that several ranks have is the greatest at the nodes that any of them has in it.
 /// \return whether some rank was told more than it knew
 bool Sweeps::raise_across(const SharedNodes& shared) {
     const auto at = [&](NodeKey key) -> Node& { return nodes_[numbers({&key, 1}).front()]; };
+    const auto bound = [&](Node& node) -> std::uint16_t& {
+        return made_of_ == MadeOf::deviations ? node.entry.bound : node.finer;
+    };
     return shared.raise<2>(
         [&](NodeKey key) {
-            const Node& node = at(key);
-            return std::array<std::uint16_t, 2>{node.entry.stop, node.finer};
+            Node& node = at(key);
+            return std::array<std::uint16_t, 2>{node.entry.stop, bound(node)};
         },
         [&](NodeKey key, const std::array<std::uint16_t, 2>& told) {
             Node& node = at(key);
-            const bool raises = node.entry.stop < told[0] || node.finer < told[1];
+            const bool raises = node.entry.stop < told[0] || bound(node) < told[1];
             node.entry.stop = std::max(node.entry.stop, told[0]);
-            node.finer = std::max(node.finer, told[1]);
+            bound(node) = std::max(bound(node), told[1]);
             return raises;
         });
 }

@@ -163,6 +163,26 @@ void hand_over(const Targets<dimension>& targets, std::vector<Surface<dimension>
 
 }  // namespace
 
+namespace {
+
+/// Tells functions of position apart by their values at one point.
+template <class Real>
+std::string of_functions(const Levels<Real>& levels) {
+    if (levels.functions == nullptr || levels.hierarchy->coarse_count() == 0) return {};
+    Coarse coarse;
+    Family family;
+    levels.hierarchy->coarse(levels.hierarchy->open().get(), 0, coarse, family);
+    std::string text;
+    for (std::size_t i = 0; i < levels.functions->count(); ++i) {
+        text += "a slice by a function with the value " +
+                all_digits(levels.functions->template at<double>(i, coarse.corners[0])) + " at " +
+                text_of(coarse.corners[0]) + ", ";
+    }
+    return text;
+}
+
+}  // namespace
+
 template <int dimension, class Real>
 std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
                                                const Targets<dimension>& targets,
@@ -173,11 +193,14 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     const std::size_t count = levels.levels.size();
     const SharedNodes* const shared = levels.hierarchy->facts().shared;
     std::optional<Walk<Real>> walk_here;
-    const auto asked = [&] { return asked_for<Real>(levels.levels, criterion, options); };
+    const auto asked = [&] {
+        return of_functions(levels) + asked_for<Real>(levels.levels, criterion, options);
+    };
     together(shared, asked, [&] {
         if (shared != nullptr) {
             require_same_state(*levels.hierarchy);
-            require_drawn_on_ranks(criterion, bounds, options, levels.functions != nullptr);
+            require_drawn_on_ranks(criterion, bounds, options,
+                                   levels.hierarchy->offers(Feature::gradients));
         }
         require_sound(*levels.hierarchy, criterion, bounds);
         require_options<dimension>(options);

@@ -83,6 +83,7 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
     if (options_->normals && !bisects_) normals.gradients = &normals_.sums();
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         surfaces_[i].begin(builders[i], normals, options_->verify);
+        if (shared() != nullptr) surfaces_[i].keep_names(shared()->ranks().rank());
         transitions_[i].record.clear();
         transitions_[i].drawn_below = &transitions_[i].record;
     }
@@ -150,7 +151,7 @@ bool LevelSet<dimension, Real>::bisects_slices() const {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::run(const Executor& executor) {
-    const SharedNodes* const shared = walk_->hierarchy().facts().shared;
+    const SharedNodes* const shared = this->shared();
     const auto alone = [&](const auto& part) {
         together(shared, "isosurfaces",
                  [&] { with_places(walk_->hierarchy(), part, walk_->function_count()); });
@@ -168,8 +169,15 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
             finish_first_walk();
             walk(executor);
         }
-        finish();
+        for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+            fill_gaps(i);
+            surfaces_[i].builder().flush();
+        }
     });
+    if (options_->normals && shared != nullptr) normals_.add_across();
+    for (LevelSurface<dimension>& surface : surfaces_) {
+        surface.finish(options_->at_nodes && !surface.counts_only(), shared);
+    }
 }
 
 template <int dimension, class Real>
@@ -179,15 +187,6 @@ void LevelSet<dimension, Real>::finish_first_walk() {
     restart();
     tally_.begin_later();
     for (Transitions& t : transitions_) t.record.finish();
-}
-
-template <int dimension, class Real>
-void LevelSet<dimension, Real>::finish() {
-    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        fill_gaps(i);
-        surfaces_[i].builder().flush();
-        surfaces_[i].finish(options_->at_nodes && !surfaces_[i].counts_only());
-    }
 }
 
 template <int dimension, class Real>
@@ -412,7 +411,7 @@ NESTGRID_INLINE void LevelSet<dimension, Real>::load(const View& view, bool draw
     at_hand_.cuts.load(view, keys);
     deepest_ = std::max(deepest_, view.level);
     const bool shown = view.member->hidden != Hidden::wholly;
-    if (options_->normals && draws && shown) normals_.add(at_hand_.cuts);
+    if (options_->normals && draws && shown) normals_.add(at_hand_.cuts, walks_.adopts());
 }
 
 template <int dimension, class Real>

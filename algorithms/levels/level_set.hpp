@@ -71,10 +71,10 @@ public:
 private:
     friend class LevelTasks<dimension, Real>;
 
+    const SharedNodes* shared() const { return walk_->hierarchy().facts().shared; }
     void join(const LevelSet& leader);
     void walk(const Executor& executor);
     void finish_first_walk();
-    void finish();
     void extract(std::size_t level, const View& view, unsigned inside, unsigned boundary,
                  bool draws);
     void record(std::size_t level, unsigned inside, unsigned boundary);

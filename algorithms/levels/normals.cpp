@@ -49,6 +49,20 @@ Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, con
     return detail::interpolate(local, parent.data());
 }
 
+/// The way down to an element, coarse element first, behind the number of the walk.
+template <class Real>
+DrawingPlace place_of(const ElementView<Real>& view, bool later) {
+    DrawingPlace place;
+    for (const ElementView<Real>* at = &view; at->father != nullptr; at = at->father) {
+        place.push_back(static_cast<char>(at->child));
+    }
+    for (std::size_t coarse = view.coarse, i = 0; i < 8; ++i, coarse >>= 8U) {
+        place.push_back(static_cast<char>(coarse & 0xFFU));
+    }
+    place.push_back(later ? '\1' : '\0');
+    return {place.rbegin(), place.rend()};
+}
+
 }  // namespace
 
 template <class Real>
@@ -56,10 +70,11 @@ void Normals<Real>::begin(bool logs) {
     logs_ = logs;
     sums_.clear();
     log_.clear();
+    of_shared_.clear();
 }
 
 template <class Real>
-void Normals<Real>::add(const ElementCuts<Real>& element) {
+void Normals<Real>::add(const ElementCuts<Real>& element, bool later) {
     const View& view = element.view();
     const std::size_t corners = view.corner_count();
     const std::size_t components = element.walk().components();
@@ -72,6 +87,7 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
         corner_gradients(view.topology(), std::span(element.positions()).first(corners),
                          std::span(value).first(corners), std::span(drawn).first(corners));
     }
+    if (shared_ != nullptr) log_shared(element, std::span(drawn).first(corners), later);
     for (std::size_t i = 0; i < corners; ++i) {
         const Slot slot = sums_.slot(element.keys()[i]);
         if (!own_) {
@@ -84,6 +100,18 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
             }
             add(slot, {interpolated ? projected_gradient(element.walk(), view, i) : exact[i], 1});
         }
+    }
+}
+
+/// Logs the terms at nodes that other ranks have, too.
+template <class Real>
+void Normals<Real>::log_shared(const ElementCuts<Real>& element,
+                               std::span<const CornerGradient> drawn, bool later) {
+    DrawingPlace place;
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+        if (!shared_->is_shared(element.keys()[i])) continue;
+        if (place.empty()) place = place_of(element.view(), later);
+        of_shared_.add(element.keys()[i], place, drawn[i]);
     }
 }
 
@@ -101,6 +129,7 @@ void Normals<Real>::append(const Normals& other) {
     std::vector<Slot> slot;
     for (const NodeKey node : other.sums_.nodes()) slot.push_back(sums_.slot(node));
     for (const auto& [at, gradient] : other.log_) add(slot[at], gradient);
+    of_shared_.append(other.of_shared_);
 }
 
 template class Normals<float>;

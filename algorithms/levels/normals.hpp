@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <levels/element_cuts.hpp>
+#include <ranks/normals_across.hpp>
 #include <surfaces/node_gradients.hpp>
 
 namespace nestgrid::engine {
@@ -16,15 +17,21 @@ namespace nestgrid::engine {
 template <class Real>
 class Normals {
 public:
-    explicit Normals(const Walk<Real>& walk) : own_{walk.hierarchy().offers(Feature::gradients)} {}
+    explicit Normals(const Walk<Real>& walk)
+        : own_{walk.hierarchy().offers(Feature::gradients)},
+          shared_{walk.hierarchy().facts().shared} {}
 
     /// Begins anew, and keeps its memory.
     /// \param logs whether to log what add() adds, for append()
     void begin(bool logs);
     /// Adds the gradients at the corners of an element that is drawn.
-    void add(const ElementCuts<Real>& element);
+    /// \param later in the second of two walks
+    void add(const ElementCuts<Real>& element, bool later);
     /// Adds what `other` has logged, in its order.
     void append(const Normals& other);
+
+    /// Adds what other ranks have drawn around shared nodes. Collective.
+    void add_across() { of_shared_.sum_up(*shared_, sums_); }
 
     NodeGradients& sums() { return sums_; }
     std::size_t memory_bytes() const { return sums_.memory_bytes(); }
@@ -34,9 +41,13 @@ private:
     using View = ElementView<Real>;
 
     void add(Slot slot, const CornerGradient& gradient);
+    void log_shared(const ElementCuts<Real>& element, std::span<const CornerGradient> drawn,
+                    bool later);
 
     bool own_;  // the field has gradients
     bool logs_ = false;
+    const SharedNodes* shared_;  // null where there are no ranks
+    SharedGradients of_shared_;
     NodeGradients sums_;
     std::vector<std::pair<Slot, CornerGradient>> log_;
 };

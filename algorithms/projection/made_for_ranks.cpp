@@ -8,6 +8,7 @@
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/error.hpp>
 #include <ranks/agreement.hpp>
+#include <slices/leaf_bounds.hpp>
 
 namespace nestgrid::engine {
 
@@ -71,30 +72,18 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid) {
     refuse_first(refused);
 }
 
-void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& spread) {
-    const std::array refused{
-        Refused{leaf_errors, "an indicator of errors of leaves"},
-        Refused{error != NodeError::offset, "an indicator of deviations"},
-        Refused{spread.factor != 1 || spread.slope != 0, "an indicator for blends or lenses"},
-    };
-    refuse_first(refused);
-}
-
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
-                            const IsosurfaceOptions& options, bool of_functions) {
+                            const IsosurfaceOptions& options, bool own_gradients) {
     const auto* const own = dynamic_cast<const HierarchicalIndicator*>(&bounds);
-    const Threshold* const threshold = criterion.as_threshold();
-    const bool on_own = own != nullptr && threshold != nullptr && threshold->indicator() == own;
+    const bool of_leaves = dynamic_cast<const LeafBounds*>(&bounds) != nullptr;
     const std::array refused{
-        Refused{of_functions, "a slice"},
-        Refused{own == nullptr, "a surface under other bounds than those of offsets"},
+        Refused{own == nullptr && !of_leaves, "a surface under other bounds than those of offsets"},
         Refused{criterion.insists(), "a surface under a criterion that is not saturated"},
-        Refused{!on_own && !criterion.never_holds(),
-                "a surface under another criterion than a threshold on offsets"},
         Refused{options.max_triangles != 0, "a number of triangles"},
-        Refused{options.normals, "a surface with normals"},
+        Refused{options.normals && options.at_nodes,
+                "a surface with normals and vertices at nodes"},
+        Refused{options.normals && own_gradients, "a field with gradients of its own"},
         Refused{options.reference, "a surface with reference coordinates"},
-        Refused{options.at_nodes, "a surface with vertices at nodes"},
         Refused{options.cuts != Cuts::linear, "a surface with cuts on the finest pieces"},
         Refused{options.position_bounds != nullptr, "a bound of positions"},
     };
@@ -108,6 +97,8 @@ std::string asked_for(std::span<const Level<Real>> levels, const Criterion& crit
     for (const Level<Real>& level : levels) asked += all_digits(level.value) + ", ";
     const Threshold* const threshold = criterion.as_threshold();
     asked += "threshold " + (threshold == nullptr ? "none" : all_digits(threshold->epsilon()));
+    if (options.at_nodes) asked += ", with vertices at nodes";
+    if (options.normals) asked += ", with normals";
     return asked + (options.cap ? ", with caps" : "");
 }
 

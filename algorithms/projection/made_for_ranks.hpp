@@ -37,18 +37,12 @@ void require_same_state(const Hierarchy<Real>& hierarchy);
 template <class Real>
 void require_drawn_on_ranks(const Hierarchy<Real>& grid);
 
-/// Refuses prerolls that are not made for ranks.
-/// \param leaf_errors whether leaves have errors
-///
-/// \throw InvalidInput
-void require_preroll_on_ranks(bool leaf_errors, NodeError error, const Spread& spread);
-
 /// Refuses surfaces that are not made for ranks.
-/// \param of_functions whether levels are those of functions of position
+/// \param own_gradients whether the field has gradients
 ///
 /// \throw InvalidInput
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
-                            const IsosurfaceOptions& options, bool of_functions);
+                            const IsosurfaceOptions& options, bool own_gradients);
 
 /// What a surface is asked for with, as settle() compares it.
 template <class Real>

@@ -23,17 +23,19 @@ public:
     }
 
     /// Gives values where a field has none.
-    /// \param out component c of node n at out[n * components + c]
+    /// \param out the last components at each node are those of the field
+    /// \param stride the number of components at a node
     /// \return the nodes that are still without a value
     template <class Real>
-    NodeMask give(std::span<const NodeKey> nodes, NodeMask missing, Real* out) const {
+    NodeMask give(std::span<const NodeKey> nodes, NodeMask missing, Real* out,
+                  std::size_t stride) const {
         NodeMask left = missing;
         for (NodeMask todo = missing; todo != 0; todo &= todo - 1) {
             const auto n = static_cast<std::size_t>(std::countr_zero(todo));
             const std::size_t* const first = n < nodes.size() ? first_.find(nodes[n]) : nullptr;
             if (first == nullptr) continue;
             for (std::size_t c = 0; c < components_; ++c) {
-                out[n * components_ + c] = static_cast<Real>(values_[*first + c]);
+                out[(n + 1) * stride - components_ + c] = static_cast<Real>(values_[*first + c]);
             }
             left &= ~(NodeMask{1} << n);
         }

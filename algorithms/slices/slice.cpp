@@ -2,30 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/slices.hpp>
 
+#include <slices/leaf_bounds.hpp>
 #include <slices/slice_levels.hpp>
-#include <walk/hanging_nodes.hpp>
 
 namespace nestgrid {
-
-namespace {
-
-/// What a walk at full resolution needs to know of a grid: the nodes that hang.
-template <class Real>
-class LeafBounds final : public Bounds {
-public:
-    explicit LeafBounds(const Hierarchy<Real>& hierarchy)
-        : epoch_{hierarchy.epoch()}, hanging_{engine::find_hanging_nodes(hierarchy)} {}
-    double offset_bound(NodeKey) const override { return 0; }
-    double bound(const Rule&, std::span<const NodeKey>) const override { return 0; }
-    const HangingNodes* hanging() const override { return hanging_.empty() ? nullptr : &hanging_; }
-    bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
-
-private:
-    std::uint64_t epoch_;
-    HangingNodes hanging_;
-};
-
-}  // namespace
 
 template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
@@ -54,7 +34,7 @@ Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const IsosurfaceOptions& options, const Executor& executor) {
     hierarchy.facts().require_dimension(3);
     if (options.threshold == 0 && options.max_triangles == 0) {
-        const LeafBounds<Real> leaves(hierarchy);
+        const engine::LeafBounds leaves(hierarchy);
         return slice(hierarchy, function, Exact{}, leaves, options, executor);
     }
     const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);

@@ -17,14 +17,34 @@ bool is_collapsed(const NumberedTriangle& t, const NodeClasses& classes) {
            are_collinear(classes.position(a), classes.position(b), classes.position(c));
 }
 
+/// A triangle of a fan around a vertex.
+struct Use {
+    Vertex centre;
+    std::uint32_t triangle;
+};
+
+/// Puts the vertex around the fan that lies at the least place in the place of the centre.
+void move_centre(std::vector<NumberedTriangle>& triangles, std::span<const Use> fan,
+                 const NodeClasses& classes) {
+    for (const Use& use : fan) {
+        auto& v = triangles[use.triangle].v;
+        while (v[0] != use.centre) std::rotate(v.begin(), v.begin() + 1, v.end());
+    }
+    const auto place = [&](const Use& use) {
+        return classes.position(triangles[use.triangle].v[1]);
+    };
+    const Vertex apex = triangles[std::ranges::min_element(fan, {}, place)->triangle].v[1];
+    for (const Use& use : fan) {
+        NumberedTriangle& t = triangles[use.triangle];
+        t.v[0] = apex;
+        if (t.v[1] == apex || t.v[2] == apex) t.from = NumberedTriangle::removed;
+    }
+}
+
 }  // namespace
 
 std::vector<bool> remove_collapsed_fans(std::vector<NumberedTriangle>& triangles,
                                         const NodeClasses& classes) {
-    struct Use {
-        Vertex centre;
-        std::uint32_t triangle;
-    };
     std::vector<bool> on_line = classes.merged();
     std::vector<bool> stays(on_line.size(), false);
     std::vector<Use> uses;
@@ -41,14 +61,12 @@ std::vector<bool> remove_collapsed_fans(std::vector<NumberedTriangle>& triangles
     for (const Use& use : uses) on_line[use.centre] = true;
     std::erase_if(uses, [&](const Use& use) { return stays[use.centre]; });
     std::ranges::stable_sort(uses, {}, &Use::centre);
-    Vertex apex = 0;
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-        NumberedTriangle& t = triangles[uses[i].triangle];
-        while (t.v[0] != uses[i].centre) std::rotate(t.v.begin(), t.v.begin() + 1, t.v.end());
-        const bool first = i == 0 || uses[i - 1].centre != uses[i].centre;
-        if (first) apex = t.v[1];
-        t.v[0] = apex;
-        if (t.v[1] == apex || t.v[2] == apex) t.from = NumberedTriangle::removed;
+    for (auto rest = std::span(uses); !rest.empty();) {
+        const auto same = [&](const Use& use) { return use.centre == rest.front().centre; };
+        const auto end = std::ranges::find_if_not(rest, same);
+        const auto fan = rest.first(static_cast<std::size_t>(end - rest.begin()));
+        rest = rest.subspan(fan.size());
+        move_centre(triangles, fan, classes);
     }
     erase_removed(triangles);
     return on_line;

@@ -42,8 +42,19 @@ private:
         double longest;
         std::uint32_t triangle;
         NumberedTriangle as;  // to find out whether it has changed since
-        bool operator<(const Queued& other) const {
-            return longest != other.longest ? longest < other.longest : triangle > other.triangle;
+    };
+    /// Of two triangles, the one with the longer side comes first; of equal ones, that at the
+    /// lesser place, so that the order does not depend on the numbers of triangles.
+    struct ComesLater {
+        const CollinearTriangles* all;
+        bool operator()(const Queued& a, const Queued& b) const {
+            if (a.longest != b.longest) return a.longest < b.longest;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const Point& x = all->at_(a.as.v[i]);
+                const Point& y = all->at_(b.as.v[i]);
+                if (x != y) return y < x;
+            }
+            return a.triangle > b.triangle;
         }
     };
 
@@ -100,18 +111,31 @@ private:
         queue_if_collinear(t);
     }
 
+    static Vertex third(const std::array<Vertex, 3>& v, Vertex a, Vertex b) {
+        return v[0] != a && v[0] != b ? v[0] : v[1] != a && v[1] != b ? v[1] : v[2];
+    }
+    /// The triangle beyond a side, or `removed`. Of several, the one whose third vertex lies at the
+    /// least place.
+    std::uint32_t beyond(Vertex a, Vertex b) const {
+        const auto [first, last] = with_side_.equal_range(name(b, a));
+        if (first == last) return removed;
+        const auto far = [&](const auto& e) { return at_(third(triangles_[e.second].v, a, b)); };
+        return std::min_element(first, last,
+                                [&](const auto& x, const auto& y) { return far(x) < far(y); })
+            ->second;
+    }
+
     /// Flips the longest side of a collinear triangle, or removes the triangle where nothing lies
     /// beyond that side, or only the same triangle turned over.
     void flip(std::uint32_t t) {
         const auto [a, b, middle] = triangles_[t].v;
-        const auto beyond = with_side_.find(name(b, a));
+        const std::uint32_t other = beyond(a, b);
         forget(t);
         triangles_[t].v[0] = removed;
-        if (beyond == with_side_.end()) return;
-        const std::uint32_t other = beyond->second;
+        if (other == removed) return;
         forget(other);
         const auto [v, from] = triangles_[other];
-        const Vertex far = v[0] != a && v[0] != b ? v[0] : v[1] != a && v[1] != b ? v[1] : v[2];
+        const Vertex far = third(v, a, b);
         triangles_[other].v[0] = removed;
         if (far == middle) return;
         set(t, {{a, far, middle}, from});
@@ -121,7 +145,7 @@ private:
     std::vector<NumberedTriangle>& triangles_;
     const std::function<Point(Vertex)>& at_;
     const std::function<bool(Vertex)>& candidate_;
-    std::priority_queue<Queued> queue_;
+    std::priority_queue<Queued, std::vector<Queued>, ComesLater> queue_{ComesLater{this}};
     std::unordered_multimap<std::uint64_t, std::uint32_t> with_side_;  // by directed side
 };
 

@@ -6,6 +6,9 @@
 #include <numeric>
 #include <string>
 
+#include <ranks/agreement.hpp>
+#include <ranks/merge_across.hpp>
+#include <ranks/normals_across.hpp>
 #include <surfaces/merge_at_nodes.hpp>
 #include <surfaces/settle_normals.hpp>
 
@@ -35,6 +38,8 @@ void LevelSurface<dimension>::begin(Builder builder, const VertexNormals& normal
     simplices_.clear();
     at_nodes_.clear();
     is_at_node_.clear();
+    names_.clear();
+    keeps_names_ = false;
     keeps_simplices_ = makes_normals() && builder_.target() == nullptr;
     extracted_ = limited_ = 0;
     error_bound_ = 0;
@@ -52,11 +57,18 @@ auto LevelSurface<dimension>::add(const SurfaceCut& cut) -> Number {
         return number;
     }
     builder_.add_vertex(cut.x, cut.attributes);
+    if (keeps_names_) names_.emplace_back(cut.node[0], cut.node[1]);
     if (normals_.gradients != nullptr) {
         where_.push_back({normals_.gradients->slot(cut.node[0]),
                           normals_.gradients->slot(cut.node[1]), cut.fraction});
     }
     return number;
+}
+
+/// Gives vertices without names such of this rank.
+template <int dimension>
+void LevelSurface<dimension>::name_as_own(Number first, std::size_t count) {
+    for (Number v = first; v < first + count; ++v) names_.push_back(own_name(rank_, v));
 }
 
 template <int dimension>
@@ -151,41 +163,73 @@ std::vector<Point> LevelSurface<dimension>::normals_of_vertices() const {
     return normals;
 }
 
-template <>
-void LevelSurface<2>::settle(std::vector<Point>&) const {}
-template <>
-void LevelSurface<3>::settle(std::vector<Point>& normals) const {
-    if (const Surface<3>* const surface = builder_.target()) {
-        settle_normals(surface->simplices, surface->vertices, normals);
-        return;
+/// Takes the normals of ranks that know more of vertices that both have.
+template <int dimension>
+void LevelSurface<dimension>::share(std::vector<Point>& normals, std::span<const VertexCopy> copies,
+                                    const SharedNodes& shared) const {
+    const auto knows = [&](Number slot) { return slot != none && normals_.gradients->known(slot); };
+    std::vector<std::uint8_t> known;
+    known.reserve(where_.size());
+    for (const Where& where : where_) {
+        known.push_back(static_cast<std::uint8_t>(knows(where.low) + knows(where.high)));
     }
-    std::vector<Point> x(normals.size());
-    for (Number v = 0; v < x.size(); ++v) x[v] = position(v);
-    const std::vector<Simplex> simplices(simplices_.begin(), simplices_.end());
-    settle_normals(simplices, x, normals);
-}
-
-template <>
-void LevelSurface<2>::merge_at_nodes() {}
-template <>
-void LevelSurface<3>::merge_at_nodes() {
-    builder_.change([&](Surface<3>& surface) { engine::merge_at_nodes(surface, at_nodes_); });
+    share_normals(shared.ranks(), copies, known, normals);
 }
 
 template <int dimension>
-void LevelSurface<dimension>::finish(bool merges_at_nodes) {
+void LevelSurface<dimension>::settle(std::vector<Point>& normals, const SharedNodes* shared) const {
+    std::vector<Simplex> kept;
+    const Surface<dimension>* const surface = builder_.target();
+    if (surface == nullptr) kept.assign(simplices_.begin(), simplices_.end());
+    const std::span<const Simplex> simplices =
+        surface == nullptr ? std::span<const Simplex>(kept) : surface->simplices;
+    std::vector<VertexCopy> copies;
+    if (shared != nullptr) {
+        copies = find_copies(shared->ranks(), simplices, names_);
+        share(normals, copies, *shared);
+    }
+    if constexpr (dimension == 3) {
+        std::vector<Point> x;
+        if (surface == nullptr) {
+            for (Number v = 0; v < normals.size(); ++v) x.push_back(position(v));
+        }
+        const std::span<const Point> at =
+            surface == nullptr ? std::span<const Point>(x) : surface->vertices;
+        if (shared == nullptr) {
+            settle_normals(simplices, at, normals, extent_of(at));
+        } else {
+            settle_normals_across(shared->ranks(), copies, simplices, at, normals);
+        }
+    }
+}
+
+template <>
+void LevelSurface<2>::merge_at_nodes(const SharedNodes*) {}
+template <>
+void LevelSurface<3>::merge_at_nodes(const SharedNodes* shared) {
+    builder_.change([&](Surface<3>& surface) {
+        if (shared == nullptr) {
+            engine::merge_at_nodes(surface, at_nodes_);
+        } else {
+            merge_at_nodes_across(surface, at_nodes_, names_, *shared);
+        }
+    });
+}
+
+template <int dimension>
+void LevelSurface<dimension>::finish(bool merges_at_nodes, const SharedNodes* shared) {
     std::vector<Point> normals;
     if (makes_normals()) {
         normals = normals_.with_vertices ? normals_of_vertices() : normals_from_gradients();
     }
     if (merges_at_nodes) {
         builder_.set_normals(std::move(normals));
-        merge_at_nodes();
+        merge_at_nodes(shared);
         builder_.change([&](auto& surface) { normals = std::move(surface.normals); });
     }
     if (!makes_normals()) return;
-    settle(normals);
-    builder_.set_normals(std::move(normals));
+    settle(normals, shared);
+    together(shared, "normals", [&] { builder_.set_normals(std::move(normals)); });
 }
 
 template class LevelSurface<2>;

@@ -11,6 +11,9 @@
 
 namespace nestgrid::engine {
 
+class SharedNodes;
+struct VertexCopy;
+
 /// How the vertices of a surface get their normals.
 struct VertexNormals {
     NodeGradients* gradients = nullptr;  ///< at nodes, between which they are interpolated; or null
@@ -34,10 +37,18 @@ public:
         : builder_{std::move(builder)},
           numbers_{node_count > 0 && std::uint64_t{node_count} <= std::uint64_t{1} << 32U} {}
 
+    /// Keeps the names of vertices, which then stand for them on other ranks (find_copies()). To be
+    /// called after begin().
+    /// \param rank this one
+    void keep_names(int rank) {
+        keeps_names_ = true;
+        rank_ = rank;
+    }
     /// Begins an empty surface, and keeps its memory.
     void begin(Builder builder, const VertexNormals& normals, bool verify);
     /// Does not complete normals, because another LevelSurface does so for this part.
     void leave_normals() {
+        keeps_names_ = false;
         normals_.gradients = nullptr;
         keeps_simplices_ = false;
     }
@@ -86,6 +97,8 @@ public:
             where_.resize(where_.size() + x.size(), {none, none, 0.0});
         }
         builder_.add_vertices(x, attributes);
+        if (keeps_names_) [[unlikely]]
+            name_as_own(first, x.size());
         return first;
     }
     /// \throw GridError where a vertex lies elsewhere
@@ -115,10 +128,7 @@ public:
         if (is_at_node(vertex)) return;
         if (is_at_node_.size() <= vertex) is_at_node_.resize(vertex + std::size_t{1}, false);
         is_at_node_[vertex] = true;
-        at_nodes_.vertex.push_back(vertex);
-        at_nodes_.node.push_back(node);
-        at_nodes_.attributes.insert(at_nodes_.attributes.end(), attributes.begin(),
-                                    attributes.end());
+        at_nodes_.add(vertex, node, attributes);
     }
     const VerticesAtNodes& at_nodes() const { return at_nodes_; }
 
@@ -142,11 +152,13 @@ public:
 
     /// Makes the normals, and merges the vertices at each node (merge_at_nodes.hpp), as far as each
     /// is wanted. Requires that everything is drawn; merging requires a surface of triangles.
-    void finish(bool merges_at_nodes);
+    /// Collective where the grid is distributed, which requires keep_names().
+    /// \param shared the nodes that other ranks have, too, or null
+    void finish(bool merges_at_nodes, const SharedNodes* shared);
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
                of_vertices_.capacity() * sizeof(Normal) + simplices_.size() * sizeof(Simplex) +
-               at_nodes_.node.capacity() * sizeof(NodePlace);
+               at_nodes_.node.capacity() * sizeof(NodePlace) + names_.capacity() * sizeof(KeyPair);
     }
 
 private:
@@ -157,6 +169,7 @@ private:
     };
     using Normal = std::array<float, 3>;
 
+    void name_as_own(Number first, std::size_t count);
     /// A gradient as a normal of unit length, rounded to floats; 0 where the gradient is 0. All
     /// ways to draw round normals by this, so that they have the same bits.
     NESTGRID_INLINE static Normal short_normal(const Point& gradient) {
@@ -169,8 +182,10 @@ private:
     Point gradient_at(const Where& where) const;
     std::vector<Point> normals_from_gradients() const;
     std::vector<Point> normals_of_vertices() const;
-    void settle(std::vector<Point>& normals) const;
-    void merge_at_nodes();
+    void settle(std::vector<Point>& normals, const SharedNodes* shared) const;
+    void share(std::vector<Point>& normals, std::span<const VertexCopy> copies,
+               const SharedNodes& shared) const;
+    void merge_at_nodes(const SharedNodes* shared);
 
     Builder builder_;
     VertexNumbers numbers_;
@@ -180,6 +195,7 @@ private:
     std::vector<Normal> of_vertices_;  // by vertex, where they come with vertices
     VerticesAtNodes at_nodes_;
     std::vector<bool> is_at_node_;   // by vertex: whether it is among at_nodes_
+    std::vector<KeyPair> names_;     // by vertex, where they are kept
     std::deque<Simplex> simplices_;  // all of them, where a sink takes them and normals are wanted
     std::uint64_t extracted_ = 0;
     std::uint64_t limited_ = 0;
@@ -187,6 +203,8 @@ private:
     double off_level_ = 0;
     double leaf_error_ = 0;
     double position_bound_ = 0;
+    int rank_ = 0;
+    bool keeps_names_ = false;
     bool keeps_simplices_ = false;
     bool verifies_ = false;
     bool counts_only_ = false;

@@ -15,14 +15,13 @@ namespace {
 
 using Vertex = std::uint32_t;
 using Edge = std::array<Vertex, 2>;
-constexpr std::uint32_t no_number = ~std::uint32_t{0};
 
 class NodeMerge {
 public:
     NodeMerge(Surface<3>& surface, const VerticesAtNodes& at_nodes)
         : surface_{surface}, classes_{surface, at_nodes} {}
 
-    void run() {
+    std::vector<std::uint32_t> run() {
         do {
             rename();
             on_line_ = remove_collapsed_fans(triangles_, classes_);
@@ -33,14 +32,14 @@ public:
             if (cancel_pairs()) links_.find(triangles_, on_line_);
         } while (classes_.join_neighbours(triangles_) || classes_.take_offenders_apart(links_));
         find_boundary();
-        rewrite();
+        return rewrite();
     }
 
 private:
     void rename();
     bool cancel_pairs();
     void find_boundary();
-    void rewrite();
+    std::vector<std::uint32_t> rewrite();
 
     Surface<3>& surface_;
     NodeClasses classes_;
@@ -104,9 +103,9 @@ void NodeMerge::find_boundary() {
     });
 }
 
-/// Writes the result into the surface, vertices in their old order.
-void NodeMerge::rewrite() {
-    std::vector<Vertex> number(surface_.vertices.size(), no_number);
+/// Writes the result into the surface, vertices in their old order. \return their numbers
+std::vector<std::uint32_t> NodeMerge::rewrite() {
+    std::vector<Vertex> number(surface_.vertices.size(), dropped);
     for (const NumberedTriangle& t : triangles_) {
         for (const Vertex v : t.v) number[v] = 0;
     }
@@ -114,7 +113,7 @@ void NodeMerge::rewrite() {
         number.empty() ? 0 : surface_.attributes.size() / surface_.vertices.size();
     Vertex next = 0;
     for (Vertex v = 0; v < number.size(); ++v) {
-        if (number[v] == no_number) continue;
+        if (number[v] == dropped) continue;
         std::copy_n(classes_.attributes(v, stride), stride,
                     surface_.attributes.data() + next * stride);
         surface_.vertices[next] = classes_.position(v);
@@ -136,12 +135,14 @@ void NodeMerge::rewrite() {
         a = number[a];
         b = number[b];
     }
+    return number;
 }
 
 }  // namespace
 
-void merge_at_nodes(Surface<3>& surface, const VerticesAtNodes& at_nodes) {
-    if (!at_nodes.vertex.empty()) NodeMerge(surface, at_nodes).run();
+std::vector<std::uint32_t> merge_at_nodes(Surface<3>& surface, const VerticesAtNodes& at_nodes) {
+    if (at_nodes.vertex.empty()) return {};
+    return NodeMerge(surface, at_nodes).run();
 }
 
 }  // namespace nestgrid::engine

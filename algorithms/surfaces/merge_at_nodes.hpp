@@ -22,10 +22,16 @@
 
 namespace nestgrid::engine {
 
+constexpr std::uint32_t dropped = ~std::uint32_t{0};
+
 /// Merges the vertices at each node that are connected by edges between them. Drops vertices that
 /// no triangle is left to. An edge with a merged vertex is on the boundary afterwards where one
 /// triangle alone has it.
-/// Requires a manifold without references, closed inside the domain.
-void merge_at_nodes(Surface<3>& surface, const VerticesAtNodes& at_nodes);
+/// Requires a manifold without references, closed inside the domain. The result does not depend on
+/// the numbers of vertices and triangles.
+/// \return by vertex: its number afterwards, or `dropped`; nothing where no vertex is at a node,
+/// and
+///         all keep their numbers
+std::vector<std::uint32_t> merge_at_nodes(Surface<3>& surface, const VerticesAtNodes& at_nodes);
 
 }  // namespace nestgrid::engine

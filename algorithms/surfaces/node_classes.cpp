@@ -58,16 +58,21 @@ bool NodeClasses::join_neighbours(std::span<const NumberedTriangle> triangles) {
 /// without a direction of their own do not count.
 bool NodeClasses::is_folded(Vertex v, VertexLink link) const {
     std::vector<Point> directions;
-    Point sum{0, 0, 0};
     for (const OppositeSide& side : link) {
         const Point& a = position(side.edge[0]);
         const Point& b = position(side.edge[1]);
         if (are_collinear(position(v), a, b)) continue;
-        const Point n = cross(a - position(v), b - position(v));
-        sum = sum + n;
-        directions.push_back((1 / norm(n)) * n);
+        directions.push_back(cross(a - position(v), b - position(v)));
     }
-    if (directions.empty() || least_cosine(sum, directions) > 0) return false;
+    if (directions.empty()) return false;
+    // So that rounding does not depend on the order of the triangles.
+    std::ranges::sort(directions);
+    Point sum{0, 0, 0};
+    for (Point& n : directions) {
+        sum = sum + n;
+        n = (1 / norm(n)) * n;
+    }
+    if (least_cosine(sum, directions) > 0) return false;
     return widest_direction(directions).cosine <= 0;
 }
 

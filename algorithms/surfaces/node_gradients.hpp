@@ -89,6 +89,8 @@ public:
         sum.gradient = sum.gradient + g.weight * g.gradient;
         sum.weight += g.weight;
     }
+    /// Makes a node one without gradients.
+    void forget(Index slot) { sums_[slot] = {}; }
     bool known(Index slot) const { return sums_[slot].weight > 0; }
     Point mean(Index slot) const { return (1 / sums_[slot].weight) * sums_[slot].gradient; }
 

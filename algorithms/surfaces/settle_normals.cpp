@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include <nestgrid/algorithms/normals.hpp>
@@ -49,10 +50,12 @@ Point first_agreeing(const Point& from, const Point& to, std::span<const Point> 
 class SettledNormals {
 public:
     SettledNormals(std::span<const CornerNumbers> triangles, std::span<const Point> x,
-                   std::span<Point> normals)
-        : triangles_{triangles}, x_{x}, normals_{normals}, place_(normals.size(), accepted) {
-        for (const Point& at : x) extent_ = std::max(extent_, norm(at));
-    }
+                   std::span<Point> normals, double extent)
+        : triangles_{triangles},
+          x_{x},
+          normals_{normals},
+          extent_{extent},
+          place_(normals.size(), accepted) {}
 
     std::size_t run() {
         refuse();
@@ -87,7 +90,7 @@ private:
     std::span<const CornerNumbers> triangles_;
     std::span<const Point> x_;
     std::span<Point> normals_;
-    double extent_ = 0;                   // the greatest distance from the origin
+    double extent_;                       // the greatest distance from the origin
     std::vector<std::uint32_t> place_;    // by vertex: its place among the refused
     std::vector<std::uint32_t> refused_;  // vertices whose normals are refused
     std::vector<std::uint32_t> first_;    // of each of these: its first triangle, and the end
@@ -136,9 +139,14 @@ void SettledNormals::list_fans() {
 bool SettledNormals::settle(std::size_t i) {
     fan_.clear();
     Point mean{0, 0, 0};
-    for (std::size_t t = first_[i]; t < first_[i + 1]; ++t) {
-        fan_.push_back(fans_[t].direction);
-        mean = mean + fans_[t].area * fans_[t].direction;
+    const auto fan = std::span(fans_).subspan(first_[i], first_[i + 1] - first_[i]);
+    // So that rounding does not depend on the order of the triangles.
+    std::ranges::sort(fan, [](const FanTriangle& a, const FanTriangle& b) {
+        return std::tie(a.direction, a.area) < std::tie(b.direction, b.area);
+    });
+    for (const FanTriangle& t : fan) {
+        fan_.push_back(t.direction);
+        mean = mean + t.area * t.direction;
     }
     const double length = norm(mean);
     if (length > 0) mean = (1 / length) * mean;
@@ -159,15 +167,22 @@ bool SettledNormals::settle(std::size_t i) {
 }  // namespace
 
 std::size_t settle_normals(std::span<const CornerNumbers> triangles, std::span<const Point> x,
-                           std::span<Point> normals) {
-    return SettledNormals(triangles, x, normals).run();
+                           std::span<Point> normals, double extent) {
+    return SettledNormals(triangles, x, normals, extent).run();
+}
+
+double extent_of(std::span<const Point> x) {
+    double extent = 0;
+    for (const Point& at : x) extent = std::max(extent, norm(at));
+    return extent;
 }
 
 }  // namespace engine
 
 std::size_t settle_normals(Surface<3>& surface) {
     surface.normals.resize(surface.vertices.size(), Point{0, 0, 0});
-    return engine::settle_normals(surface.simplices, surface.vertices, surface.normals);
+    return engine::settle_normals(surface.simplices, surface.vertices, surface.normals,
+                                  engine::extent_of(surface.vertices));
 }
 
 }  // namespace nestgrid

@@ -14,8 +14,12 @@ namespace nestgrid::engine {
 
 /// \param x positions of the vertices
 /// \param normals of the vertices, of unit length, or 0 where none is known
+/// \param extent the extent of all vertices
 /// \return the number of vertices with a fan folded over itself
 std::size_t settle_normals(std::span<const std::array<std::uint32_t, 3>> triangles,
-                           std::span<const Point> x, std::span<Point> normals);
+                           std::span<const Point> x, std::span<Point> normals, double extent);
+
+/// The greatest distance from the origin.
+double extent_of(std::span<const Point> x);
 
 }  // namespace nestgrid::engine

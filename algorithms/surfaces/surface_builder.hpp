@@ -44,6 +44,11 @@ struct VerticesAtNodes {
     std::vector<NodePlace> node;     ///< of each
     std::vector<double> attributes;  ///< at each node, one after the other
 
+    void add(std::uint32_t v, const NodePlace& at, std::span<const double> of_node) {
+        vertex.push_back(v);
+        node.push_back(at);
+        attributes.insert(attributes.end(), of_node.begin(), of_node.end());
+    }
     void clear() {
         vertex.clear();
         node.clear();

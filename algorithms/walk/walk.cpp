@@ -164,8 +164,8 @@ void Walk<Real>::put_coarse_values(View& view) const {
     if (missing != 0 && hierarchy_->facts().far_values != nullptr) {
         std::array<NodeKey, max_corners> keys;
         this->corners(view, keys.data(), nullptr);
-        missing =
-            hierarchy_->facts().far_values->give(std::span(keys).first(corners), missing, value);
+        missing = hierarchy_->facts().far_values->give(std::span(keys).first(corners), missing,
+                                                       value, components_);
     }
     const NodeMask unseen = unseen_corners(view);
     if ((missing & ~unseen) != 0) throw_missing(missing & ~unseen, view.coarse);
@@ -199,7 +199,7 @@ template <class Real>
 void Walk<Real>::put_far_values(const View& view, const Split& split, NodeMask missing,
                                 Real* out) const {
     const FarValues* const far = hierarchy_->facts().far_values;
-    if (far != nullptr) missing &= far->give(split.keys, missing, out);
+    if (far != nullptr) missing = far->give(split.keys, missing, out, components_);
     if (missing != 0) throw_missing(missing, view);
 }
 

@@ -17,6 +17,7 @@
 #include <nestgrid/adapters/p4est.hpp>
 #include <nestgrid/algorithms/distributed.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/slice.hpp>
 
 using namespace nestgrid;
 
@@ -176,18 +177,24 @@ template <class AnyGrid, class Field>
 std::vector<Drawn> draw(const AnyGrid& grid, const Field& field) {
     std::vector<Drawn> all;
     const HierarchicalIndicator indicator(grid, field);
+    const auto add = [&](const Isosurface<3>& result) {
+        Drawn& drawn = all.emplace_back();
+        for (const auto& t : result.surface.simplices) {
+            const auto& x = result.surface.vertices;
+            drawn.triangles.push_back({x[t[0]], x[t[1]], x[t[2]]});
+        }
+        drawn.bound = result.error_bound;
+        drawn.counts = {result.counts.calls, result.counts.visited, result.counts.extracted};
+    };
     for (const double epsilon : {0.0, 0.01, 0.3}) {
         for (const bool cap : {false, true}) {
-            const auto result =
-                isosurface(grid, field, 0.0, indicator, {.threshold = epsilon, .cap = cap});
-            Drawn& drawn = all.emplace_back();
-            for (const auto& t : result.surface.simplices) {
-                const auto& x = result.surface.vertices;
-                drawn.triangles.push_back({x[t[0]], x[t[1]], x[t[2]]});
-            }
-            drawn.bound = result.error_bound;
-            drawn.counts = {result.counts.calls, result.counts.visited, result.counts.extracted};
+            add(isosurface(grid, field, 0.0, indicator, {.threshold = epsilon, .cap = cap}));
         }
+    }
+    for (const Point& normal : {Point{1, 1, 0}, Point{1, 0, 0}, Point{0.3, 0.2, 1}}) {
+        const Plane plane({0.5, 0.5, 0.5}, normal);
+        add(slice(grid, field, plane));
+        add(slice(grid, field, plane, indicator, {.threshold = 0.3}));
     }
     return all;
 }
@@ -261,6 +268,34 @@ int compare(const char* name, p8est_connectivity_t* shape, bool balanced, bool n
     return wrong;
 }
 
+/// A plane through many nodes, along a diagonal of all leaves: where each rank merges vertices at
+/// nodes alone, one edge of it is open.
+int slice_along_diagonal(Ranks& ranks) {
+    p8est_connectivity_t* const cube = p8est_connectivity_new_unitcube();
+    const Plane diagonal({0.5, 0.5, 0.5}, {1, 1, 0});
+    std::size_t triangles = 0;
+    std::uint64_t together = 0;
+    {
+        const Forest forest(MPI_COMM_SELF, cube, 4, true);
+        const Grid grid(forest.get());
+        triangles = slice(grid, KeyedField(grid, false), diagonal).surface.simplices.size();
+    }
+    {
+        const Forest forest(MPI_COMM_WORLD, cube, 4, true);
+        const Grid mine(forest.get());
+        const Distributed grid(mine, ranks);
+        const DistributedField field(grid, KeyedField(mine, false));
+        together = slice(grid, field, diagonal).surface.simplices.size();
+    }
+    p8est_connectivity_destroy(cube);
+    ranks.reduce(std::span(&together, 1), Ranks::Reduction::sum);
+    if (ranks.rank() == 0) {
+        std::printf("%d ranks, diagonal slice of a cube: %zu triangles, on one rank %zu\n",
+                    ranks.size(), static_cast<std::size_t>(together), triangles);
+    }
+    return together == triangles ? 0 : 1;
+}
+
 /// A distributed forest without ranks is refused.
 int refuse_without_ranks(Ranks& ranks) {
     p8est_connectivity_t* const cube = p8est_connectivity_new_unitcube();
@@ -325,7 +360,7 @@ int end_together(Ranks& ranks) {
 
 int run() {
     MpiRanks ranks(MPI_COMM_WORLD);
-    int wrong = refuse_without_ranks(ranks) + end_together(ranks);
+    int wrong = refuse_without_ranks(ranks) + end_together(ranks) + slice_along_diagonal(ranks);
     struct Shape {
         const char* name;
         p8est_connectivity_t* connectivity;

@@ -3,7 +3,6 @@
 //
 // What is not made for distributed grids is refused, on all ranks, before they talk to each other;
 // docs/distributed.md lists the same.
-#include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
@@ -15,15 +14,10 @@
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/holes.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
-#include <nestgrid/algorithms/lens.hpp>
-#include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/node_levels.hpp>
-#include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/probe.hpp>
-#include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/shading.hpp>
-#include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
@@ -62,12 +56,6 @@ struct Refused {
     std::function<void(const Scene<dim>&)> ask;
 };
 
-/// A criterion of a user's.
-struct Nowhere final : Criterion {
-    NodeMask holds(const NewNodes&) const override { return 0; }
-    bool saturated() const override { return true; }
-};
-
 /// Bounds of a user's.
 struct Wide final : Bounds {
     double offset_bound(NodeKey) const override { return 9; }
@@ -84,51 +72,26 @@ struct LeafValues {
 };
 
 const std::vector<Refused<3>> in_space{
-    {"slice",
-     [](const auto& s) {
-         slice(s.grid, s.field, Plane({0.5, 0.5, 0.5}, {1, 2, 3}), s.indicator);
-     }},
-    {"boundary surface", [](const auto& s) { boundary_surface(s.grid, s.field); }},
-    {"normals", [](const auto& s) { s.draw({.normals = true}); }},
+    {"normals", [](const auto& s) { s.draw({.normals = true, .at_nodes = true}); }},
     {"number of triangles", [](const auto& s) { s.draw({.max_triangles = 100}); }},
     {"reference coordinates", [](const auto& s) { s.draw({.reference = true}); }},
-    {"vertices at nodes", [](const auto& s) { s.draw({.at_nodes = true}); }},
     {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
     {"bounds of positions", [](const auto& s) { s.draw({.position_bounds = &s.indicator}); }},
     {"volume", [](const auto& s) { volume_between(s.grid, s.field, 0.25, 0.5, s.indicator); }},
-    {"other criteria", [](const auto& s) { s.draw(Nowhere(), s.indicator); }},
     {"other bounds", [](const auto& s) { s.draw(Exact(), Wide()); }},
     {"unsaturated criteria",
      [](const auto& s) { s.draw(Unsaturated{Threshold(&s.indicator, 0.1)}, s.indicator); }},
-    {"lens",
-     [](const auto& s) {
-         s.draw(Lens(&s.indicator, [](const Point& x) { return norm(x); }), s.indicator);
-     }},
-    {"conjunction",
-     [](const auto& s) {
-         s.draw(Threshold(&s.indicator, 0.1) && Threshold(&s.indicator, 0.2), s.indicator);
-     }},
-    {"deviations",
-     [](const auto& s) { HierarchicalIndicator(s.grid, s.field, NodeError::deviation); }},
-    {"errors of leaves",
-     [](const auto& s) {
-         HierarchicalIndicator(s.grid, s.field, [](const CutGrid<3>::Element&) { return 1.0; });
-     }},
-    {"spread", [](const auto& s) { HierarchicalIndicator(s.grid, s.field, Spread{.slope = 1}); }},
     {"update",
      [](const auto& s) {
          s.indicator.update(s.grid, s.field, ChangedBox{{0, 0, 0}, {1, 1, 1}});
      }},
     {"visual indicator", [](const auto& s) { visual_indicator(s.grid, s.field); }},
     {"numerical indicator", [](const auto& s) { numerical_indicator(s.grid, s.field); }},
-    {"norm indicator", [](const auto& s) { norm_indicator(s.grid, s.field); }},
     {"wavelet indicator", [](const auto& s) { wavelet_indicator(s.grid, s.field); }},
     {"geometry indicator", [](const auto& s) { geometry_indicator(s.grid, s.field); }},
     {"cut deviations",
      [](const auto& s) { cut_deviations(s.grid, s.field, std::array{0.5}, s.indicator); }},
-    {"mesh size", [](const auto& s) { mesh_size(s.grid, Spread{}); }},
     {"node levels", [](const auto& s) { NodeLevels{s.grid}; }},
-    {"region", [](const auto& s) { Region(s.grid, [](const Point&) { return true; }); }},
     {"hanging nodes",
      [](const auto& s) { derive_hanging_nodes(erase(s.grid, ZeroField<Grid<3>>{})); }},
     {"holes",
@@ -158,7 +121,6 @@ const std::vector<Refused<2>> in_plane{
      }},
     {"height field", [](const auto& s) { height_field(s.grid, s.field, 1.0, s.indicator); }},
     {"shading", [](const auto& s) { shading(s.grid, s.field, s.indicator); }},
-    {"isolines with normals", [](const auto& s) { s.draw({.normals = true}); }},
 };
 
 /// \return what each of two ranks says
