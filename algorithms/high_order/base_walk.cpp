@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 
+#include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid::engine {
@@ -61,7 +62,8 @@ void BaseWalk::for_each(const Function& function) const {
                                " is a pyramid, whose functions are no polynomials; data of higher "
                                "degree are drawn on all other shapes");
         }
-        BaseElement e{family.members.data(), &parts_of(coarse.shape), {}, coarse_path(i), i};
+        BaseElement e{family.members.data(), &parts_of(coarse.shape), {},
+                      coarse.corners,        coarse_path(i),          i};
         for (std::size_t k = 0; k < e.shape->corners; ++k) e.key[k] = coarse_key(coarse.ids[k]);
         way.elements.assign(1, e);
         visit(way, 0);
@@ -83,10 +85,24 @@ void BaseWalk::visit(Way& way, std::size_t level) const {
     Family& family = way.families[level + 1];
     base_->enter(way.task.get(), e.member->element, rule, 0, nullptr, ~NodeMask{0}, family);
     const RedSplitKeys keys = split_keys_of(e.key, rule);
+    std::array<Point, max_split_nodes> x{};
+    const std::span made = std::span(x).subspan(e.shape->corners, rule.new_nodes.size());
+    std::copy_n(e.x.begin(), e.shape->corners, x.begin());
+    if (base_->offers(Feature::new_positions)) {
+        base_->new_positions(way.task.get(), e.member->element, rule.all(), made);
+    } else {
+        for (std::size_t n = 0; n < made.size(); ++n) {
+            made[n] = nestgrid::detail::interpolate(rule.new_nodes[n], x.data());
+        }
+    }
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
-        const Child& made = rule.children[c];
-        BaseElement child{&family.members[c], &parts_of(made.shape), {}, child_path(e.path, c), c};
-        for (std::size_t k = 0; k < child.shape->corners; ++k) child.key[k] = keys[made.corner[k]];
+        const Child& of = rule.children[c];
+        BaseElement child{
+            &family.members[c], &parts_of(of.shape), {}, {}, child_path(e.path, c), c};
+        for (std::size_t k = 0; k < child.shape->corners; ++k) {
+            child.key[k] = keys[of.corner[k]];
+            child.x[k] = x[of.corner[k]];
+        }
         way.elements.push_back(child);
         visit(way, level + 1);
         way.elements.pop_back();

@@ -27,8 +27,9 @@ struct BaseElement {
     const Member* member = nullptr;
     const ShapeParts* shape = nullptr;
     CornerKeys key{};
-    NodeKey path = 0;        ///< a hash of the way down
-    std::size_t number = 0;  ///< among its father's children, or of the coarse element
+    std::array<Point, max_corners> x{};  ///< of the corners
+    NodeKey path = 0;                    ///< a hash of the way down
+    std::size_t number = 0;              ///< among its father's children, or of the coarse element
 };
 
 /// The path of an element whose father has a path.

@@ -52,7 +52,6 @@ HierarchyFacts facts_of(const HighOrderData& data) {
     facts.components = base.components;
     facts.features = static_cast<unsigned>(Feature::constrained) |
                      static_cast<unsigned>(Feature::outside) |
-                     static_cast<unsigned>(Feature::gradients) |
                      (base.features & (static_cast<unsigned>(Feature::boundary_faces) |
                                        static_cast<unsigned>(Feature::new_positions)));
     facts.decodes = true;  // what is below an element depends on P_S U at its corners
@@ -131,11 +130,6 @@ void VirtualRefinement::corners(Task* task, const Handle& element, std::size_t c
     if (boundary != nullptr && offers(Feature::boundary_faces)) {
         *boundary = elements_->boundary(task, e);
     }
-}
-
-void VirtualRefinement::corner_gradients(Task* /*task*/, const Handle& element,
-                                         std::span<Point> out) const {
-    elements_->corner_gradients(engine::element_of(element), out);
 }
 
 void VirtualRefinement::new_positions(Task* task, const Handle& element, NodeMask which,

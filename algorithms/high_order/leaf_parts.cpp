@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include <high_order/virtual_elements.hpp>
-#include <surfaces/node_gradients.hpp>
 
 namespace nestgrid::engine {
 
@@ -140,45 +139,6 @@ const double* VirtualElements::nets_of_children(OpenTask& task, const VirtualEle
     halves.nets.resize(net_size(leaf.degree, leaf.factors()) << leaf.factors().count);
     halve_all(own, leaf.degree, leaf.factors().count, halves.nets.data());
     return halves.nets.data();
-}
-
-/// Along each edge at a corner the derivative is known: three of them make the gradient.
-void VirtualElements::corner_gradients(const VirtualElement& e, std::span<Point> out) const {
-    const ElementState& state = *e.state;
-    const Topology& t = topology(state.shape->shape);
-    if (e.leaf == VirtualElement::no_leaf) {
-        std::array<double, max_corners> u{};
-        std::array<CornerGradient, max_corners> drawn;
-        for (std::size_t k = 0; k < out.size(); ++k) u[k] = nodes_->values(state.key[k])[0];
-        engine::corner_gradients(t, std::span(state.x).first(out.size()),
-                                 std::span<const double>(u).first(out.size()),
-                                 std::span(drawn).first(out.size()));
-        for (std::size_t k = 0; k < out.size(); ++k) out[k] = drawn[k].gradient;
-        return;
-    }
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    const auto in_leaf = [&](std::size_t k) {
-        Point x;
-        for (std::size_t d = 0; d < 3; ++d) {
-            x[d] = std::ldexp(static_cast<double>(state.at[k][d]), -e.level);
-        }
-        return x;
-    };
-    for (std::size_t k = 0; k < out.size(); ++k) {
-        const Point at = in_leaf(k);
-        const Point inner = net_gradient(records_->net(leaf), leaf.degree, leaf.factors(), at);
-        std::array<Point, 3> along{};
-        std::array<double, 3> slope{};
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < t.edges && count < t.dimension; ++i) {
-            const auto [a, b] = t.edge[i];
-            if (a != k && b != k) continue;
-            const std::size_t end = a == k ? b : a;
-            along[count] = state.x[end] - state.x[k];
-            slope[count++] = dot(inner, in_leaf(end) - at);
-        }
-        out[k] = dual_vectors(along, t.dimension).gradient(slope);
-    }
 }
 
 /// Values of all components at a new node of an element below a leaf.

@@ -276,13 +276,14 @@ void VirtualElements::new_values(Task* task, const VirtualElement& e, NodeMask w
 auto VirtualElements::positions(Task* task, const VirtualElement& e, NodeMask which) const
     -> Positions {
     Positions x{};
+    if (!data_->base->offers(Feature::new_positions)) return x;
     const ElementState& state = *e.state;
     const bool divided = e.leaf == VirtualElement::no_leaf;
     const Rule& rule = divided ? *state.rule : *state.shape->rule;
     const std::size_t corners = state.shape->corners;
     std::copy_n(state.x.begin(), corners, x.begin());
     NodeMask given = 0;
-    if (divided && data_->base->offers(Feature::new_positions)) {
+    if (divided) {
         const RedSplitKeys keys = split_keys_of(state.key, rule);
         for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
             const RealNode* const node = nodes_->find(keys[corners + n]);

@@ -41,7 +41,7 @@ struct ElementState {
     const ShapeParts* shape = nullptr;
     CornerKeys key{};
     NodeKey path = 0;                     // of that element
-    std::array<Point, max_corners> x{};   // of the corners
+    std::array<Point, max_corners> x{};   // of the corners, where the hierarchy has positions
     std::array<Place, max_corners> at{};  // in the leaf, in units of 2^-level
 };
 
@@ -70,8 +70,6 @@ public:
                Family& family) const;
     void new_values(Task* task, const VirtualElement& e, NodeMask which, double* values) const;
     unsigned boundary(Task* task, const VirtualElement& e) const;
-    /// Of the polynomial of the leaf; above leaves, of what is drawn between the corners.
-    void corner_gradients(const VirtualElement& e, std::span<Point> out) const;
     /// Positions of new nodes: true ones of the hierarchy; means of the parents where these hang,
     /// and below leaves, whose edges are straight.
     void new_positions(Task* task, const VirtualElement& e, NodeMask which,

@@ -12,9 +12,9 @@
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
-struct ProbeResult;
 namespace engine {
 struct HighOrderData;
+class PolynomialPoints;
 class VirtualElements;
 }  // namespace engine
 
@@ -36,7 +36,7 @@ public:
 
 private:
     friend class VirtualRefinement;
-    friend ProbeResult probe(const HighOrder&, std::span<const Point>);
+    friend class engine::PolynomialPoints;
     template <class Base>
     explicit HighOrder(std::shared_ptr<const Base> base)
         : HighOrder(static_cast<const Hierarchy<typename Base::value_type>&>(*base)) {
@@ -60,7 +60,6 @@ public:
     VirtualRefinement(const HighOrder& data, const VirtualOptions& options);
     const Criterion& criterion() const;  ///< where coarser elements of the hierarchy may stop
     const Bounds& bounds() const;
-
     std::size_t coarse_count() const override;
     std::uint64_t epoch() const override;
     Elements make_elements() const override;
@@ -72,7 +71,7 @@ public:
     NodeMask new_values(Task*, const Handle&, const Rule&, NodeMask, double*) const override;
     void corners(Task*, const Handle&, std::size_t, NodeKey*, Point*, unsigned*) const override;
     void new_positions(Task*, const Handle&, NodeMask, std::span<Point>) const override;
-    void corner_gradients(Task*, const Handle&, std::span<Point>) const override;
+    void corner_gradients(Task*, const Handle&, std::span<Point>) const override {}
 
 private:
     std::shared_ptr<const engine::VirtualElements> elements_;
