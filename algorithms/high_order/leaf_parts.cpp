@@ -10,65 +10,86 @@
 
 namespace nestgrid::engine {
 
-bool VirtualElements::is_flat(const NetFacts& facts, int level) const {
-    return level >= depth_ || facts.beta <= flat_;
-}
-
 namespace {
 
-/// The coefficients of an element on an edge or a face of it.
-/// \return their number
-std::size_t take_part(const double* net, int degree, int dimension, const HalvedPart& part,
-                      double* to) {
-    const std::size_t n = static_cast<std::size_t>(degree) + 1;
-    std::array<std::size_t, 2> stride{};
-    std::size_t directions = 0;
-    std::size_t low = 0;
-    std::size_t step = 1;
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d, step *= n) {
-        if ((part.span >> d & 1U) != 0) {
-            stride[directions++] = step;
-        } else if (part.at[d] != 0) {
-            low += step * static_cast<std::size_t>(degree);
-        }
+std::size_t child_of(const VirtualElement& e) { return static_cast<std::size_t>(e.way & 15U); }
+
+/// The coefficients on a part of an element, its corners in the order of the net.
+NetFacts facts_on_part(const double* net, int degree, const ShapeParts& shape,
+                       const ShapePart& part, std::span<const std::uint8_t> number) {
+    std::array<std::uint8_t, 4> corner{};
+    for (std::size_t i = 0; i < part.count; ++i) corner[i] = number[part.corner[i]];
+    std::sort(corner.begin(), corner.begin() + part.count);
+    std::array<Place, 3> frame{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Place& twice = shape.node[corner[i]];
+        frame[i] = {twice[0] / 2, twice[1] / 2, twice[2] / 2};
     }
-    std::size_t count = 0;
-    for (std::size_t j = 0; j < (directions == 2 ? n : 1); ++j) {
-        for (std::size_t i = 0; i < n; ++i) to[count++] = net[low + i * stride[0] + j * stride[1]];
-    }
-    return directions;
+    NetRoom on_part;
+    take_part(net, degree, shape.factors, std::span(frame).first(part.count == 2 ? 2 : 3),
+              part.factors, on_part.data());
+    return net_facts(on_part.data(), degree, part.factors);
 }
 
 }  // namespace
 
+bool VirtualElements::is_flat(const NetFacts& facts, int level) const {
+    return level >= depth_ || facts.beta <= flat_;
+}
+
 /// Finds the flat parts of an element below a leaf, from the side of the leaf.
-auto VirtualElements::look(const VirtualElement& e, const double* net) const -> Looked {
+auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> Looked {
     const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    const unsigned all = (1U << static_cast<unsigned>(dimension_)) - 1;
-    Looked looked{0, net_facts(net, leaf.degree, dimension_)};
+    const ShapeParts& in_leaf = leaf.parts();
+    const ShapeParts& shape = *e.state->shape;
+    Looked looked{0, true, net_facts(own.net, own.degree, shape.factors)};
     const bool flat_inside = is_flat(looked.facts, e.level);
-    std::array<double, std::size_t{max_degree + 1} * (max_degree + 1)> on_part;
-    for (std::size_t n = 0; n < halved_.size(); ++n) {
-        const HalvedPart& part = halved_[n];
-        BoxPlace at = e.place;
-        for (std::size_t d = 0; d < 3; ++d) at[d] += part.at[d];
-        const PartCode around = part_around(part.span, at, e.level, dimension_);
-        bool flat = flat_inside;
-        if (around + 1 != part_count(dimension_)) {
-            const RecordPlace& place = leaf.part[around];
-            const NetFacts facts = records_->facts_on(place, part.span, at, e.level);
+    const bool flat_parts = flat_inside && shape.factors.all_segments();
+    std::array<FaceMask, max_corners> faces;
+    for (std::size_t k = 0; k < shape.corners; ++k) {
+        faces[k] = in_leaf.faces_at(e.state->at[k], e.level);
+    }
+    if (flat_inside) looked.flat = shape.rule->all();
+    // Faces come first: where one is flat, so are the edges that lie in the same part of the leaf,
+    // of whose coefficients theirs are some.
+    std::array<int, max_faces> part_around{};
+    std::array<CornerMask, max_faces> flat_face{};
+    std::size_t flat_faces = 0;
+    for (std::size_t p = shape.parts.size(); p-- > 0;) {
+        const ShapePart& part = shape.parts[p];
+        std::array<Place, 4> corners;
+        FaceMask around = ~FaceMask{0};
+        for (std::size_t i = 0; i < part.count; ++i) {
+            corners[i] = e.state->at[part.corner[i]];
+            around &= faces[part.corner[i]];
+        }
+        const int number = in_leaf.part_in(around);
+        bool flat = flat_parts && number < 0;
+        for (std::size_t f = 0; f < flat_faces && part.count == 2; ++f) {
+            flat |= part_around[f] == number && (part.corners & ~flat_face[f]) == 0;
+        }
+        if (!flat && number >= 0) {
+            const OnRecord on = records_->on_part(leaf, static_cast<std::size_t>(number),
+                                                  std::span(corners).first(part.count), e.level);
+            const NetFacts facts = records_->facts_on(on);
             looked.facts.least = std::min(looked.facts.least, facts.least);
             looked.facts.greatest = std::max(looked.facts.greatest, facts.greatest);
-            flat = is_flat(facts, e.level + place.shift);
-        } else if (!flat_inside && part.span != all) {
+            flat = is_flat(facts, e.level + on.shift);
+        } else if (!flat) {
             // Inside the leaf, on the surface of the element.
-            const std::size_t directions =
-                take_part(net, leaf.degree, dimension_, part, on_part.data());
-            flat = is_flat(net_facts(on_part.data(), leaf.degree, static_cast<int>(directions)),
-                           e.level);
+            flat = is_flat(facts_on_part(own.net, own.degree, shape, part, own.number), e.level);
         }
-        looked.flat |= NodeMask{flat} << n;
+        if (flat && part.count > 2) {
+            part_around[flat_faces] = number;
+            flat_face[flat_faces++] = part.corners;
+        }
+        looked.all_flat &= flat;
+        if (part.node == no_new_node) continue;
+        const NodeMask bit = NodeMask{1} << part.node;
+        looked.flat = flat ? looked.flat | bit : looked.flat & ~bit;
     }
+    // A node inside the element is private to it.
+    if (shape.rule->inside != no_new_node) looked.all_flat &= flat_inside;
     return looked;
 }
 
@@ -76,55 +97,81 @@ auto VirtualElements::look(const VirtualElement& e, const double* net) const -> 
 /// P_S U there best up to s, and r the greatest distance of U from it, r + s, because at a vertex,
 /// where P_S U is what is drawn, A is within s of that, and so on triangles. Or what the element's
 /// beta and the corners say.
-double VirtualElements::drawn_error(const double* net, const LeafPolynomial& leaf, double beta,
+/// \param u P_S U at the corners, in the order of the net
+double VirtualElements::drawn_error(const OwnNet& own, const Factors& factors, double beta,
                                     std::span<const double> u) const {
-    const AffineFit fit = fit_affine(u, dimension_);
-    const double distance = distance_from_affine(net, leaf.degree, dimension_, fit.affine);
+    const AffineFit fit = fit_affine(u, factors);
+    const double distance = distance_from_affine(own.net, own.degree, factors, fit);
     double off = 0;
-    for (std::size_t k = 0; k < corners_; ++k) {
-        off = std::max(off, std::abs(net[net_corner(leaf.degree, dimension_, k)] - u[k]));
+    for (std::size_t k = 0; k < u.size(); ++k) {
+        off = std::max(off, std::abs(own.net[net_corner(own.degree, factors, k)] - u[k]));
     }
     return std::min(distance + fit.residual, beta + off + 2 * fit.residual) + least_beyond_;
 }
 
-/// The coefficients of component 0 and of the others of an element below a leaf.
-const double* VirtualElements::net_of(OpenTask& task, const VirtualElement& e) const {
+/// The coefficients of component 0 of an element below a leaf. Boxes are halved on the way down;
+/// others are parts of the leaf, whose coefficients depend on their corners alone.
+auto VirtualElements::net_of(OpenTask& task, const VirtualElement& e) const -> OwnNet {
     const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    if (e.level == 0) return records_->net(leaf);
-    VirtualElement father = e;
-    --father.level;
-    std::size_t child = 0;
-    for (std::size_t d = 0; d < 3; ++d) {
-        child |= static_cast<std::size_t>(e.place[d] & 1U) << d;
-        father.place[d] = e.place[d] >> 1U;
+    if (leaf.factors().all_segments() || e.level == 0) {
+        return {box_net_of(task, e), leaf.degree, {0, 1, 2, 3, 4, 5, 6, 7}};
     }
-    return nets_of_children(task, father) + child * components_ * net_size(leaf.degree, dimension_);
+    const NetPart part =
+        part_at(leaf.factors(), std::span(e.state->at).first(e.state->shape->corners), e.level);
+    restrict_net(records_->net(leaf), leaf.degree, leaf.factors(), part, task.net.data());
+    return {task.net.data(), leaf.degree, part.number};
 }
 
-/// The same of its children, one behind the other.
+const double* VirtualElements::box_net_of(OpenTask& task, const VirtualElement& e) const {
+    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
+    if (e.level == 0) return records_->net(leaf);
+    return nets_of_children(task, e.father()) + child_of(e) * net_size(leaf.degree, leaf.factors());
+}
+
+/// The same of the children of a box, one behind the other.
 const double* VirtualElements::nets_of_children(OpenTask& task, const VirtualElement& e) const {
     OpenTask::Halves& halves = task.halves[static_cast<std::size_t>(e.level)];
-    if (halves.leaf == e.leaf && halves.place == e.place) return halves.nets.data();
-    const int degree = records_->leaves()[e.leaf].degree;
-    const std::size_t size = net_size(degree, dimension_);
-    const double* const own = net_of(task, e);
+    if (halves.leaf == e.leaf && halves.way == e.way) return halves.nets.data();
+    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
+    const double* const own = box_net_of(task, e);
     halves.leaf = e.leaf;
-    halves.place = e.place;
-    halves.nets.resize(corners_ * components_ * size);
-    if (components_ == 1) {
-        halve_all(own, degree, dimension_, halves.nets.data());
-        return halves.nets.data();
-    }
-    std::vector<double> parts(corners_ * size);
-    for (std::size_t c = 0; c < components_; ++c) {
-        halve_all(own + c * size, degree, dimension_, parts.data());
-        for (std::size_t k = 0; k < corners_; ++k) {
-            std::copy_n(
-                parts.begin() + static_cast<std::ptrdiff_t>(k * size), size,
-                halves.nets.begin() + static_cast<std::ptrdiff_t>((k * components_ + c) * size));
-        }
-    }
+    halves.way = e.way;
+    halves.nets.resize(net_size(leaf.degree, leaf.factors()) << leaf.factors().count);
+    halve_all(own, leaf.degree, leaf.factors().count, halves.nets.data());
     return halves.nets.data();
+}
+
+/// Values of all components at a new node of an element below a leaf.
+void VirtualElements::leaf_values(OpenTask& task, const VirtualElement& e, std::size_t node,
+                                  double* out) const {
+    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
+    const ShapeParts& shape = *e.state->shape;
+    const Stencil& stencil = shape.rule->new_nodes[node];
+    Place at{};
+    FaceMask faces = ~FaceMask{0};
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        const Place& parent = e.state->at[stencil.parent[i]];
+        for (std::size_t d = 0; d < 3; ++d) at[d] += parent[d];
+        faces &= leaf.parts().faces_at(parent, e.level);
+    }
+    for (std::int64_t& x : at) x = 2 * x / stencil.count;
+    if (const int part = leaf.parts().part_in(faces); part >= 0) {
+        records_->values_at(
+            records_->on_part(leaf, static_cast<std::size_t>(part), std::span(&at, 1), e.level + 1),
+            out);
+        return;
+    }
+    std::size_t first = 0;
+    if (leaf.factors().all_segments()) {
+        const ChildCorner in = shape.rule->new_corner[node];
+        out[first++] =
+            nets_of_children(task, e)[in.child * net_size(leaf.degree, leaf.factors()) +
+                                      net_corner(leaf.degree, leaf.factors(), in.corner)];
+    }
+    const NetPart point = part_at(leaf.factors(), std::span(&at, 1), e.level + 1);
+    for (std::size_t c = first; c < components_; ++c) {
+        restrict_net(records_->net(leaf, c), leaf.degree, leaf.factors(), point, out + c);
+    }
 }
 
 }  // namespace nestgrid::engine

@@ -11,9 +11,57 @@
 
 namespace nestgrid::engine {
 
+namespace {
+
+Place reference_corner(const ShapeParts& shape, std::size_t corner) {
+    const Place& twice = shape.node[corner];
+    return {twice[0] / 2, twice[1] / 2, twice[2] / 2};
+}
+
+/// The corners of an element that make the frame of a part: that with the least key, then its
+/// neighbours in the part, the one with the lesser key first.
+std::array<std::uint8_t, 3> frame_corners(const CornerKeys& keys, const ShapePart& part) {
+    std::array<std::uint8_t, 4> sorted = part.corner;
+    const auto begin = sorted.begin();
+    const auto end = begin + part.count;
+    const std::uint8_t first =
+        *std::min_element(begin, end, [&](auto a, auto b) { return keys[a] < keys[b]; });
+    // Opposite to a corner of a quadrilateral lies the one with the other rank.
+    const auto opposite = [&] {
+        return part.corner[static_cast<std::size_t>(
+            3 - (std::find(part.corner.begin(), part.corner.end(), first) - part.corner.begin()))];
+    };
+    const std::uint8_t left_out = part.count == 4 ? opposite() : first;
+    std::array<std::uint8_t, 3> frame{first, first, first};
+    std::size_t count = 1;
+    for (auto k = begin; k != end; ++k) {
+        if (*k != first && *k != left_out) frame[count++] = *k;
+    }
+    if (count == 3 && keys[frame[2]] < keys[frame[1]]) std::swap(frame[1], frame[2]);
+    return frame;
+}
+
+/// Places of the corners of a frame. \param count 2 or 3
+std::array<Place, 3> places_of(const ShapeParts& shape, const std::array<std::uint8_t, 3>& frame) {
+    std::array<Place, 3> places;
+    for (std::size_t i = 0; i < 3; ++i) places[i] = reference_corner(shape, frame[i]);
+    return places;
+}
+
+std::size_t frame_size(const ShapePart& part) { return part.count == 2 ? 2 : 3; }
+
+}  // namespace
+
+std::array<Place, 4> corners_of(const ShapeParts& shape, const ShapePart& part) {
+    std::array<Place, 4> corners{};
+    for (std::size_t i = 0; i < part.count; ++i) {
+        corners[i] = reference_corner(shape, part.corner[i]);
+    }
+    return corners;
+}
+
 LeafRecords::LeafRecords(const Hierarchy<double>& base, const BaseWalk& walk)
     : base_{&base},
-      dimension_{walk.dimension()},
       components_{static_cast<std::size_t>(base.facts().components)},
       least_{std::numeric_limits<double>::infinity()},
       greatest_{-std::numeric_limits<double>::infinity()} {
@@ -23,16 +71,13 @@ LeafRecords::LeafRecords(const Hierarchy<double>& base, const BaseWalk& walk)
     });
     std::size_t leaf = 0;
     walk.for_each([&](Task*, std::span<const BaseElement> way) {
-        if (way.back().member->rule != nullptr) return;
-        LeafPolynomial& to = leaves_[leaf++];
-        for (PartCode part = 0; part + 1 < part_count(dimension_); ++part) {
-            const unsigned span = span_of(part, dimension_);
-            if (span == 0) continue;
-            const unsigned low = low_corner_of(part, dimension_);
-            to.part[part] = place_of(way, span, {low & 1U, low >> 1U & 1U, low >> 2U});
-        }
+        if (way.back().member->rule == nullptr) add_parts(way, leaves_[leaf++]);
     });
-    find_jumps();
+    for (std::size_t l = 0; l < leaves_.size(); ++l) {
+        for (std::size_t part = 0; part < leaves_[l].parts().parts.size(); ++part) {
+            raise_jump(l, jump_on(leaves_[l], part));
+        }
+    }
 }
 
 /// Takes the polynomial of the last element on the way.
@@ -44,22 +89,16 @@ void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
         throw GridError(BaseWalk::name(way) + " has the degree " + std::to_string(degree) +
                         ", not 1 to " + std::to_string(max_degree));
     }
-    static const auto grids = [] {
-        std::array<std::array<std::vector<Point>, max_degree + 1>, 4> all;
-        for (int d = 2; d <= 3; ++d) {
-            for (int p = 1; p <= max_degree; ++p) {
-                all[static_cast<std::size_t>(d)][static_cast<std::size_t>(p)] = lobatto_grid(p, d);
-            }
-        }
-        return all;
-    }();
-    const std::vector<Point>& points =
-        grids[static_cast<std::size_t>(dimension_)][static_cast<std::size_t>(degree)];
+    const Factors& factors = e.shape->factors;
+    thread_local std::map<std::pair<Shape, int>, std::vector<Point>> all_points;
+    std::vector<Point>& points = all_points[{e.shape->shape, degree}];
+    if (points.empty()) points = net_points(degree, factors);
     values.resize(points.size() * components_);
     base_->evaluate(task, e.member->element, points, values.data());
     LeafPolynomial leaf;
     leaf.net = nets_.size();
     leaf.degree = static_cast<std::uint8_t>(degree);
+    leaf.shape = e.shape->shape;
     greatest_degree_ = std::max(greatest_degree_, degree);
     for (std::size_t c = 0; c < components_; ++c) {
         const std::size_t at = nets_.size();
@@ -70,16 +109,15 @@ void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
             }
             nets_.push_back(value);
         }
-        to_coefficients(nets_.data() + at, degree, dimension_);
+        to_coefficients(nets_.data() + at, degree, factors);
     }
     const auto [lo, hi] =
         std::minmax_element(net(leaf), net(leaf) + static_cast<std::ptrdiff_t>(points.size()));
     least_ = std::min(least_, *lo);
     greatest_ = std::max(greatest_, *hi);
     const auto number = static_cast<std::uint32_t>(leaves_.size());
-    for (PartCode part = 0; part + 1 < part_count(dimension_); ++part) {
-        if (span_of(part, dimension_) == 0) continue;
-        const auto [owner, is_new] = owner_.insert(part_key(e.key, part, dimension_), number);
+    for (const ShapePart& part : e.shape->parts) {
+        const auto [owner, is_new] = owner_.insert(part_key(e.key, part), number);
         if (!is_new && leaves_[*owner].degree > degree) *owner = number;
     }
     leaf_of_.insert(e.path, number);
@@ -87,49 +125,35 @@ void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
     corners_.push_back(e.key);
 }
 
-/// The frame of a part that an element has.
-auto LeafRecords::frame_of(const BoxKeys& corners, PartCode part) const -> Frame {
-    const unsigned span = span_of(part, dimension_);
-    const unsigned low = low_corner_of(part, dimension_);
-    unsigned first = low;
-    for (unsigned k = 0; k < 1U << dimension_; ++k) {
-        if ((k & ~span) == low && corners[k] < corners[first]) first = k;
-    }
-    Frame frame;
-    for (int d = 0; d < dimension_; ++d) {
-        if ((span >> d & 1U) == 0) continue;
-        frame.direction[static_cast<std::size_t>(frame.dimension++)] = static_cast<std::uint8_t>(d);
-    }
-    const auto neighbour = [&](std::size_t i) {
-        return corners[first ^ (1U << frame.direction[i])];
-    };
-    if (frame.dimension == 2 && neighbour(1) < neighbour(0)) {
-        std::swap(frame.direction[0], frame.direction[1]);
-    }
-    for (std::size_t i = 0; i < 2; ++i) frame.flipped[i] = (first >> frame.direction[i] & 1U) != 0;
-    return frame;
-}
-
-/// The coefficients of a leaf on one of its parts, in the frame of the part.
-std::vector<double> LeafRecords::trace(const LeafPolynomial& leaf, PartCode part,
-                                       const Frame& frame, std::size_t component) const {
-    const std::size_t n = leaf.degree + std::size_t{1};
-    const std::array<std::size_t, 3> stride{1, n, n * n};
-    const double* const from =
-        net(leaf, component) + net_corner(leaf.degree, dimension_, low_corner_of(part, dimension_));
-    std::vector<double> to;
-    for (std::size_t j = 0; j < (frame.dimension == 2 ? n : 1); ++j) {
-        for (std::size_t i = 0; i < n; ++i) {
-            const std::array<std::size_t, 2> at{i, j};
-            std::size_t offset = 0;
-            for (std::size_t d = 0; d < static_cast<std::size_t>(frame.dimension); ++d) {
-                const std::size_t k = frame.flipped[d] ? leaf.degree - at[d] : at[d];
-                offset += k * stride[frame.direction[d]];
+/// Finds the records of the last element on the way, a leaf.
+void LeafRecords::add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf) {
+    const ShapeParts& shape = leaf.parts();
+    leaf.first = static_cast<std::uint32_t>(of_part_.size());
+    for (const ShapePart& part : shape.parts) {
+        const std::array<Place, 4> corners = corners_of(shape, part);
+        // Of a quadrilateral: corner 0 and its neighbours.
+        const auto frame = std::span(corners).first(frame_size(part));
+        const OnRecord on = around(way, frame);
+        const PartFrame own = frame_between(frame);
+        RecordMap map;
+        map.shift = static_cast<std::uint8_t>(on.shift);
+        for (std::size_t i = 0; i < 2; ++i) {
+            std::int64_t low = on.at[0][i];
+            for (std::size_t d = 0; d < 3; ++d) {
+                std::int64_t step = 0;
+                for (std::size_t k = 1; k < frame.size(); ++k) {
+                    step += (on.at[k][i] - on.at[0][i]) * own.row[k - 1][d];
+                }
+                map.step[i][d] = static_cast<std::int8_t>(step);
+                low -= step * own.origin[d];
             }
-            to.push_back(from[offset]);
+            map.low[i] = static_cast<std::int32_t>(low);
         }
+        const auto [number, is_new] =
+            map_number_.emplace(map, static_cast<std::uint32_t>(maps_.size()));
+        if (is_new) maps_.push_back(map);
+        of_part_.push_back({on.record, number->second});
     }
-    return to;
 }
 
 /// The record of a part of a leaf with this key; it is made when it is first asked for.
@@ -138,110 +162,103 @@ std::int32_t LeafRecords::record_of(NodeKey key) {
         record_number_.insert(key, static_cast<std::int32_t>(records_.size()));
     if (!is_new) return *number;
     const std::uint32_t owner = *owner_.find(key);
-    const LeafPolynomial& leaf = leaves_[owner];
-    PartCode part = 0;
-    while (span_of(part, dimension_) == 0 || part_key(corners_[owner], part, dimension_) != key) {
-        ++part;
-    }
-    const Frame frame = frame_of(corners_[owner], part);
-    records_.push_back(
-        {record_nets_.size(), leaf.degree, static_cast<std::uint8_t>(frame.dimension)});
-    for (std::size_t c = 0; c < components_; ++c) {
-        const std::vector<double> coefficients = trace(leaf, part, frame, c);
-        record_nets_.insert(record_nets_.end(), coefficients.begin(), coefficients.end());
-    }
+    const std::vector<ShapePart>& parts = leaves_[owner].parts().parts;
+    std::uint8_t part = 0;
+    while (part_key(corners_[owner], parts[part]) != key) ++part;
+    records_.push_back({owner, frame_corners(corners_[owner], parts[part]), part});
     return *number;
 }
 
 /// Looks for the largest edge or face of a leaf around, from the coarse element down.
-RecordPlace LeafRecords::place_of(std::span<const BaseElement> way, unsigned span,
-                                  const BoxPlace& at) {
+OnRecord LeafRecords::around(std::span<const BaseElement> way, std::span<const Place> points) {
+    std::vector<std::array<Place, 4>> seen(way.size());  // from each element on the way
+    std::copy(points.begin(), points.end(), seen.back().begin());
     const int last = static_cast<int>(way.size()) - 1;
+    const auto index = [](int j) { return static_cast<std::size_t>(j); };
+    for (int j = last; j > 0; --j) {
+        const BaseElement& father = way[index(j - 1)];
+        const Child& child = father.member->rule->children[way[index(j)].number];
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            seen[index(j - 1)][i] = father.shape->in_father(child, seen[index(j)][i], last - j);
+        }
+    }
     for (int j = 0; j <= last; ++j) {
-        const int shift = last - j;
-        BoxPlace low{};  // of the element, in the one that is 2^shift as large
-        for (int i = j + 1; i <= last; ++i) {
-            const std::size_t child = way[static_cast<std::size_t>(i)].number;
-            for (std::size_t d = 0; d < 3; ++d) {
-                low[d] = 2 * low[d] + static_cast<std::uint32_t>(child >> d & 1U);
-            }
+        const BaseElement& e = way[index(j)];
+        FaceMask faces = ~FaceMask{0};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            faces &= e.shape->faces_at(seen[index(j)][i], last - j);
         }
-        BoxPlace begin = low;
-        for (std::size_t d = 0; d < 3; ++d) begin[d] += at[d];
-        const PartCode part = part_around(span, begin, shift, dimension_);
-        if (part + 1 == part_count(dimension_)) continue;
-        const BoxKeys& corners = way[static_cast<std::size_t>(j)].key;
-        const NodeKey key = part_key(corners, part, dimension_);
+        const int number = e.shape->part_in(faces);
+        if (number < 0) continue;
+        const ShapePart& part = e.shape->parts[static_cast<std::size_t>(number)];
+        const NodeKey key = part_key(e.key, part);
         if (owner_.find(key) == nullptr) continue;
-        const Frame frame = frame_of(corners, part);
-        RecordPlace place;
-        place.record = record_of(key);
-        place.shift = static_cast<std::uint8_t>(shift);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(frame.dimension); ++i) {
-            place.direction[i] = frame.direction[i];
-            place.flipped[i] = frame.flipped[i];
-            place.low[i] = low[frame.direction[i]];
+        const std::array<Place, 3> corners = places_of(*e.shape, frame_corners(e.key, part));
+        const PartFrame frame = frame_between(std::span(corners).first(frame_size(part)));
+        OnRecord on{record_of(key), last - j, last - j, {}, points.size()};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            on.at[i] = frame(seen[index(j)][i], last - j);
         }
-        return place;
+        return on;
     }
     return {};
 }
 
-/// Restricts a record to a part: along a direction of `span` to the part, along others to a point.
-/// \return the dimension of the restricted net
-int LeafRecords::restrict_record(const RecordPlace& of, unsigned span, const BoxPlace& at,
-                                 int level, std::size_t component, Restricted& net) const {
-    const Record& record = records_[static_cast<std::size_t>(of.record)];
-    const std::size_t size = net_size(record.degree, record.dimension);
-    std::copy_n(record_nets_.data() + record.net + component * size, size, net.begin());
-    const int total = level + of.shift;
-    int left = record.dimension;
-    for (std::size_t i = 0; i < record.dimension; ++i) {
-        const std::size_t d = of.direction[i];
-        const bool spans = (span >> d & 1U) != 0;
-        std::uint64_t x = (std::uint64_t{of.low[i]} << static_cast<unsigned>(level)) + at[d];
-        if (of.flipped[i])
-            x = (std::uint64_t{1} << static_cast<unsigned>(total)) - x - (spans ? 1 : 0);
-        // Of the directions that are left, the one at hand is the last but those to come.
-        const int direction = left - (record.dimension - static_cast<int>(i));
-        if (spans) {
-            for (int bit = total - 1; bit >= 0; --bit) {
-                keep_half(net.data(), record.degree, left, direction,
-                          static_cast<unsigned>(x >> static_cast<unsigned>(bit) & 1U));
-            }
-            continue;
+OnRecord LeafRecords::on_part(const LeafPolynomial& leaf, std::size_t part,
+                              std::span<const Place> points, int level) const {
+    const PartRecord& of = of_part_[leaf.first + part];
+    const RecordMap& map = maps_[of.map];
+    OnRecord on{of.record, map.shift, level + map.shift, {}, points.size()};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const Place& x = points[k];
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto& step = map.step[i];
+            on.at[k][i] = map.low[i] * (std::int64_t{1} << level) + step[0] * x[0] +
+                          step[1] * x[1] + step[2] * x[2];
         }
-        // Along the direction at hand each line becomes its value.
-        const double t = std::ldexp(static_cast<double>(x), -total);
-        const std::size_t n = record.degree + std::size_t{1};
-        const std::size_t rows = net_size(record.degree, left) / n;
-        const std::size_t stride = direction == 0 ? 1 : n;
-        Restricted result;
-        for (std::size_t r = 0; r < rows; ++r) {
-            std::array<double, max_degree + 1> line;
-            const double* const from = net.data() + (direction == 0 ? r * n : r);
-            for (std::size_t k = 0; k < n; ++k) line[k] = from[k * stride];
-            result[r] = line_value(line.data(), record.degree, t);
-        }
-        std::copy_n(result.begin(), rows, net.begin());
-        --left;
     }
-    return left;
+    return on;
 }
 
-NetFacts LeafRecords::facts_on(const RecordPlace& of, unsigned span, const BoxPlace& at,
-                               int level) const {
-    Restricted net;
-    const int dimension = restrict_record(of, span, at, level, 0, net);
-    return net_facts(net.data(), records_[static_cast<std::size_t>(of.record)].degree, dimension);
+const Factors& LeafRecords::factors_of(const Record& record) const {
+    return leaves_[record.leaf].parts().parts[record.part].factors;
 }
 
-void LeafRecords::values_at(const RecordPlace& of, const BoxPlace& at, int level,
-                            double* out) const {
-    Restricted net;
+/// Puts the coefficients of a record in its frame. \return its degree
+int LeafRecords::put_record(const OnRecord& at, std::size_t component, NetRoom& to) const {
+    const Record& record = records_[static_cast<std::size_t>(at.record)];
+    const LeafPolynomial& owner = leaves_[record.leaf];
+    const ShapeParts& shape = owner.parts();
+    const ShapePart& part = shape.parts[record.part];
+    const std::array<Place, 3> frame = places_of(shape, record.corner);
+    take_part(net(owner, component), owner.degree, shape.factors,
+              std::span(frame).first(frame_size(part)), part.factors, to.data());
+    return owner.degree;
+}
+
+NetFacts LeafRecords::facts_on(const OnRecord& part) const {
+    NetRoom whole;
+    NetRoom own;
+    const int degree = put_record(part, 0, whole);
+    const Factors& factors = factors_of(records_[static_cast<std::size_t>(part.record)]);
+    const NetPart there = part_at(factors, std::span(part.at).first(part.count), part.level);
+    restrict_net(whole.data(), degree, factors, there, own.data());
+    return net_facts(own.data(), degree, there.factors);
+}
+
+NetFacts LeafRecords::facts_on(const LeafPolynomial& leaf, std::size_t part) const {
+    const ShapeParts& shape = leaf.parts();
+    const std::array<Place, 4> corners = corners_of(shape, shape.parts[part]);
+    return facts_on(on_part(leaf, part, std::span(corners).first(shape.parts[part].count), 0));
+}
+
+void LeafRecords::values_at(const OnRecord& point, double* out) const {
+    NetRoom whole;
+    const Factors& factors = factors_of(records_[static_cast<std::size_t>(point.record)]);
+    const NetPart there = part_at(factors, std::span(point.at).first(1), point.level);
     for (std::size_t c = 0; c < components_; ++c) {
-        restrict_record(of, 0, at, level, c, net);
-        out[c] = net[0];
+        const int degree = put_record(point, c, whole);
+        restrict_net(whole.data(), degree, factors, there, out + c);
     }
 }
 
@@ -255,52 +272,49 @@ double LeafRecords::jump() const {
     return static_cast<double>(jump);
 }
 
-/// Compares the coefficients of each leaf on its parts with those of the records there, both raised
-/// to one degree: no two polynomials differ by more than their coefficients do.
-void LeafRecords::find_jumps() {
-    for (std::size_t l = 0; l < leaves_.size(); ++l) {
-        for (PartCode part = 0; part + 1 < part_count(dimension_); ++part) {
-            const RecordPlace& place = leaves_[l].part[part];
-            if (place.record < 0) continue;
-            const unsigned span = span_of(part, dimension_);
-            const unsigned low = low_corner_of(part, dimension_);
-            Restricted net;
-            const int dimension =
-                restrict_record(place, span, {low & 1U, low >> 1U & 1U, low >> 2U}, 0, 0, net);
-            // The leaf's own trace in the directions of the record.
-            Frame frame;
-            frame.dimension = dimension;
-            const Record& record = records_[static_cast<std::size_t>(place.record)];
-            for (std::size_t i = 0, to = 0; i < record.dimension; ++i) {
-                if ((span >> place.direction[i] & 1U) == 0) continue;
-                frame.direction[to] = place.direction[i];
-                frame.flipped[to++] = place.flipped[i];
-            }
-            const std::vector<double> own = trace(leaves_[l], part, frame, 0);
-            const int degree = std::max(record.degree, leaves_[l].degree);
-            const auto a = elevated(own.data(), leaves_[l].degree, dimension, degree);
-            const auto b = elevated(net.data(), record.degree, dimension, degree);
-            double jump = 0;
-            for (std::size_t i = 0; i < a.size(); ++i) jump = std::max(jump, std::abs(a[i] - b[i]));
-            raise_jump(l, jump);
-        }
-    }
+/// Compares the coefficients of a leaf on one of its parts with those of the record there, both
+/// raised to one degree: no two polynomials differ by more than their coefficients do.
+double LeafRecords::jump_on(const LeafPolynomial& leaf, std::size_t number) const {
+    const ShapeParts& shape = leaf.parts();
+    const ShapePart& part = shape.parts[number];
+    const std::array<Place, 4> corners = corners_of(shape, part);
+    const OnRecord on = on_part(leaf, number, std::span(corners).first(part.count), 0);
+    const Factors& factors = factors_of(records_[static_cast<std::size_t>(on.record)]);
+    const NetPart there = part_at(factors, std::span(on.at).first(part.count), on.level);
+    NetRoom whole;
+    NetRoom other;
+    const int degree = put_record(on, 0, whole);
+    restrict_net(whole.data(), degree, factors, there, other.data());
+    // The leaf's own coefficients in the same order.
+    std::array<Place, 4> sorted{};
+    for (std::size_t i = 0; i < part.count; ++i) sorted[there.number[i]] = corners[i];
+    NetRoom own;
+    take_part(net(leaf), leaf.degree, shape.factors, std::span(sorted).first(frame_size(part)),
+              there.factors, own.data());
+    const int greatest = std::max(degree, int{leaf.degree});
+    const auto a = elevated(own.data(), leaf.degree, there.factors, greatest);
+    const auto b = elevated(other.data(), degree, there.factors, greatest);
+    double jump = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) jump = std::max(jump, std::abs(a[i] - b[i]));
+    return jump;
 }
 
 std::size_t LeafRecords::memory_bytes() const {
     return leaves_.capacity() * sizeof(LeafPolynomial) + nets_.capacity() * sizeof(double) +
-           records_.capacity() * sizeof(Record) + record_nets_.capacity() * sizeof(double) +
-           leaf_of_.memory_bytes();
+           records_.capacity() * sizeof(Record) + maps_.capacity() * sizeof(RecordMap) +
+           of_part_.capacity() * sizeof(PartRecord) + leaf_of_.memory_bytes();
 }
 
 void LeafRecords::finish() {
     leaves_.shrink_to_fit();
     nets_.shrink_to_fit();
     records_.shrink_to_fit();
-    record_nets_.shrink_to_fit();
+    maps_.shrink_to_fit();
+    of_part_.shrink_to_fit();
     corners_ = {};
     owner_ = {};
     record_number_ = {};
+    map_number_ = {};
 }
 
 }  // namespace nestgrid::engine

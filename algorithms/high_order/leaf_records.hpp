@@ -10,30 +10,36 @@
 //     neighbour with the lesser key. Coefficients are moved into it, which is exact;
 //   - values and beta of a place in a record are functions of record and place alone.
 // Consequence: all leaves around an edge or face see the same bits on it, whatever their degrees,
-// sizes, frames and data.
+// sizes, shapes, frames and data.
 // Every node of the hierarchy that is inside an edge or face of a larger leaf is in a record, too.
 #pragma once
+
+#include <map>
 
 #include <high_order/base_walk.hpp>
 #include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid::engine {
 
-/// Where a part of a leaf, or of an element that is split, lies in a record.
-struct RecordPlace {
-    std::int32_t record = -1;     ///< -1: in none
-    std::uint8_t shift = 0;       ///< the element has 2^-shift of the record's size
-    std::uint8_t direction[2]{};  // NOLINT(modernize-avoid-c-arrays): of the element, by direction
-    bool flipped[2]{};            // NOLINT(modernize-avoid-c-arrays)
-    std::uint32_t low[2]{};  // NOLINT(modernize-avoid-c-arrays): of the element, in its own size
+/// Points in the frame of a record.
+struct OnRecord {
+    std::int32_t record = -1;  ///< -1: the points are in none
+    int shift = 0;             ///< the element that was asked for has 2^-shift of the record's size
+    int level = 0;             ///< the points are in units of 2^-level of the record's size
+    std::array<Place, 4> at{};
+    std::size_t count = 0;
 };
 
 /// A leaf and its polynomial.
 struct LeafPolynomial {
-    std::size_t net = 0;  ///< of component 0 in LeafRecords::nets()
-    std::uint8_t degree = 1;
+    std::uint64_t net = 0;    ///< of component 0
+    std::uint32_t first = 0;  ///< of its parts in the list of all
     float jump = 0;  ///< the greatest difference of component 0 from the records and nodes around
-    std::array<RecordPlace, 26> part{};  ///< by number; corners have none
+    Shape shape = Shape::point;
+    std::uint8_t degree = 1;
+
+    const ShapeParts& parts() const { return parts_of(shape); }
+    const Factors& factors() const { return parts().factors; }
 };
 
 class LeafRecords {
@@ -42,20 +48,23 @@ public:
     /// \throw GridError where a degree is not 1 to 8, or a value not finite, and names the leaf
     LeafRecords(const Hierarchy<double>& base, const BaseWalk& walk);
 
-    int dimension() const { return dimension_; }
     std::size_t components() const { return components_; }
     const std::vector<LeafPolynomial>& leaves() const { return leaves_; }
     std::size_t leaf_at(NodeKey path) const { return *leaf_of_.find(path); }
     const double* net(const LeafPolynomial& leaf, std::size_t component = 0) const {
-        return nets_.data() + leaf.net + component * net_size(leaf.degree, dimension_);
+        return nets_.data() + leaf.net + component * net_size(leaf.degree, leaf.factors());
     }
-    /// Beta and range of component 0 on a part that starts at a place of the element, in units of
-    /// 2^-level of its size, and is as long in the directions of `span`.
-    NetFacts facts_on(const RecordPlace& of, unsigned span, const BoxPlace& at, int level) const;
-    /// Values of all components at a place.
-    void values_at(const RecordPlace& of, const BoxPlace& at, int level, double* out) const;
-    /// Where a part of the last element on the way lies in a record.
-    RecordPlace place_of(std::span<const BaseElement> way, unsigned span, const BoxPlace& at);
+    /// Points on a part of a leaf. \param points at most 4, in units of 2^-level of the leaf
+    OnRecord on_part(const LeafPolynomial& leaf, std::size_t part, std::span<const Place> points,
+                     int level) const;
+    /// Points on an edge or face of the last element on the way.
+    OnRecord around(std::span<const BaseElement> way, std::span<const Place> points);
+    /// Beta and range of component 0 on the part with these corners.
+    NetFacts facts_on(const OnRecord& part) const;
+    /// Those on a part of a leaf.
+    NetFacts facts_on(const LeafPolynomial& leaf, std::size_t part) const;
+    /// Values of all components at one point.
+    void values_at(const OnRecord& point, double* out) const;
 
     double jump() const;
     void raise_jump(std::size_t leaf, double jump);
@@ -63,46 +72,54 @@ public:
     double least() const { return least_; }
     double greatest() const { return greatest_; }
     std::size_t memory_bytes() const;
-    /// Forgets what place_of() needs.
+    /// Forgets what around() needs.
     void finish();
 
 private:
     struct Record {
-        std::size_t net;
-        std::uint8_t degree;
-        std::uint8_t dimension;
+        std::uint32_t leaf;                  // the owner
+        std::array<std::uint8_t, 3> corner;  // of the owner: the frame
+        std::uint8_t part;
     };
-    struct Frame {  // of an edge or face: its directions and where they begin
-        int dimension = 0;
-        std::array<std::uint8_t, 2> direction{};
-        std::array<bool, 2> flipped{};
+    /// From places in a leaf to those in a record: low + step x, in units of the leaf.
+    struct RecordMap {
+        std::array<std::int32_t, 2> low{};
+        std::array<std::array<std::int8_t, 3>, 2> step{};
+        std::uint8_t shift = 0;
+
+        auto operator<=>(const RecordMap&) const = default;
     };
-    using Restricted = std::array<double, std::size_t{max_degree + 1} * (max_degree + 1)>;
+    struct PartRecord {
+        std::int32_t record;
+        std::uint32_t map;
+    };
 
     void add_leaf(Task* task, std::span<const BaseElement> way, std::vector<double>& values);
-    void find_jumps();
-    std::vector<double> trace(const LeafPolynomial& leaf, PartCode part, const Frame& frame,
-                              std::size_t component) const;
+    void add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf);
+    double jump_on(const LeafPolynomial& leaf, std::size_t part) const;
     std::int32_t record_of(NodeKey key);
-    int restrict_record(const RecordPlace& of, unsigned span, const BoxPlace& at, int level,
-                        std::size_t component, Restricted& net) const;
-    Frame frame_of(const BoxKeys& corners, PartCode part) const;
+    const Factors& factors_of(const Record& record) const;
+    int put_record(const OnRecord& at, std::size_t component, NetRoom& net) const;
 
     const Hierarchy<double>* base_;
-    int dimension_;
     std::size_t components_;
     std::vector<LeafPolynomial> leaves_;
     std::vector<double> nets_;
     std::vector<Record> records_;
-    std::vector<double> record_nets_;
+    std::vector<RecordMap> maps_;               // each once
+    std::vector<PartRecord> of_part_;           // of the parts of all leaves
     KeyTable<NodeKey, std::uint32_t> leaf_of_;  // by path
     int greatest_degree_ = 1;
     double least_;
     double greatest_;
     // Until finish():
-    std::vector<BoxKeys> corners_;                   // of the leaves
+    std::vector<CornerKeys> corners_;                // of the leaves
     KeyTable<NodeKey, std::uint32_t> owner_;         // of parts of leaves
     KeyTable<NodeKey, std::int32_t> record_number_;  // of those
+    std::map<RecordMap, std::uint32_t> map_number_;
 };
+
+/// The corners of a part of a reference element.
+std::array<Place, 4> corners_of(const ShapeParts& shape, const ShapePart& part);
 
 }  // namespace nestgrid::engine

@@ -24,12 +24,7 @@ void raise(float& number, double to) { number = std::max(number, float_above(to 
 class RealNodes::Preroll {
 public:
     Preroll(RealNodes& nodes, const BaseWalk& walk, LeafRecords& records)
-        : nodes_{&nodes},
-          records_{&records},
-          rule_{&walk.rule()},
-          dimension_{records.dimension()},
-          corners_{std::size_t{1} << static_cast<unsigned>(dimension_)},
-          halved_{halved_parts(walk.rule())} {
+        : nodes_{&nodes}, records_{&records}, components_{records.components()} {
         walk.for_each([this](Task*, std::span<const BaseElement> way) {
             if (way.back().member->rule == nullptr) add_leaf(way);
         });
@@ -49,71 +44,82 @@ public:
 
 private:
     RealNode& node(std::uint32_t number) { return nodes_->nodes_[number]; }
-    double value(std::uint32_t number) const {
-        return nodes_->values_[number * records_->components()];
-    }
+    double value(std::uint32_t number) const { return nodes_->values_[number * components_]; }
 
     /// Makes the corners of a leaf known. A corner inside a larger leaf's part has the value of the
     /// record, any other that of the first leaf that has it.
     void add_leaf(std::span<const BaseElement> way) {
-        const std::size_t number = records_->leaf_at(way.back().path);
-        const LeafPolynomial& from = records_->leaves()[number];
-        const std::size_t components = records_->components();
-        Leaf leaf{{}, number};
-        for (std::size_t k = 0; k < corners_; ++k) {
+        const BaseElement& e = way.back();
+        Leaf leaf{{}, records_->leaf_at(e.path)};
+        const LeafPolynomial& from = records_->leaves()[leaf.leaf];
+        for (std::size_t k = 0; k < e.shape->corners; ++k) {
             const auto fresh = static_cast<std::uint32_t>(nodes_->nodes_.size());
-            const auto [at, is_new] = nodes_->number_.insert(way.back().key[k], fresh);
+            const auto [at, is_new] = nodes_->number_.insert(e.key[k], fresh);
             leaf.corner[k] = *at;
             if (is_new) {
                 nodes_->nodes_.emplace_back();
-                for (std::size_t c = 0; c < components; ++c) {
+                for (std::size_t c = 0; c < components_; ++c) {
                     nodes_->values_.push_back(
-                        records_->net(from, c)[net_corner(from.degree, dimension_, k)]);
+                        records_->net(from, c)[net_corner(from.degree, from.factors(), k)]);
                 }
             }
             if (node(leaf.corner[k]).hangs) continue;
-            const BoxPlace place{static_cast<std::uint32_t>(k & 1U),
-                                 static_cast<std::uint32_t>(k >> 1U & 1U),
-                                 static_cast<std::uint32_t>(k >> 2U)};
-            const RecordPlace hangs_on = records_->place_of(way, 0, place);
+            const Place& twice = e.shape->node[k];
+            const Place place{twice[0] / 2, twice[1] / 2, twice[2] / 2};
+            const OnRecord hangs_on = records_->around(way, std::span(&place, 1));
             if (hangs_on.record < 0) continue;
             node(leaf.corner[k]).hangs = true;
-            records_->values_at(hangs_on, place, 0,
-                                nodes_->values_.data() + leaf.corner[k] * components);
+            records_->values_at(hangs_on, nodes_->values_.data() + leaf.corner[k] * components_);
         }
         leaves_.push_back(leaf);
     }
 
     void add_split(std::span<const BaseElement> way) {
-        const BoxSplitKeys keys = split_keys_of(way.back().key, *rule_);
-        Split split{{}, static_cast<int>(way.size())};
-        const std::size_t count = corners_ + rule_->new_nodes.size();
-        for (std::size_t n = 0; n < count; ++n) {
+        const BaseElement& e = way.back();
+        const RedSplitKeys keys = split_keys_of(e.key, *e.member->rule);
+        Split split{{}, e.member->rule, static_cast<int>(way.size())};
+        for (std::size_t n = 0; n < e.shape->node.size(); ++n) {
             split.node[n] = *nodes_->number_.find(keys[n]);  // a corner of a leaf
-            if (n < corners_) continue;
-            RealNode& made = node(split.node[n]);
-            const HalvedPart& part = halved_[n - corners_];
-            if (!made.hangs) continue;
-            const RecordPlace place = records_->place_of(way, part.span, part.at);
-            if (place.record < 0) continue;
-            made.shift = place.shift;
-            made.beta = records_->facts_on(place, part.span, part.at, 0).beta;
         }
+        for (const ShapePart& part : e.shape->parts) put_beta(way, part, split);
         splits_.push_back(split);
+    }
+
+    /// Tells the nodes of a split that halve a part, or the edges of one without a node, how far
+    /// that is from flat, where it lies in a record.
+    void put_beta(std::span<const BaseElement> way, const ShapePart& part, const Split& split) {
+        const ShapeParts& shape = *way.back().shape;
+        const std::size_t corners = shape.corners;
+        if (part.node != no_new_node && !node(split.node[corners + part.node]).hangs) return;
+        const std::array<Place, 4> places = corners_of(shape, part);
+        const OnRecord on = records_->around(way, std::span(places).first(part.count));
+        if (on.record < 0) return;
+        const double beta = records_->facts_on(on).beta;
+        if (part.node != no_new_node) {
+            RealNode& made = node(split.node[corners + part.node]);
+            made.shift = static_cast<std::uint8_t>(on.shift);
+            made.beta = beta;
+            return;
+        }
+        for (const ShapePart& edge : shape.parts) {
+            if ((edge.corners & ~part.corners) != 0 || edge.node == no_new_node) continue;
+            raise(node(split.node[corners + edge.node]).stop, flat_share * beta);
+        }
     }
 
     /// Fathers come first: what moves the parents is known.
     void put_offsets(const Split& split) {
-        std::array<double, 27> u;
-        for (std::size_t n = 0; n < corners_ + rule_->new_nodes.size(); ++n) {
+        const auto corners = static_cast<std::size_t>(split.rule->corner_count());
+        std::array<double, max_split_nodes> u;
+        for (std::size_t n = 0; n < corners + split.rule->new_nodes.size(); ++n) {
             u[n] = value(split.node[n]);
         }
-        for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
-            const Stencil& stencil = rule_->new_nodes[n];
-            const std::uint32_t number = split.node[corners_ + n];
+        for (std::size_t n = 0; n < split.rule->new_nodes.size(); ++n) {
+            const Stencil& stencil = split.rule->new_nodes[n];
+            const std::uint32_t number = split.node[corners + n];
             RealNode& made = node(number);
             double off =
-                std::abs(u[corners_ + n] - nestgrid::detail::interpolate(stencil, u.data(), 1));
+                std::abs(u[corners + n] - nestgrid::detail::interpolate(stencil, u.data(), 1));
             double moved = 0;
             for (std::size_t i = 0; i < stencil.count; ++i) {
                 moved = std::max(moved, deviation_[split.node[stencil.parent[i]]]);
@@ -129,14 +135,12 @@ private:
     /// Tells the corners of a leaf what they cannot know from nodes.
     void seed(const Leaf& leaf) {
         const LeafPolynomial& of = records_->leaves()[leaf.leaf];
-        NetFacts facts = net_facts(records_->net(of), of.degree, dimension_);
+        const std::size_t corners = of.parts().corners;
+        NetFacts facts = net_facts(records_->net(of), of.degree, of.factors());
         double error = facts.beta;
         double flatness = facts.beta;
-        for (PartCode part = 0; part + 1 < part_count(dimension_); ++part) {
-            if (of.part[part].record < 0) continue;
-            const unsigned low = low_corner_of(part, dimension_);
-            const NetFacts there = records_->facts_on(of.part[part], span_of(part, dimension_),
-                                                      {low & 1U, low >> 1U & 1U, low >> 2U}, 0);
+        for (std::size_t part = 0; part < of.parts().parts.size(); ++part) {
+            const NetFacts there = records_->facts_on(of, part);
             flatness = std::max(flatness, there.beta);
             facts.least = std::min(facts.least, there.least);
             facts.greatest = std::max(facts.greatest, there.greatest);
@@ -145,9 +149,9 @@ private:
         double hi = -lo;
         double jump = 0;
         double moved = 0;
-        for (std::size_t k = 0; k < corners_; ++k) {
+        for (std::size_t k = 0; k < corners; ++k) {
             const double u = value(leaf.corner[k]);
-            const double own = records_->net(of)[net_corner(of.degree, dimension_, k)];
+            const double own = records_->net(of)[net_corner(of.degree, of.factors(), k)];
             lo = std::min(lo, u);
             hi = std::max(hi, u);
             jump = std::max(jump, std::abs(own - u));
@@ -155,7 +159,7 @@ private:
         }
         records_->raise_jump(leaf.leaf, jump);
         error = std::max({error + jump, facts.greatest - hi, lo - facts.least}) + moved;
-        for (std::size_t k = 0; k < corners_; ++k) {
+        for (std::size_t k = 0; k < corners; ++k) {
             RealNode& corner = node(leaf.corner[k]);
             raise(corner.bound, error);
             raise(corner.stop, flat_share * flatness);
@@ -175,11 +179,16 @@ private:
         }
     }
 
+    static std::span<const std::uint32_t> made_by(const Split& split) {
+        return std::span(split.node)
+            .subspan(static_cast<std::size_t>(split.rule->corner_count()),
+                     split.rule->new_nodes.size());
+    }
+
     /// Once for each node, when all finer nodes are done.
     void add_own_part(const Split& split) {
         done_.resize(nodes_->nodes_.size(), false);
-        for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
-            const std::uint32_t number = split.node[corners_ + n];
+        for (const std::uint32_t number : made_by(split)) {
             if (done_[number]) continue;
             done_[number] = true;
             RealNode& made = node(number);
@@ -191,31 +200,35 @@ private:
     /// On an element that stops, U differs from the interpolant of its true corner values by at
     /// most `below`, and those from P_S U by the offsets of the corners that S holds at: by at most
     /// `bound` in all. The triangles leave P_S U by twice its affine residual, which is that of the
-    /// true values, moved by at most 5 / 2 bound. Together that is 6 bound + 2 residual.
+    /// true values, moved by at most 5 / 2 bound on boxes, 8 / 3 on prisms, and 0 on simplices.
+    /// Together that is 6 bound + 2 residual, or 19 / 3, or 1.
     void put_stop(const Split& split) {
-        std::array<double, max_box_corners> u;
-        for (std::size_t k = 0; k < corners_; ++k) u[k] = value(split.node[k]);
-        const double residual = fit_affine(std::span(u).first(corners_), dimension_).residual;
+        const auto corners = static_cast<std::size_t>(split.rule->corner_count());
+        std::array<double, max_corners> u;
+        for (std::size_t k = 0; k < corners; ++k) u[k] = value(split.node[k]);
+        const Factors factors = factors_of(split.rule->parent);
+        const double share = factors.count == 1 ? 1 : factors.all_segments() ? 6 : 19.0 / 3;
+        const double residual = fit_affine(std::span(u).first(corners), factors).residual;
         double below = 0;
-        for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
-            below = std::max(below, static_cast<double>(node(split.node[corners_ + n]).bound));
+        for (const std::uint32_t made : made_by(split)) {
+            below = std::max(below, static_cast<double>(node(made).bound));
         }
-        for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
-            RealNode& made = node(split.node[corners_ + n]);
-            raise(made.stop, 6 * below + 2 * residual);
+        for (const std::uint32_t made : made_by(split)) {
+            raise(node(made).stop, share * below + 2 * residual);
         }
     }
 
     void raise_corners(const Split& split) {
         float stop = 0;
         float bound = 0;
-        for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
-            const RealNode& made = node(split.node[corners_ + n]);
+        for (const std::uint32_t number : made_by(split)) {
+            const RealNode& made = node(number);
             stop = std::max(stop, made.stop);
             bound = std::max(bound, made.bound);
         }
-        for (std::size_t k = 0; k < corners_; ++k) {
-            RealNode& corner = node(split.node[k]);
+        for (const std::uint32_t number :
+             std::span(split.node).first(static_cast<std::size_t>(split.rule->corner_count()))) {
+            RealNode& corner = node(number);
             corner.stop = std::max(corner.stop, stop);
             corner.bound = std::max(corner.bound, bound);
         }
@@ -223,10 +236,7 @@ private:
 
     RealNodes* nodes_;
     LeafRecords* records_;
-    const Rule* rule_;
-    int dimension_;
-    std::size_t corners_;
-    std::vector<HalvedPart> halved_;
+    std::size_t components_;
     std::vector<Leaf> leaves_;
     std::vector<Split> splits_;      // coarse to fine
     std::vector<double> deviation_;  // how far P_S U may be from U at a node that hangs

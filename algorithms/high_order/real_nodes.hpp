@@ -13,7 +13,8 @@
 //          corner (deviation);
 //   stop   with the tolerance tau, S = (stop <= tau) holds only where every element that may stop
 //          differs from U by at most tau, and where all edges and faces of leaves around and below
-//          are flat at tau / 3. It is saturated: at a corner no less than at the new nodes.
+//          are flat at tau / 3. It is saturated: at a corner no less than at the new nodes. A
+//          triangle has no node of its own: those on its edges know its beta.
 // Consequence: where an element stops, every deeper node on its faces is interpolated, those of the
 // hierarchy by `stop`, virtual ones by beta.
 #pragma once
@@ -62,11 +63,12 @@ public:
 
 private:
     struct Split {
-        std::array<std::uint32_t, 27> node;  // corners first
+        std::array<std::uint32_t, max_split_nodes> node;  // corners first
+        const Rule* rule;
         int level;
     };
     struct Leaf {
-        std::array<std::uint32_t, max_box_corners> corner;
+        std::array<std::uint32_t, max_corners> corner;
         std::size_t leaf;
     };
     class Preroll;

@@ -24,15 +24,11 @@ VirtualElements::VirtualElements(std::shared_ptr<const HighOrderData> data,
     : data_{std::move(data)},
       records_{&data_->records},
       nodes_{&data_->nodes},
-      rule_{&data_->walk.rule()},
-      dimension_{data_->walk.dimension()},
-      corners_{std::size_t{1} << static_cast<unsigned>(dimension_)},
       components_{records_->components()},
       tolerance_{options.tolerance},
       flat_{options.tolerance / flat_share},
       depth_{options.depth},
-      criterion_{*nodes_, options.tolerance},
-      halved_{halved_parts(*rule_)} {
+      criterion_{*nodes_, options.tolerance} {
     const double size = std::max(std::abs(records_->least()), std::abs(records_->greatest()));
     least_beyond_ = 1e-14 * size;
     linear_ = records_->greatest_degree() == 1 && records_->jump() <= 1e-12 * size;
@@ -69,14 +65,16 @@ std::unique_ptr<Task> VirtualElements::open() const {
 auto VirtualElements::places(Family& family, std::size_t count) -> Places& {
     if (!family.elements) family.elements = std::make_shared<Places>();
     auto& places = *static_cast<Places*>(family.elements.get());
-    if (places.states.size() < count) places.states.resize(max_box_corners);
+    if (places.states.size() < count) places.states.resize(count);
     return places;
 }
 
 /// Sets the number of the leaf, where the hierarchy does not divide the element.
-void VirtualElements::set_leaf(VirtualElement& e, const Member& member) const {
-    if (member.rule == nullptr) {
-        e.leaf = static_cast<std::uint32_t>(records_->leaf_at(e.state->path));
+void VirtualElements::set_leaf(VirtualElement& e, const Member& member, ElementState& state) const {
+    if (member.rule != nullptr) return;
+    e.leaf = static_cast<std::uint32_t>(records_->leaf_at(state.path));
+    for (std::size_t k = 0; k < state.shape->corners; ++k) {
+        for (std::size_t d = 0; d < 3; ++d) state.at[k][d] = state.shape->node[k][d] / 2;
     }
 }
 
@@ -88,15 +86,16 @@ void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& 
     data_->base->coarse(own.base.get(), i, coarse, places.base);
     const Member& base = places.base.members[0];
     ElementState& state = places.states[0];
-    state = {base.element, base.rule, {}, coarse_path(i), coarse.corners};
-    std::vector<double> u(corners_);
-    for (std::size_t k = 0; k < corners_; ++k) {
+    state = {base.element,   base.rule, &parts_of(coarse.shape), {}, coarse_path(i),
+             coarse.corners, {}};
+    std::array<double, max_corners> u{};
+    for (std::size_t k = 0; k < state.shape->corners; ++k) {
         state.key[k] = coarse_key(coarse.ids[k]);
         u[k] = nodes_->values(state.key[k])[0];
     }
     VirtualElement e;
     e.state = &state;
-    set_leaf(e, base);
+    set_leaf(e, base, state);
     describe(own, e, u.data(), family, 0);
 }
 
@@ -118,42 +117,46 @@ NodeMask VirtualElements::coarse_values(Task* task, std::size_t i, std::span<dou
 void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which, double* values,
                             NodeMask wanted, Family& family) const {
     auto& own = static_cast<OpenTask&>(*task);
-    std::array<double, 27> u{};  // component 0 at the corners and new nodes
-    const std::size_t nodes = rule_->new_nodes.size();
+    const ElementState& father = *e.state;
+    const bool divided = e.leaf == VirtualElement::no_leaf;
+    const Rule& rule = divided ? *father.rule : *father.shape->rule;
+    const std::size_t corners = father.shape->corners;
+    const std::size_t nodes = rule.new_nodes.size();
+    std::array<double, max_split_nodes> u{};  // component 0 at the corners and new nodes
     if (values != nullptr) {
         new_values(task, e, which, values);
-        for (std::size_t n = 0; n < corners_ + nodes; ++n) u[n] = values[n * components_];
+        for (std::size_t n = 0; n < corners + nodes; ++n) u[n] = values[n * components_];
     } else {
         which = 0;
-        const double* const net = e.leaf == VirtualElement::no_leaf ? nullptr : net_of(own, e);
-        for (std::size_t k = 0; k < corners_; ++k) {
-            u[k] = net == nullptr
-                       ? nodes_->values(e.state->key[k])[0]
-                       : net[net_corner(records_->leaves()[e.leaf].degree, dimension_, k)];
+        const OwnNet net = divided ? OwnNet{} : net_of(own, e);
+        for (std::size_t k = 0; k < corners; ++k) {
+            u[k] = divided ? nodes_->values(father.key[k])[0]
+                           : net.net[net_corner(net.degree, father.shape->factors, net.number[k])];
         }
     }
     for (std::size_t n = 0; n < nodes; ++n) {
-        if ((which >> n & 1U) == 0) u[corners_ + n] = interpolate(rule_->new_nodes[n], u.data(), 1);
+        if ((which >> n & 1U) == 0) u[corners + n] = interpolate(rule.new_nodes[n], u.data(), 1);
     }
-    family.begin(corners_);
+    family.begin(rule.children.size());
     family.inner.resize(family.members.size());
-    Places& places = VirtualElements::places(family, corners_);
-    if (e.leaf == VirtualElement::no_leaf) {
-        data_->base->enter(own.base.get(), e.state->base, *e.state->rule, 0, nullptr, wanted,
-                           places.base);
+    Places& places = VirtualElements::places(family, rule.children.size());
+    if (divided) {
+        data_->base->enter(own.base.get(), father.base, rule, 0, nullptr, wanted, places.base);
     }
-    const BoxSplitKeys keys = split_keys_of(e.state->key, *rule_);
-    const std::array<Point, 27> x = positions(task, e, which);
-    for (std::size_t c = 0; c < corners_; ++c) {
+    const RedSplitKeys keys = split_keys_of(father.key, rule);
+    const Positions x = positions(task, e, which);
+    for (std::size_t c = 0; c < rule.children.size(); ++c) {
         if ((wanted >> c & 1U) == 0) continue;
+        const Child& made = rule.children[c];
         VirtualElement child;
         ElementState& state = places.states[c];
         child.state = &state;
-        std::array<double, max_box_corners> at_corners;
-        for (std::size_t k = 0; k < corners_; ++k) {
-            state.key[k] = keys[rule_->children[c].corner[k]];
-            at_corners[k] = u[rule_->children[c].corner[k]];
-            state.x[k] = x[rule_->children[c].corner[k]];
+        state.shape = &parts_of(made.shape);
+        std::array<double, max_corners> at_corners{};
+        for (std::size_t k = 0; k < state.shape->corners; ++k) {
+            state.key[k] = keys[made.corner[k]];
+            at_corners[k] = u[made.corner[k]];
+            state.x[k] = x[made.corner[k]];
         }
         set_child(e, c, places.base, child, state);
         describe(own, child, at_corners.data(), family, c);
@@ -162,20 +165,33 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
 
 void VirtualElements::set_child(const VirtualElement& father, std::size_t child, const Family& base,
                                 VirtualElement& e, ElementState& state) const {
+    const ElementState& above = *father.state;
     if (father.leaf == VirtualElement::no_leaf) {
         const Member& member = base.members[child];
         state.base = member.element;
         state.rule = member.rule;
-        state.path = child_path(father.state->path, child);
-        return set_leaf(e, member);
+        state.path = child_path(above.path, child);
+        return set_leaf(e, member, state);
     }
-    state.base = father.state->base;
+    state.base = above.base;
     state.rule = nullptr;
-    state.path = father.state->path;
+    state.path = above.path;
     e.leaf = father.leaf;
     e.level = father.level + 1;
-    for (std::size_t d = 0; d < 3; ++d) {
-        e.place[d] = 2 * father.place[d] + static_cast<std::uint32_t>(child >> d & 1U);
+    e.way = father.way << 4U | child;
+    const Rule& rule = *above.shape->rule;
+    for (std::size_t k = 0; k < state.shape->corners; ++k) {
+        const std::size_t node = rule.children[child].corner[k];
+        if (node < above.shape->corners) {
+            for (std::size_t d = 0; d < 3; ++d) state.at[k][d] = 2 * above.at[node][d];
+            continue;
+        }
+        const Stencil& stencil = rule.new_nodes[node - above.shape->corners];
+        for (std::size_t d = 0; d < 3; ++d) {
+            std::int64_t sum = 0;
+            for (std::size_t i = 0; i < stencil.count; ++i) sum += above.at[stencil.parent[i]][d];
+            state.at[k][d] = 2 * sum / stencil.count;
+        }
     }
 }
 
@@ -199,10 +215,11 @@ void VirtualElements::describe(OpenTask& task, const VirtualElement& e, const do
 
 /// An element that the hierarchy itself divides.
 void VirtualElements::describe_split(const VirtualElement& e, Member& member) const {
-    member.rule = rule_;
-    const BoxSplitKeys keys = split_keys_of(e.state->key, *rule_);
-    for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
-        const RealNode* const node = nodes_->find(keys[corners_ + n]);
+    member.rule = e.state->rule;
+    const std::size_t corners = e.state->shape->corners;
+    const RedSplitKeys keys = split_keys_of(e.state->key, *member.rule);
+    for (std::size_t n = 0; n < member.rule->new_nodes.size(); ++n) {
+        const RealNode* const node = nodes_->find(keys[corners + n]);
         if (node == nullptr) continue;
         const bool flat = node->hangs && (node->beta <= flat_ || node->shift >= depth_);
         member.constrained |= NodeMask{flat} << n;
@@ -214,21 +231,23 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
                                     Member& member, InnerBounds& inner) const {
     if (linear_) return;  // values at corners say all
     const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    const double* const net = net_of(task, e);
-    const Looked looked = look(e, net);
-    const std::span<const double> corners(u, corners_);
-    const double error = drawn_error(net, leaf, looked.facts.beta, corners);
+    const ShapeParts& shape = *e.state->shape;
+    const OwnNet own = net_of(task, e);
+    const Looked looked = look(e, own);
+    std::array<double, max_corners> sorted{};
+    for (std::size_t k = 0; k < shape.corners; ++k) sorted[own.number[k]] = u[k];
+    const auto corners = std::span<const double>(sorted).first(shape.corners);
+    const double error = drawn_error(own, shape.factors, looked.facts.beta, corners);
     const double allowed = tolerance_ + static_cast<double>(leaf.jump);
     const bool exceeds = static_cast<double>(float_above(error)) > allowed;
-    const bool flat = looked.flat == rule_->all();
-    if (flat && (!exceeds || e.level >= depth_)) {
+    if (looked.all_flat && (!exceeds || e.level >= depth_)) {
         inner.error = float_above(error);
         inner.limited = exceeds;
         return;
     }
-    member.rule = rule_;
+    member.rule = shape.rule;
     member.constrained = looked.flat;
-    member.outside = rule_->all();
+    member.outside = shape.rule->all();
     const auto [lo, hi] = std::minmax_element(corners.begin(), corners.end());
     inner.beyond = float_above(
         std::max({0.0, looked.facts.greatest - *hi, *lo - looked.facts.least}) + least_beyond_);
@@ -237,81 +256,76 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
 void VirtualElements::new_values(Task* task, const VirtualElement& e, NodeMask which,
                                  double* values) const {
     if (which == 0) return;
-    double* const out = values + corners_ * components_;
-    if (e.leaf == VirtualElement::no_leaf) {
-        const BoxSplitKeys keys = split_keys_of(e.state->key, *rule_);
-        for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
-            if ((which >> n & 1U) == 0) continue;
-            std::copy_n(nodes_->values(keys[corners_ + n]), components_, out + n * components_);
-        }
-        return;
-    }
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    const double* const nets = nets_of_children(static_cast<OpenTask&>(*task), e);
-    const std::size_t size = net_size(leaf.degree, dimension_);
-    for (std::size_t n = 0; n < rule_->new_nodes.size(); ++n) {
+    const bool divided = e.leaf == VirtualElement::no_leaf;
+    const Rule& rule = divided ? *e.state->rule : *e.state->shape->rule;
+    double* const out = values + e.state->shape->corners * components_;
+    const RedSplitKeys keys = divided ? split_keys_of(e.state->key, rule) : RedSplitKeys{};
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
         if ((which >> n & 1U) == 0) continue;
-        const HalvedPart& part = halved_[n];
-        BoxPlace at{};
-        for (std::size_t d = 0; d < 3; ++d) {
-            const unsigned in_middle = part.span >> d & 1U;
-            at[d] = 2 * e.place[d] + 2 * part.at[d] + in_middle;
+        if (divided) {
+            std::copy_n(nodes_->values(keys[e.state->shape->corners + n]), components_,
+                        out + n * components_);
+        } else {
+            leaf_values(static_cast<OpenTask&>(*task), e, n, out + n * components_);
         }
-        const PartCode around = part_around(0, at, e.level + 1, dimension_);
-        if (around + 1 != part_count(dimension_)) {
-            records_->values_at(leaf.part[around], at, e.level + 1, out + n * components_);
-            continue;
-        }
-        const ChildCorner in = rule_->new_corner[n];
-        const double* const net =
-            nets + in.child * components_ * size + net_corner(leaf.degree, dimension_, in.corner);
-        for (std::size_t c = 0; c < components_; ++c) out[n * components_ + c] = net[c * size];
     }
 }
 
 /// Positions at the corners and, behind them, at the new nodes.
 /// \param which new nodes that have true ones
-std::array<Point, 27> VirtualElements::positions(Task* task, const VirtualElement& e,
-                                                 NodeMask which) const {
-    std::array<Point, 27> x{};
+auto VirtualElements::positions(Task* task, const VirtualElement& e, NodeMask which) const
+    -> Positions {
+    Positions x{};
     if (!data_->base->offers(Feature::new_positions)) return x;
-    std::copy_n(e.state->x.begin(), corners_, x.begin());
-    const std::size_t count = rule_->new_nodes.size();
+    const ElementState& state = *e.state;
+    const bool divided = e.leaf == VirtualElement::no_leaf;
+    const Rule& rule = divided ? *state.rule : *state.shape->rule;
+    const std::size_t corners = state.shape->corners;
+    std::copy_n(state.x.begin(), corners, x.begin());
     NodeMask given = 0;
-    if (e.leaf == VirtualElement::no_leaf) {
-        const BoxSplitKeys keys = split_keys_of(e.state->key, *rule_);
-        for (std::size_t n = 0; n < count; ++n) {
-            const RealNode* const node = nodes_->find(keys[corners_ + n]);
+    if (divided) {
+        const RedSplitKeys keys = split_keys_of(state.key, rule);
+        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+            const RealNode* const node = nodes_->find(keys[corners + n]);
             const bool own = node != nullptr && !node->hangs;
             given |= NodeMask{own} << n;
         }
         given &= which;
-        data_->base->new_positions(static_cast<OpenTask&>(*task).base.get(), e.state->base, given,
-                                   std::span(x).subspan(corners_, count));
+        data_->base->new_positions(static_cast<OpenTask&>(*task).base.get(), state.base, given,
+                                   std::span(x).subspan(corners, rule.new_nodes.size()));
     }
-    for (std::size_t n = 0; n < count; ++n) {
-        if ((given >> n & 1U) == 0) x[corners_ + n] = interpolate(rule_->new_nodes[n], x.data());
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        if ((given >> n & 1U) == 0) x[corners + n] = interpolate(rule.new_nodes[n], x.data());
     }
     return x;
 }
 
 void VirtualElements::new_positions(Task* task, const VirtualElement& e, NodeMask which,
                                     std::span<Point> out) const {
-    const std::array<Point, 27> x = positions(task, e, which);
-    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(corners_), out.size(), out.begin());
+    const Positions x = positions(task, e, which);
+    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(e.state->shape->corners), out.size(),
+                out.begin());
 }
 
 /// Faces on the boundary of the domain, where the hierarchy tells those of its elements.
 unsigned VirtualElements::boundary(Task* task, const VirtualElement& e) const {
+    const ElementState& state = *e.state;
     unsigned faces = 0;
-    data_->base->corners(static_cast<OpenTask&>(*task).base.get(), e.state->base, corners_, nullptr,
-                         nullptr, &faces);
-    for (std::size_t d = 0; e.level > 0 && d < static_cast<std::size_t>(dimension_); ++d) {
-        const std::uint32_t last = (std::uint32_t{1} << static_cast<unsigned>(e.level)) - 1;
-        if (e.place[d] != 0) faces &= ~(1U << 2 * d);
-        if (e.place[d] != last) faces &= ~(1U << (2 * d + 1));
+    const ShapeParts& around =
+        e.leaf == VirtualElement::no_leaf ? *state.shape : records_->leaves()[e.leaf].parts();
+    data_->base->corners(static_cast<OpenTask&>(*task).base.get(), state.base, around.corners,
+                         nullptr, nullptr, &faces);
+    if (e.level == 0) return faces;
+    const Topology& t = topology(state.shape->shape);
+    unsigned own = 0;
+    for (std::size_t f = 0; f < t.faces; ++f) {
+        FaceMask in_leaf = ~FaceMask{0};
+        for (std::size_t i = 0; i < t.face[f].corners; ++i) {
+            in_leaf &= around.faces_at(state.at[t.face[f].corner[i]], e.level);
+        }
+        own |= unsigned{(in_leaf & faces) != 0} << f;
     }
-    return faces;
+    return own;
 }
 
 }  // namespace nestgrid::engine

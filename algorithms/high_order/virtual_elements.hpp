@@ -34,13 +34,15 @@ struct HighOrderData {
     explicit HighOrderData(const Hierarchy<double>& base);
 };
 
-/// What is known of an element besides its place.
+/// What is known of an element besides its name.
 struct ElementState {
     Handle base;                 // the element of the hierarchy, or the leaf it lies in
     const Rule* rule = nullptr;  // of that element
-    BoxKeys key{};
-    NodeKey path = 0;                        // of that element
-    std::array<Point, max_box_corners> x{};  // of the corners, where the hierarchy has positions
+    const ShapeParts* shape = nullptr;
+    CornerKeys key{};
+    NodeKey path = 0;                     // of that element
+    std::array<Point, max_corners> x{};   // of the corners, where the hierarchy has positions
+    std::array<Place, max_corners> at{};  // in the leaf, in units of 2^-level
 };
 
 /// An element of the hierarchy, or one below a leaf.
@@ -48,8 +50,10 @@ struct VirtualElement {
     static constexpr std::uint32_t no_leaf = 0xFFFFFFFFU;
     std::uint32_t leaf = no_leaf;  // none: an element that the hierarchy itself divides
     std::int32_t level = 0;        // below the leaf
-    BoxPlace place{};              // in the leaf, in units of the element
+    std::uint64_t way = 0;         // the numbers of children from the leaf on, 4 bits each
     const ElementState* state = nullptr;
+
+    VirtualElement father() const { return {leaf, level - 1, way >> 4U, nullptr}; }
 };
 
 class VirtualElements {
@@ -84,27 +88,36 @@ private:
         const RealNodes* nodes_;
         double tolerance_;
     };
-    /// The nets of the children of the elements on the way down that were entered last.
+    /// The nets of the children of the boxes on the way down that were entered last.
     struct OpenTask final : Task {
         struct Halves {
             std::uint32_t leaf = VirtualElement::no_leaf;
-            BoxPlace place{};
-            std::vector<double> nets;  // of one child behind the other, component 0 and so on
+            std::uint64_t way = 0;
+            std::vector<double> nets;  // of component 0, one child behind the other
         };
         std::unique_ptr<Task> base;
         Family family;               // of a coarse element
         std::vector<Halves> halves;  // by level of the element entered
+        NetRoom net;                 // of the element looked at last, where it is no box
+    };
+    /// The coefficients of component 0 on an element below a leaf.
+    struct OwnNet {
+        const double* net;
+        int degree;
+        std::array<std::uint8_t, max_corners> number;  // of the corners, among those of the net
     };
     /// What a leaf, or an element below it, looks like at the tolerance.
     struct Looked {
-        NodeMask flat = 0;  // new nodes that halve a flat part
-        NetFacts facts;     // of the element; its range includes that of the records around
+        NodeMask flat = 0;     // new nodes that halve a flat part
+        bool all_flat = true;  // parts without a node, too
+        NetFacts facts;        // of the element; its range includes that of the records around
     };
+    using Positions = std::array<Point, max_split_nodes>;
     struct Places;
 
-    std::array<Point, 27> positions(Task* task, const VirtualElement& e, NodeMask which) const;
+    Positions positions(Task* task, const VirtualElement& e, NodeMask which) const;
     static Places& places(Family& family, std::size_t count);
-    void set_leaf(VirtualElement& e, const Member& member) const;
+    void set_leaf(VirtualElement& e, const Member& member, ElementState& state) const;
     void set_child(const VirtualElement& father, std::size_t child, const Family& base,
                    VirtualElement& e, ElementState& state) const;
     void describe(OpenTask& task, const VirtualElement& e, const double* u, Family& family,
@@ -113,19 +126,18 @@ private:
     void describe_leaf(OpenTask& task, const VirtualElement& e, const double* u, Member& member,
                        InnerBounds& inner) const;
     // One leaf and its parts (leaf_parts.cpp).
-    Looked look(const VirtualElement& e, const double* net) const;
+    Looked look(const VirtualElement& e, const OwnNet& own) const;
     bool is_flat(const NetFacts& facts, int level) const;
-    double drawn_error(const double* net, const LeafPolynomial& leaf, double beta,
+    double drawn_error(const OwnNet& own, const Factors& factors, double beta,
                        std::span<const double> u) const;
-    const double* net_of(OpenTask& task, const VirtualElement& e) const;
+    OwnNet net_of(OpenTask& task, const VirtualElement& e) const;
+    const double* box_net_of(OpenTask& task, const VirtualElement& e) const;
     const double* nets_of_children(OpenTask& task, const VirtualElement& e) const;
+    void leaf_values(OpenTask& task, const VirtualElement& e, std::size_t node, double* out) const;
 
     std::shared_ptr<const HighOrderData> data_;
     const LeafRecords* records_;
     const RealNodes* nodes_;
-    const Rule* rule_;
-    int dimension_;
-    std::size_t corners_;
     std::size_t components_;
     double tolerance_;
     double flat_;  // beta of what is flat
@@ -133,7 +145,6 @@ private:
     double least_beyond_;  // covers rounding
     bool linear_;          // every leaf is the interpolant of its corners, and fits its neighbours
     Stops criterion_;
-    std::vector<HalvedPart> halved_;
 };
 
 }  // namespace nestgrid::engine

@@ -124,7 +124,7 @@ struct Plain {
     }
 };
 
-/// One tetrahedron, or an octree that halves elements in one direction.
+/// One pyramid, or an octree that halves elements in one direction.
 struct OtherGrid {
     struct Element {
         int level = 0;
@@ -175,9 +175,9 @@ TEST_F(HighOrderInput, OtherGridsAndFieldsAreRefused) {
     const HidingWorld hiding({.least_degree = 2, .greatest_degree = 2}, cubic);
     expect_refused([&] { const HighOrder data(hiding, Wrong(hiding)); }, "beside hidden or masked");
     OtherGrid grid;
-    grid.shape = Shape::tetrahedron;
+    grid.shape = Shape::pyramid;
     expect_refused([&] { const HighOrder data(grid, OtherField()); },
-                   "coarse element 0 is a tetrahedron");
+                   "coarse element 0 is a pyramid");
     Rule halved = make_rule("halved", Shape::hexahedron,
                             {{2, {0, 1}, {0.5, 0.5}},
                              {2, {2, 3}, {0.5, 0.5}},

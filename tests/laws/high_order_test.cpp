@@ -16,6 +16,7 @@
 
 #include "closedness.hpp"
 #include "degree_world.hpp"
+#include "high_order_judge.hpp"
 #include "same_surface.hpp"
 #include "thread_executor.hpp"
 
@@ -24,72 +25,8 @@ using namespace nestgrid;
 
 namespace {
 
-double gyroid(const Point& x) {
-    return std::sin(4 * x[0]) * std::cos(4 * x[1]) + std::sin(4 * x[1]) * std::cos(4 * x[2]) +
-           std::sin(4 * x[2]) * std::cos(4 * x[0]);
-}
-/// Its zero passes through nodes, and through the middles of faces.
-double ties(const Point& x) { return (x[0] + x[1] - x[2]) * (1 + x[0] * x[0] + x[1] * x[1]); }
-/// Touches faces of cells at 0.
-double tangent(const Point& x) { return x[0] * x[0] + x[1] * x[1] * x[1] - x[2] * x[0]; }
-double waves(const Point& x) {
-    return std::cos(3 * x[0]) * std::cos(3 * x[1]) * std::cos(3 * x[2]) + 0.1;
-}
-double square(const Point& x) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; }
-
-using Function = double (*)(const Point&);
-constexpr std::array<Function, 4> functions{gyroid, ties, tangent, waves};
-
-/// The data of a world, ready to be drawn.
 template <int dim>
-struct Drawn {
-    DegreeWorld<dim> world;
-    DegreeField<dim> field{world};
-    HighOrder data{world, field};
-
-    Drawn(const WorldOptions& options, std::function<double(const Point&)> f)
-        : world{options, std::move(f)} {}
-
-    Isosurface<dim> surface(double isovalue, const VirtualOptions& at,
-                            const IsosurfaceOptions& options = {}) const {
-        const VirtualRefinement fine(data, at);
-        return isosurface<dim>(fine, isovalue, fine.criterion(), fine.bounds(), options);
-    }
-};
-
-/// The greatest |U - isovalue| at 15 points of every triangle, or 5 of every segment. They are
-/// taken a little inwards, because a leaf is looked for there.
-template <int dim>
-double measured(const DegreeWorld<dim>& world, const Surface<dim>& surface, double isovalue) {
-    double greatest = 0;
-    for (const auto& simplex : surface.simplices) {
-        Point middle{0, 0, 0};
-        for (const auto v : simplex) middle = middle + (1.0 / dim) * surface.vertices[v];
-        for (int a = 0; a <= 4; ++a) {
-            for (int b = 0; a + b <= (dim == 3 ? 4 : a); ++b) {
-                const std::array<double, 3> weight{a / 4.0, dim == 3 ? b / 4.0 : 1 - a / 4.0,
-                                                   1 - (a + b) / 4.0};
-                Point x{0, 0, 0};
-                for (std::size_t k = 0; k < std::size_t{dim}; ++k) {
-                    x = x + weight[k] * surface.vertices[simplex[k]];
-                }
-                x = x + 1e-9 * (middle - x);
-                greatest = std::max(greatest, std::abs(world(x) - isovalue));
-            }
-        }
-    }
-    return greatest;
-}
-
-/// |U - isovalue| <= bound, which is at most tolerance + jump where no element met the depth limit,
-/// but for linear data, which are drawn as ever.
-template <int dim>
-void expect_bound(const Drawn<dim>& drawn, const Isosurface<dim>& result, double isovalue,
-                  double tolerance) {
-    EXPECT_LE(measured(drawn.world, result.surface, isovalue), result.error_bound + 1e-8);
-    if (result.counts.limited != 0 || drawn.data.greatest_degree() == 1) return;
-    EXPECT_LE(result.error_bound, (tolerance + drawn.data.jump()) * (1 + 1e-6));
-}
+using Drawn = DrawnWorld<DegreeWorld<dim>, DegreeField<dim>>;
 
 int count_of_worlds() { return std::getenv("NESTGRID_LONG_TESTS") != nullptr ? 10000 : 300; }
 
@@ -140,7 +77,8 @@ TEST(HighOrder, LinesAreClosedAndWithinTheirBounds) {
 }
 
 TEST(HighOrder, DepthLimitsLeaveSurfacesClosedAndAreCounted) {
-    const Drawn<3> drawn({.levels = 2, .least_degree = 2, .greatest_degree = 7}, gyroid);
+    const Drawn<3> drawn(WorldOptions{.levels = 2, .least_degree = 2, .greatest_degree = 7},
+                         gyroid);
     std::uint64_t before = ~std::uint64_t{0};
     for (int depth = 1; depth <= 4; ++depth) {
         const auto result = drawn.surface(0.1, {1e-2, depth}, {.verify = true});
@@ -188,33 +126,9 @@ TEST(HighOrder, SearchesCountWhatFlatnessMoves) {
     }
 }
 
-/// The level set of a quadratic is a circle, and a sphere.
-template <int dim>
-void expect_round() {
-    const double radius = 0.8;
-    const WorldOptions options{.levels = 2, .least_degree = 2, .greatest_degree = 2};
-    const Drawn<dim> drawn(options, [](const Point& x) {
-        return x[0] * x[0] + x[1] * x[1] + (dim == 3 ? x[2] * x[2] : 0);
-    });
-    for (const double relative : {1e-2, 1e-3, 1e-4}) {
-        if (dim == 3 && relative < 1e-3) continue;  // millions of triangles
-        const double tolerance = radius * radius * (1 - (1 - relative) * (1 - relative));
-        const auto result = drawn.surface(radius * radius, {tolerance, 9});
-        expect_closed(result.surface);
-        EXPECT_EQ(result.counts.limited, 0U);
-        double off = 0;
-        for (const auto& simplex : result.surface.simplices) {
-            Point middle{0, 0, 0};
-            for (const auto v : simplex) middle = middle + (1.0 / dim) * result.surface.vertices[v];
-            off = std::max(off, std::abs(norm(middle) - radius));
-        }
-        for (const Point& x : result.surface.vertices)
-            off = std::max(off, std::abs(norm(x) - radius));
-        EXPECT_LE(off, relative * radius);
-    }
-}
-TEST(HighOrder, QuadraticsAreCircles) { expect_round<2>(); }
-TEST(HighOrder, QuadraticsAreSpheres) { expect_round<3>(); }
+const WorldOptions quadratics{.levels = 2, .least_degree = 2, .greatest_degree = 2};
+TEST(HighOrder, QuadraticsAreCircles) { expect_round(Drawn<2>(quadratics, square<2>)); }
+TEST(HighOrder, QuadraticsAreSpheres) { expect_round(Drawn<3>(quadratics, square<3>)); }
 
 TEST(HighOrder, IslandsInOneCellAreFound) {
     std::mt19937 random(5);
@@ -222,7 +136,7 @@ TEST(HighOrder, IslandsInOneCellAreFound) {
     for (int i = 0; i < 1000 && !HasFailure(); ++i) {
         Point middle;
         for (double& x : middle) x = 1.7 * uniform(random) - 0.85;
-        const Drawn<3> drawn({.cells = 1}, [&](const Point& x) {
+        const Drawn<3> drawn(WorldOptions{.cells = 1}, [&](const Point& x) {
             const Point from = x - middle;
             return radius * radius - dot(from, from);
         });
@@ -238,7 +152,7 @@ TEST(HighOrder, IslandsBetweenNodesAreFound) {
         const double t = (x + 1) / 2;
         return 6 * std::sqrt(3.0) * t * (1 - t) * (1 - 2 * t);
     };
-    const Drawn<3> drawn({.cells = 1, .least_degree = 5, .greatest_degree = 5},
+    const Drawn<3> drawn(WorldOptions{.cells = 1, .least_degree = 5, .greatest_degree = 5},
                          [&](const Point& x) { return odd(x[0]) * odd(x[1]) * odd(x[2]); });
     const auto result = drawn.surface(0.5, {0.1, 6}, {.verify = true});
     EXPECT_EQ(surface_report(result.surface).components, 4U);
@@ -248,7 +162,8 @@ TEST(HighOrder, IslandsBetweenNodesAreFound) {
 TEST(HighOrder, ThreadsDrawTheSameBits) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
         const Drawn<3> drawn(
-            {.levels = 3, .least_degree = 1, .greatest_degree = 6, .noise = 0.1, .seed = seed},
+            WorldOptions{
+                .levels = 3, .least_degree = 1, .greatest_degree = 6, .noise = 0.1, .seed = seed},
             gyroid);
         const VirtualRefinement fine(drawn.data, {.tolerance = 0.2, .depth = 4});
         const auto one = isosurface<3>(fine, 0.1, fine.criterion(), fine.bounds());
@@ -263,7 +178,7 @@ TEST(HighOrder, ThreadsDrawTheSameBits) {
 }
 
 TEST(HighOrder, EveryAlgorithmDraws) {
-    const Drawn<3> drawn({.levels = 2, .least_degree = 2, .greatest_degree = 5}, waves);
+    const Drawn<3> drawn(WorldOptions{.levels = 2, .least_degree = 2, .greatest_degree = 5}, waves);
     const VirtualRefinement fine(drawn.data, {.tolerance = 0.05, .depth = 5});
     for (const Plane& plane : {Plane({0, 0, 0}, {0, 0, 1}), Plane({0, 0, 0.3}, {0, 0, 1}),
                                Plane({0, 0, 0}, {1, 1, 0}), Plane({0.1, 0, 0}, {1, 2, 3})}) {
@@ -279,7 +194,7 @@ TEST(HighOrder, EveryAlgorithmDraws) {
     const auto with_normals = drawn.surface(0.2, {0.05, 5}, {.normals = true});
     EXPECT_EQ(with_normals.surface.normals.size(), with_normals.surface.vertices.size());
 
-    const Drawn<2> flat({.levels = 3, .least_degree = 2, .greatest_degree = 5}, gyroid);
+    const Drawn<2> flat(WorldOptions{.levels = 3, .least_degree = 2, .greatest_degree = 5}, gyroid);
     const VirtualRefinement lines(flat.data, {.tolerance = 0.01, .depth = 6});
     const std::array<double, 3> values{-0.2, 0.1, 0.5};
     const auto isolines = nestgrid::isolines(lines, std::span<const double>(values),
@@ -293,7 +208,7 @@ TEST(HighOrder, EveryAlgorithmDraws) {
 
 /// The colours of a slice are the data, as far as the bound says.
 TEST(HighOrder, ColoursOfSlicesAreWithinTheirBound) {
-    const Drawn<3> drawn({.levels = 1, .least_degree = 3, .greatest_degree = 3}, ties);
+    const Drawn<3> drawn(WorldOptions{.levels = 1, .least_degree = 3, .greatest_degree = 3}, ties);
     const VirtualRefinement fine(drawn.data, {.tolerance = 0.02, .depth = 6});
     const auto result =
         slice(fine, Plane({0.05, 0, 0}, {1, 2, 3}), fine.criterion(), fine.bounds());
@@ -314,8 +229,9 @@ TEST(HighOrder, ColoursOfSlicesAreWithinTheirBound) {
 /// Linear data are drawn as without this header, to the last bit.
 TEST(HighOrder, DegreeOneIsTheHierarchyItself) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
-        const Drawn<3> drawn({.cells = 3, .least_degree = 1, .greatest_degree = 1, .seed = seed},
-                             gyroid);
+        const Drawn<3> drawn(
+            WorldOptions{.cells = 3, .least_degree = 1, .greatest_degree = 1, .seed = seed},
+            gyroid);
         const VirtualRefinement fine(drawn.data, {.tolerance = 1e-6});
         const auto plain = isosurface(drawn.world, drawn.field, 0.1);
         const auto decorated = isosurface<3>(fine, 0.1, Exact(), fine.bounds());
@@ -327,7 +243,8 @@ TEST(HighOrder, DegreeOneIsTheHierarchyItself) {
 }
 
 TEST(HighOrder, AsksTheFieldOnceForEachLeaf) {
-    const Drawn<3> drawn({.levels = 3, .least_degree = 2, .greatest_degree = 4}, gyroid);
+    const Drawn<3> drawn(WorldOptions{.levels = 3, .least_degree = 2, .greatest_degree = 4},
+                         gyroid);
     EXPECT_EQ(drawn.field.evaluated, drawn.world.leaf_count());
     (void)drawn.surface(0.1, {0.01, 4});
     EXPECT_EQ(drawn.field.evaluated, drawn.world.leaf_count());
@@ -335,8 +252,9 @@ TEST(HighOrder, AsksTheFieldOnceForEachLeaf) {
 
 TEST(HighOrder, WorldsAreSound) {
     for (unsigned seed = 1; seed <= 10; ++seed) {
-        const Drawn<3> drawn({.levels = 2, .least_degree = 1, .greatest_degree = 8, .seed = seed},
-                             square);
+        const Drawn<3> drawn(
+            WorldOptions{.levels = 2, .least_degree = 1, .greatest_degree = 8, .seed = seed},
+            square<3>);
         const auto violation = check_grid(drawn.world, drawn.field);
         EXPECT_FALSE(violation.has_value()) << (violation ? violation->sentence : "");
     }

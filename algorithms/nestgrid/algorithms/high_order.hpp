@@ -5,8 +5,8 @@
 //     const HighOrder data(grid, field);                            once per solution
 //     const VirtualRefinement fine(data, {.tolerance = 1e-3});
 //     isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
-// For quadrilaterals and hexahedra, straight and halved in all directions; the field has degree()
-// and evaluate() (optional.hpp). The tolerance is one of component 0. docs/high_order.md.
+// For all shapes but pyramids, straight and divided by red_rule(); the field has degree() and
+// evaluate() (optional.hpp). The tolerance is one of component 0. docs/high_order.md.
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
@@ -14,14 +14,14 @@
 namespace nestgrid {
 namespace engine {
 struct HighOrderData;
+class PolynomialPoints;
 class VirtualElements;
 }  // namespace engine
 
-/// The polynomials of all leaves, records of the edges and faces that they share, and a preroll.
+/// The polynomials of all leaves, with records of the edges and faces that they share.
 class HighOrder {
 public:
     /// Borrows the hierarchy, or grid and field. Asks the field once for each leaf.
-    ///
     /// \throw InvalidInput for other grids and fields, GridError for a wrong degree or value
     explicit HighOrder(const Hierarchy<float>& base);
     explicit HighOrder(const Hierarchy<double>& base);
@@ -36,6 +36,7 @@ public:
 
 private:
     friend class VirtualRefinement;
+    friend class engine::PolynomialPoints;
     template <class Base>
     explicit HighOrder(std::shared_ptr<const Base> base)
         : HighOrder(static_cast<const Hierarchy<typename Base::value_type>&>(*base)) {
@@ -51,15 +52,14 @@ struct VirtualOptions {
     int depth = 8;         ///< leaves are halved at most this many times, 1 to 16
 };
 
-/// Leaves halved until what is drawn is within the tolerance, but for elements that meet the depth
-/// limit (TraversalCounts::limited). Nothing is stored for virtual elements.
+/// Leaves halved until what is drawn is within the tolerance, or at the depth limit
+/// (TraversalCounts::limited). Nothing is stored for virtual elements.
 class VirtualRefinement final : public Hierarchy<double> {
 public:
     /// \throw InvalidInput for other options
     VirtualRefinement(const HighOrder& data, const VirtualOptions& options);
     const Criterion& criterion() const;  ///< where coarser elements of the hierarchy may stop
     const Bounds& bounds() const;
-
     std::size_t coarse_count() const override;
     std::uint64_t epoch() const override;
     Elements make_elements() const override;

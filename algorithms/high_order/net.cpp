@@ -1,0 +1,438 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <high_order/net.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nestgrid::engine {
+
+namespace {
+
+using Alpha = SimplexIndex::Alpha;
+
+std::size_t slot(const Alpha& a) { return a[1] + 9U * (a[2] + 9U * a[3]); }
+
+Alpha with_one_more(Alpha a, std::size_t corner) {
+    ++a[corner];
+    return a;
+}
+
+std::vector<Alpha> multi_indices(std::size_t dimension, int degree) {
+    std::vector<Alpha> all;
+    const int most = dimension > 0 ? degree : 0;
+    for (int k = 0; k <= (dimension > 2 ? most : 0); ++k) {
+        for (int j = 0; j + k <= (dimension > 1 ? most : k); ++j) {
+            for (int i = 0; i + j + k <= (dimension > 0 ? most : j + k); ++i) {
+                all.push_back({static_cast<std::uint8_t>(degree - i - j - k),
+                               static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j),
+                               static_cast<std::uint8_t>(k)});
+            }
+        }
+    }
+    return all;
+}
+
+SimplexIndex make_index(std::size_t dimension, int degree) {
+    SimplexIndex index;
+    index.alpha = multi_indices(dimension, degree);
+    for (std::size_t i = 0; i < index.alpha.size(); ++i) {
+        index.number[slot(index.alpha[i])] = static_cast<std::uint16_t>(i);
+    }
+    const auto number = [&](const Alpha& a) { return index.number[slot(a)]; };
+    if (degree > 0) {
+        for (const Alpha& a : multi_indices(dimension, degree - 1)) {
+            auto& raised = index.raised.emplace_back();
+            for (std::size_t c = 0; c <= dimension; ++c) raised[c] = number(with_one_more(a, c));
+        }
+    }
+    for (std::size_t a = 0; degree > 1 && a <= dimension; ++a) {
+        for (std::size_t b = a + 1; b <= dimension; ++b) {
+            auto& second = index.second.emplace_back();
+            for (const Alpha& low : multi_indices(dimension, degree - 2)) {
+                const Alpha at_a = with_one_more(low, a);
+                const Alpha at_b = with_one_more(low, b);
+                second.push_back({number(with_one_more(at_a, a)), number(with_one_more(at_a, b)),
+                                  number(with_one_more(at_b, b))});
+            }
+        }
+    }
+    return index;
+}
+
+/// Bounds of u - I u in one factor, above and below, by p (p - 1) times second differences.
+struct NetSides {
+    double above = 0;
+    double below = 0;
+};
+
+/// Least and greatest second difference of some rows.
+struct SecondRange {
+    double least = 0;
+    double greatest = 0;
+};
+
+void widen(SecondRange& range, double to) {
+    range.least = std::min(range.least, to);
+    range.greatest = std::max(range.greatest, to);
+}
+
+NetSides of_segment(const double* net, const Lanes& lanes) {
+    SecondRange range;
+    for (std::size_t o = 0; o < lanes.outer; ++o) {
+        const double* const at = net + o * lanes.block();
+        for (std::size_t i = 0; i < lanes.stride * (lanes.count - 2); ++i) {
+            widen(range, at[i] - 2 * at[i + lanes.stride] + at[i + 2 * lanes.stride]);
+        }
+    }
+    return {range.greatest / 8, -range.least / 8};
+}
+
+/// Along the edges of a triangle or tetrahedron D = middle + oscillation: in u - I u the middles
+/// add up to at most k max, the oscillations to at most K max, and all to at most the sum / 8.
+NetSides of_simplex(const double* net, const Lanes& lanes, const SimplexIndex& index,
+                    std::size_t dimension) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double k = dimension == 2 ? 1.0 / 6 : 3.0 / 16;
+    const double greatest_k = dimension == 2 ? 5.0 / 18 : 3.0 / 8;
+    NetSides sum;
+    NetSides middles;
+    NetSides greatest_middle;
+    double oscillations = 0;
+    double greatest_oscillation = 0;
+    for (const auto& second : index.second) {
+        SecondRange range{infinity, -infinity};
+        for (std::size_t o = 0; o < lanes.outer; ++o) {
+            for (const auto& [a, b, c] : second) {
+                const double* const at = net + o * lanes.block();
+                for (std::size_t s = 0; s < lanes.stride; ++s) {
+                    widen(range, at[a * lanes.stride + s] - 2 * at[b * lanes.stride + s] +
+                                     at[c * lanes.stride + s]);
+                }
+            }
+        }
+        const double middle = (range.least + range.greatest) / 2;
+        const double oscillation = (range.greatest - range.least) / 2;
+        sum.above += std::max(range.greatest, 0.0);
+        sum.below += std::max(-range.least, 0.0);
+        middles.above += std::max(middle, 0.0);
+        middles.below += std::max(-middle, 0.0);
+        greatest_middle.above = std::max(greatest_middle.above, middle);
+        greatest_middle.below = std::max(greatest_middle.below, -middle);
+        oscillations += oscillation;
+        greatest_oscillation = std::max(greatest_oscillation, oscillation);
+    }
+    const double other = std::min(oscillations / 8, greatest_k * greatest_oscillation);
+    const double rounding = 1 + 1e-14;  // so that no edge has more
+    return {rounding * std::min(sum.above / 8,
+                                std::min(middles.above / 8, k * greatest_middle.above) + other),
+            rounding * std::min(sum.below / 8,
+                                std::min(middles.below / 8, k * greatest_middle.below) + other)};
+}
+
+using Barycentric = std::array<double, 4>;
+
+/// One step of de Casteljau along a segment, of rows of `stride`. `to` may be the net itself.
+void segment_step(const double* net, std::size_t degree, std::size_t stride, const Barycentric& at,
+                  double* to) {
+    for (std::size_t i = 0; i < degree * stride; ++i) {
+        to[i] = at[0] * net[i] + at[1] * net[i + stride];
+    }
+}
+
+/// The coefficients of a segment on a part or at a point of it. Each is what de Casteljau's
+/// algorithm finds at the first end, then at the second one, as often as its number says.
+void restrict_segment(const double* net, std::size_t degree, std::size_t stride,
+                      std::span<const Barycentric> corners, double* out) {
+    std::array<double, std::size_t{max_degree + 1} * 81> first;  // at most 81 side by side
+    std::array<double, std::size_t{max_degree + 1} * 81> second;
+    for (std::size_t left = degree;; --left) {
+        // `left` steps are left after those at the first end.
+        const double* const from = left == degree ? net : first.data();
+        if (corners.size() == 2 || left == 0) {
+            const double* at = from;
+            for (std::size_t q = left; q > 0; --q, at = second.data()) {
+                segment_step(at, q, stride, corners[1], second.data());
+            }
+            std::copy_n(at, stride, out + (corners.size() == 2 ? left * stride : 0));
+        }
+        if (left == 0) return;
+        segment_step(from, left, stride, corners[0], first.data());
+    }
+}
+
+/// The coefficients of one factor of a net on a simplex in it, by de Casteljau's algorithm for
+/// each multi-index; those with equal beginnings share these. Corners are taken in order.
+class FactorRestriction {
+public:
+    FactorRestriction(int degree, std::size_t dimension, std::size_t stride,
+                      std::span<const Barycentric> corners)
+        : dimension_{dimension},
+          stride_{stride},
+          corners_{corners},
+          index_{&simplex_index(corners.size() - 1, degree)} {}
+
+    void run(const double* net, int degree, double* out) {
+        out_ = out;
+        descend(net, degree, 0, {}, work_.data());
+    }
+
+private:
+    void descend(const double* net, int degree, std::size_t first, const Alpha& alpha,
+                 double* work) {
+        if (degree == 0) {
+            std::copy_n(net, stride_, out_ + index_->number[slot(alpha)] * stride_);
+            return;
+        }
+        for (std::size_t c = first; c < corners_.size(); ++c) {
+            const std::size_t count = step(net, degree, corners_[c], work);
+            descend(work, degree - 1, c, with_one_more(alpha, c), work + count * stride_);
+        }
+    }
+    /// One step of de Casteljau. \return the number of coefficients left
+    std::size_t step(const double* net, int degree, const Barycentric& at, double* to) const {
+        const auto& raised = simplex_index(dimension_, degree).raised;
+        for (std::size_t i = 0; i < raised.size(); ++i) {
+            for (std::size_t s = 0; s < stride_; ++s) {
+                double sum = at[0] * net[raised[i][0] * stride_ + s];
+                for (std::size_t c = 1; c <= dimension_; ++c) {
+                    sum += at[c] * net[raised[i][c] * stride_ + s];
+                }
+                to[i * stride_ + s] = sum;
+            }
+        }
+        return raised.size();
+    }
+
+    std::size_t dimension_;
+    std::size_t stride_;
+    std::span<const Barycentric> corners_;
+    const SimplexIndex* index_;
+    double* out_ = nullptr;
+    // Of all degrees below: tetrahedra, or triangles with at most 9 coefficients side by side.
+    std::array<double, std::size_t{120} * 9> work_;
+};
+
+}  // namespace
+
+const SimplexIndex& simplex_index(std::size_t dimension, int degree) {
+    static const auto all = [] {
+        std::vector<SimplexIndex> made;
+        for (std::size_t d = 0; d <= 3; ++d) {
+            for (int p = 0; p <= max_degree; ++p) made.push_back(make_index(d, p));
+        }
+        return made;
+    }();
+    return all[dimension * (max_degree + 1) + static_cast<std::size_t>(degree)];
+}
+
+std::size_t net_index(int degree, const Factors& factors, const Place& at) {
+    std::size_t index = 0;
+    std::size_t stride = 1;
+    std::size_t axis = 0;
+    for (std::size_t f = 0; f < factors.count; ++f) {
+        const std::size_t dimension = factors.dimension[f];
+        std::size_t share = 0;
+        for (std::size_t d = dimension; d-- > 0;) {
+            share = 9 * share + static_cast<std::size_t>(at[axis + d]);
+        }
+        if (dimension > 1) share = simplex_index(dimension, degree).number[share];
+        index += share * stride;
+        stride *= simplex_size(degree, factors.dimension[f]);
+        axis += dimension;
+    }
+    return index;
+}
+
+std::size_t net_corner(int degree, const Factors& factors, std::size_t corner) {
+    Place at{};
+    std::size_t axis = 0;
+    for (std::size_t f = 0; f < factors.count; ++f) {
+        const std::size_t dimension = factors.dimension[f];
+        const std::size_t own = corner % (dimension + 1);
+        corner /= dimension + 1;
+        if (own > 0) at[axis + own - 1] = degree;
+        axis += dimension;
+    }
+    return net_index(degree, factors, at);
+}
+
+NetFacts net_facts(const double* net, int degree, const Factors& factors) {
+    const std::size_t size = net_size(degree, factors);
+    NetFacts facts{0, net[0], net[0]};
+    for (std::size_t i = 1; i < size; ++i) {
+        facts.least = std::min(facts.least, net[i]);
+        facts.greatest = std::max(facts.greatest, net[i]);
+    }
+    if (degree < 2) return facts;
+    NetSides sum;
+    for (std::size_t f = 0; f < factors.count; ++f) {
+        const Lanes lanes(degree, factors, f);
+        const std::size_t dimension = factors.dimension[f];
+        const NetSides sides =
+            dimension == 1 ? of_segment(net, lanes)
+                           : of_simplex(net, lanes, simplex_index(dimension, degree), dimension);
+        sum.above += sides.above;
+        sum.below += sides.below;
+    }
+    facts.beta = degree * (degree - 1) * std::max(sum.above, sum.below);
+    return facts;
+}
+
+AffineFit fit_affine(std::span<const double> corners, const Factors& factors) {
+    AffineFit fit;
+    const auto count = static_cast<double>(corners.size());
+    double mean = 0;
+    for (const double value : corners) mean += value / count;
+    const auto number_in = [&](std::size_t corner, std::size_t factor) {
+        for (std::size_t f = 0; f < factor; ++f) corner /= factors.dimension[f] + std::size_t{1};
+        return corner % (factors.dimension[factor] + std::size_t{1});
+    };
+    for (std::size_t f = 0; f < factors.count; ++f) {
+        const double share = (factors.dimension[f] + 1) / count;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            fit.part[f][number_in(k, f)] += share * corners[k];
+        }
+        for (double& value : fit.part[f]) value -= f == 0 ? 0 : mean;
+    }
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        double at = 0;
+        for (std::size_t f = 0; f < factors.count; ++f) at += fit.part[f][number_in(k, f)];
+        fit.residual = std::max(fit.residual, std::abs(corners[k] - at));
+    }
+    return fit;
+}
+
+double distance_from_affine(const double* net, int degree, const Factors& factors,
+                            const AffineFit& affine) {
+    constexpr std::size_t most = simplex_size(max_degree, 3);
+    std::array<std::array<double, most>, 3> at{};  // of each factor, at its Greville points
+    std::array<std::size_t, 3> count{1, 1, 1};
+    for (std::size_t f = 0; f < factors.count; ++f) {
+        const auto& alpha = simplex_index(factors.dimension[f], degree).alpha;
+        count[f] = alpha.size();
+        for (std::size_t i = 0; i < alpha.size(); ++i) {
+            at[f][i] = 0;
+            for (std::size_t c = 0; c <= factors.dimension[f]; ++c) {
+                at[f][i] += alpha[i][c] * affine.part[f][c];
+            }
+            at[f][i] /= degree;
+        }
+    }
+    double greatest = 0;
+    const double* row = net;
+    for (std::size_t k = 0; k < count[2]; ++k) {
+        for (std::size_t j = 0; j < count[1]; ++j, row += count[0]) {
+            const double base = at[1][j] + at[2][k];
+            for (std::size_t i = 0; i < count[0]; ++i) {
+                greatest = std::max(greatest, std::abs(row[i] - (base + at[0][i])));
+            }
+        }
+    }
+    return greatest;
+}
+
+NetPart part_at(const Factors& whole, std::span<const Place> points, int level) {
+    NetPart part;
+    std::size_t axis = 0;
+    std::uint8_t stride = 1;
+    for (std::size_t f = 0; f < whole.count; ++f) {
+        const std::size_t dimension = whole.dimension[f];
+        // The last coordinate decides first: so are the corners of the reference element sorted.
+        const auto own = [&](const Place& x) {
+            Place key{};
+            for (std::size_t d = 0; d < dimension; ++d) key[2 - d] = x[axis + d];
+            return key;
+        };
+        std::array<Place, max_corners> sorted;
+        std::size_t count = 0;
+        for (const Place& x : points) {
+            Place key = own(x);
+            std::size_t at = 0;
+            while (at < count && sorted[at] < key) ++at;
+            if (at < count && sorted[at] == key) continue;
+            for (std::size_t i = at; i < count; ++i) std::swap(sorted[i], key);
+            sorted[count++] = key;
+        }
+        for (std::size_t c = 0; c < count; ++c) {
+            std::array<double, 4>& barycentric = part.corner[f][c];
+            barycentric[0] = 1;
+            for (std::size_t d = 0; d < dimension; ++d) {
+                barycentric[d + 1] = std::ldexp(static_cast<double>(sorted[c][2 - d]), -level);
+                barycentric[0] -= barycentric[d + 1];
+            }
+        }
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            std::uint8_t at = 0;
+            while (sorted[at] != own(points[k])) ++at;
+            part.number[k] = static_cast<std::uint8_t>(part.number[k] + at * stride);
+        }
+        stride = static_cast<std::uint8_t>(stride * count);
+        part.corners[f] = static_cast<std::uint8_t>(count);
+        if (count > 1) {
+            part.factors.dimension[part.factors.count++] = static_cast<std::uint8_t>(count - 1);
+        }
+        axis += dimension;
+    }
+    return part;
+}
+
+void restrict_net(const double* net, int degree, const Factors& whole, const NetPart& part,
+                  double* out) {
+    std::array<NetRoom, 2> room;
+    std::size_t stride = 1;
+    const double* from = net;
+    std::size_t left = net_size(degree, whole);
+    for (std::size_t f = 0; f < whole.count; ++f) {
+        const std::size_t dimension = whole.dimension[f];
+        const std::span corners(part.corner[f].data(), part.corners[f]);
+        const std::size_t count = simplex_size(degree, whole.dimension[f]);
+        const std::size_t made = simplex_size(degree, part.corners[f] - 1);
+        double* const to = f + 1 == whole.count ? out : room[f % 2].data();
+        const std::size_t outer = left / (count * stride);
+        for (std::size_t o = 0; o < outer; ++o) {
+            const double* const block = from + o * count * stride;
+            if (dimension == 1) {
+                restrict_segment(block, static_cast<std::size_t>(degree), stride, corners,
+                                 to + o * made * stride);
+            } else {
+                FactorRestriction(degree, dimension, stride, corners)
+                    .run(block, degree, to + o * made * stride);
+            }
+        }
+        left = outer * made * stride;
+        stride *= made;
+        from = to;
+    }
+}
+
+void take_part(const double* net, int degree, const Factors& whole, std::span<const Place> frame,
+               const Factors& part, double* out) {
+    const bool is_triangle = part.count == 1 && part.dimension[0] == 2;
+    const std::int64_t rows = frame.size() == 3 ? degree : 0;
+    const auto index = [&](std::int64_t i, std::int64_t j) {
+        Place at{};
+        for (std::size_t d = 0; d < 3; ++d) {
+            at[d] = degree * frame[0][d] + i * (frame[1][d] - frame[0][d]);
+            if (rows > 0) at[d] += j * (frame[2][d] - frame[0][d]);
+        }
+        return net_index(degree, whole, at);
+    };
+    if (whole.all_segments()) {  // the number is linear in the place
+        const std::size_t first = index(0, 0);
+        const std::size_t along = index(1, 0) - first;
+        const std::size_t across = rows > 0 ? index(0, 1) - first : 0;
+        for (std::int64_t j = 0; j <= rows; ++j) {
+            std::size_t at = first + static_cast<std::size_t>(j) * across;
+            for (int i = 0; i <= degree; ++i, at += along) *out++ = net[at];
+        }
+        return;
+    }
+    for (std::int64_t j = 0; j <= rows; ++j) {
+        for (std::int64_t i = 0; i <= (is_triangle ? degree - j : degree); ++i) {
+            *out++ = net[index(i, j)];
+        }
+    }
+}
+
+}  // namespace nestgrid::engine

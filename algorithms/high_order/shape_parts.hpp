@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a shape is made of: its parts, which are its edges and, in space, its faces; how its red
+// rule halves them; and in which part a point lies. One table for each shape, derived from its
+// topology.
+#pragma once
+
+#include <high_order/net.hpp>
+#include <nestgrid/standard_rules.hpp>
+
+namespace nestgrid::engine {
+
+/// Faces of a shape, one bit each.
+using FaceMask = unsigned;
+/// Corners of a shape, one bit each.
+using CornerMask = unsigned;
+
+/// An edge or a face.
+struct ShapePart {
+    Factors factors;
+    std::uint8_t count = 0;                ///< of corners
+    std::array<std::uint8_t, 4> corner{};  ///< in the order of a tensor product
+    CornerMask corners = 0;
+    std::uint8_t node = no_new_node;  ///< of the red rule, that halves it
+};
+
+struct ShapeParts {
+    static constexpr int inside = -1;
+    static constexpr int at_corner = -2;
+
+    Shape shape = Shape::point;
+    Factors factors;
+    std::size_t dimension = 0;
+    std::size_t corners = 0;
+    const Rule* rule = nullptr;  ///< the red rule
+    std::vector<ShapePart> parts;
+    std::vector<Place> node;             ///< of the red rule, the corners first, in units of 1 / 2
+    std::array<std::uint8_t, 3> axis{};  ///< the corner at the end of each axis from corner 0
+
+    /// The faces that a point lies in. \param at in units of 2^-level
+    FaceMask faces_at(const Place& at, int level) const;
+    /// Number of the part that all these faces, and no others, are around; or inside, or at_corner.
+    int part_in(FaceMask faces) const { return part_in_[faces]; }
+    /// A point of a child of the red rule, or one like it, in units of 1 / 2^(level + 1).
+    Place in_father(const Child& child, const Place& at, int level) const;
+
+private:
+    friend ShapeParts make_parts(Shape shape);
+    struct Plane {
+        std::array<int, 3> normal{};
+        int offset = 0;
+    };
+    std::vector<Plane> planes_;
+    std::array<std::int8_t, 1U << max_faces> part_in_{};
+};
+
+/// \param shape a product of simplices, of dimension 2 or 3
+const ShapeParts& parts_of(Shape shape);
+
+/// Whether a rule divides edges and faces as the red rule of its shape does, with the same nodes.
+bool divides_red(const Rule& rule);
+
+/// Coordinates t in the frame of a part: with its corner 0 at the origin, and the neighbours of
+/// that at the ends of the axes.
+struct PartFrame {
+    Place origin{};
+    std::array<std::array<std::int64_t, 3>, 2> row{};  ///< t = row (x - origin)
+    Place operator()(const Place& at, int level) const;
+};
+/// \param corners 2 or 3 corners of a reference element
+PartFrame frame_between(std::span<const Place> corners);
+
+}  // namespace nestgrid::engine
