@@ -85,7 +85,9 @@ private:
     Vertices find_vertices(const ContourLoop& loop, unsigned inside);
     Vertices make_vertices(const ContourLoop& loop, unsigned inside);
     void put_loop(const ContourLoop& loop, const Vertices& v, bool mirrored);
-    void put_triangle(const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored);
+    void hand_over_loop(const ContourLoop& loop, unsigned inside, bool mirrored);
+    template <class Position, class Put>
+    void divide_loop(const ContourLoop& loop, bool mirrored, const Position& x, const Put& put);
     void put_boundary(const ContourLoop& loop, const Vertices& v, unsigned boundary);
     Point reference_on_face(const Point& x, const FaceTopology& face) const;
     /// Tells the surface that a vertex lies at a corner.

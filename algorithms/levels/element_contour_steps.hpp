@@ -27,9 +27,14 @@ NESTGRID_INLINE void ElementContour<dimension, Real>::draw_plainly(LevelSurface<
     surface.builder().add_element(view.element(), view.shape, view.level);
     tally_->add(simplices_of(contour));
     const bool names = surface.names_vertices();
+    const bool batches = surface.builder().takes_batches();
     const unsigned boundary = names ? cuts_->walk().boundary(view) : 0;
     for (std::size_t l = 0; l < contour.loop_count; ++l) {
         const ContourLoop& loop = contour.loop[l];
+        if (batches) {
+            hand_over_loop(loop, inside, view.orientation < 0);
+            continue;
+        }
         const Vertices v = names ? find_vertices(loop, inside) : make_vertices(loop, inside);
         put_loop(loop, v, view.orientation < 0);
         if (boundary != 0) put_boundary(loop, v, boundary);
@@ -67,38 +72,66 @@ NESTGRID_INLINE auto ElementContour<dimension, Real>::make_vertices(const Contou
     return v;
 }
 
-/// Adds the simplices of a loop: a segment, the triangles of the table, or two with the shorter
+/// Divides a loop into simplices: a segment, the triangles of the table, or two with the shorter
 /// diagonal. Both diagonals lie inside the element, so that its neighbours do not depend on the
 /// choice.
+/// \param x x(i) is the position of place i in the loop
+/// \param put put(simplex) takes places in the loop
 template <int dimension, class Real>
-NESTGRID_INLINE void ElementContour<dimension, Real>::put_loop(const ContourLoop& loop,
-                                                               const Vertices& v, bool mirrored) {
-    if (loop.count <= 3) return put_triangle(v, {0, 1, 2}, mirrored);
+template <class Position, class Put>
+NESTGRID_INLINE void ElementContour<dimension, Real>::divide_loop(const ContourLoop& loop,
+                                                                  bool mirrored, const Position& x,
+                                                                  const Put& put) {
+    const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) NESTGRID_INLINE_LAMBDA {
+        // Branch-free: mirroring is unpredictable.
+        const std::size_t swap = (a ^ b) & (std::size_t{0} - (mirrored ? 1U : 0U));
+        put(a ^ swap, b ^ swap, c);
+    };
+    if (loop.count <= 3) return triangle(0, 1, 2);
     if (loop.any_diagonal) {
-        const auto x = [&](std::size_t i) { return surface_->position(v[i]); };
         const std::size_t first = shorter(x(0), x(2), x(1), x(3)) ? 0 : 1;
-        put_triangle(v, {first, first + 1, first + 2}, mirrored);
-        put_triangle(v, {first + 2, (first + 3) % 4, first}, mirrored);
+        triangle(first, first + 1, first + 2);
+        triangle(first + 2, (first + 3) % 4, first);
         return;
     }
     for (std::size_t i = 0; i < loop.triangle_count; ++i) {
         const auto& corner = loop.triangle[i];
-        put_triangle(v, {corner[0], corner[1], corner[2]}, mirrored);
+        triangle(corner[0], corner[1], corner[2]);
     }
 }
 
-/// Adds the triangle between three places of a loop; in two dimensions the segment between the
-/// first two.
+/// Adds the simplices of a loop.
 template <int dimension, class Real>
-NESTGRID_INLINE void ElementContour<dimension, Real>::put_triangle(
-    const Vertices& v, const std::array<std::size_t, 3>& corner, bool mirrored) {
-    // Branch-free: mirroring is unpredictable.
-    const std::size_t swap = (corner[0] ^ corner[1]) & (std::size_t{0} - (mirrored ? 1U : 0U));
-    Locals simplex;
-    simplex[0] = v[corner[0] ^ swap];
-    simplex[1] = v[corner[1] ^ swap];
-    if constexpr (dimension == 3) simplex[2] = v[corner[2]];
-    surface_->add_simplex(simplex, {});
+NESTGRID_INLINE void ElementContour<dimension, Real>::put_loop(const ContourLoop& loop,
+                                                               const Vertices& v, bool mirrored) {
+    divide_loop(
+        loop, mirrored, [&](std::size_t i) { return surface_->position(v[i]); },
+        [&](std::size_t a, std::size_t b, std::size_t c) NESTGRID_INLINE_LAMBDA {
+            Locals simplex;
+            simplex[0] = v[a];
+            simplex[1] = v[b];
+            if constexpr (dimension == 3) simplex[2] = v[c];
+            surface_->add_simplex(simplex, {});
+        });
+}
+
+/// Hands the simplices of a loop to a sink that takes batches.
+template <int dimension, class Real>
+NESTGRID_INLINE void ElementContour<dimension, Real>::hand_over_loop(const ContourLoop& loop,
+                                                                     unsigned inside,
+                                                                     bool mirrored) {
+    std::array<Point, max_edges> x;
+    cuts_->positions_of(std::span(loop.edge).first(loop.count), inside, x.data());
+    std::array<std::array<std::uint16_t, 3>, max_edges> simplices;
+    std::size_t count = 0;
+    divide_loop(
+        loop, mirrored, [&](std::size_t i) { return x[i]; },
+        [&](std::size_t a, std::size_t b, std::size_t c) NESTGRID_INLINE_LAMBDA {
+            simplices[count++] = {static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b),
+                                  static_cast<std::uint16_t>(c)};
+        });
+    surface_->builder().take_batch(
+        {x.data()->data(), Point{}.size(), std::span(simplices).first(count)});
 }
 
 /// Adds the sides of a loop that lie on the boundary of the domain.

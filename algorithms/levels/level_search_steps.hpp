@@ -8,6 +8,7 @@
 #include <bit>
 
 #include <levels/level_search.hpp>
+#include <walk/corner_count.hpp>
 
 namespace nestgrid::engine {
 
@@ -62,21 +63,14 @@ NESTGRID_INLINE bool LevelSearch<Real>::looks_at(const View& view, const Split& 
 /// The least and the greatest value at the corners of an element, where there is one component.
 template <class Real>
 NESTGRID_INLINE auto LevelSearch<Real>::plain_range_of(const View& view) const -> Range {
-    const auto of_first = [&](auto corners) NESTGRID_INLINE_LAMBDA {
+    return with_corner_count(view.shape, [&](auto corners) NESTGRID_INLINE_LAMBDA {
         Range range{view.value[0], view.value[0]};
         for (std::size_t i = 1; i < corners; ++i) {
             range.lo = std::min(range.lo, view.value[i]);
             range.hi = std::max(range.hi, view.value[i]);
         }
         return range;
-    };
-    if (view.shape == Shape::hexahedron) {
-        return of_first(std::integral_constant<std::size_t, 8>{});
-    }
-    if (view.shape == Shape::tetrahedron) {
-        return of_first(std::integral_constant<std::size_t, 4>{});
-    }
-    return of_first(view.corner_count());
+    });
 }
 
 /// The nodes among some at which the indicator is at most the threshold, one bit each.

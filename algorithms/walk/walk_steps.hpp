@@ -11,6 +11,7 @@
 #include <nestgrid/detail/inlining.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
+#include <walk/corner_count.hpp>
 #include <walk/crossing_nodes.hpp>
 #include <walk/walk.hpp>
 
@@ -134,7 +135,13 @@ NESTGRID_INLINE void Walk<Real>::project(const View& view, const Split& split, N
     const std::size_t corners = view.corner_count();
     const std::size_t stride = components_;
     Real* const value = with_room(frame.value, (corners + rule.new_nodes.size()) * stride);
-    if (needs_.values) std::copy_n(view.value, corners * stride, value);
+    if (needs_.values && stride == 1) {
+        with_corner_count(view.shape, [&](auto all) NESTGRID_INLINE_LAMBDA {
+            for (std::size_t k = 0; k < all; ++k) value[k] = view.value[k];
+        });
+    } else if (needs_.values) {
+        std::copy_n(view.value, corners * stride, value);
+    }
     const NodeMask which = needs_.values ? rule.all() & ~(mean | split.crossing) : NodeMask{0};
     const NodeMask missing = hierarchy_->enter(view.stack->task.get(), view.element(), rule, which,
                                                value, wanted, frame.family);
@@ -253,11 +260,10 @@ NESTGRID_INLINE void Walk<Real>::set_child(const View& father, const Child& as, 
     Real* const to = frame.child_value.data();
     if (components_ > 1) {
         copy_components(as, from, to);
-    } else if (as.shape == Shape::hexahedron) {
-        for (std::size_t i = 0; i < 8; ++i) to[i] = from[as.corner[i]];
     } else {
-        const std::size_t corners = nestgrid::topology(as.shape).corners;
-        for (std::size_t i = 0; i < corners; ++i) to[i] = from[as.corner[i]];
+        with_corner_count(as.shape, [&](auto corners) NESTGRID_INLINE_LAMBDA {
+            for (std::size_t i = 0; i < corners; ++i) to[i] = from[as.corner[i]];
+        });
     }
 }
 
