@@ -243,6 +243,7 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
     result.error_bound = std::min(
         {surfaces_[i].error_bound() + off_level, result.range_bound, result.surface_error});
     result.position_bound = surfaces_[i].position_bound();
+    if (surfaces_[i].builder().target() != nullptr) result.names = surfaces_[i].vertex_names();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
     result.table_bytes =
         normals_.memory_bytes() + walks_.memory_bytes() + neighbours_.memory_bytes();

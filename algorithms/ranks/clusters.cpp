@@ -39,14 +39,7 @@ Clusters::Clusters(Ranks& ranks, const Surface<3>& piece, const VerticesAtNodes&
         ranks, copies, is_strong, [](Bytes&, std::uint32_t) {},
         [&](std::uint32_t v, Reader&, int) { strong_[v] = true; });
     join(piece);
-    std::vector<Pair> pairs;
-    tell_copies(
-        ranks, copies, is_strong, [&](Bytes& out, std::uint32_t v) { put(out, cluster_[v]); },
-        [&](std::uint32_t v, Reader& in, int rank) {
-            const auto there = in.get<std::uint32_t>();
-            if (rank > ranks.rank()) pairs.push_back({{ranks.rank(), rank}, {cluster_[v], there}});
-        });
-    give_to_ranks(ranks, pairs);
+    across_.emplace(ranks, copies, is_strong, cluster_);
 }
 
 /// Vertices at nodes, and those of triangles that may collapse with one.
@@ -80,40 +73,12 @@ void Clusters::join(const Surface<3>& piece) {
     for (std::uint32_t v = 0; v < strong_.size(); ++v) cluster_.push_back(classes_.root(v));
 }
 
-void Clusters::give_to_ranks(Ranks& ranks, std::span<const Pair> pairs) {
-    Bytes own;
-    for (const Pair& pair : pairs) put(own, pair);
-    std::vector<Pair> all;
-    for (const Bytes& told : ranks.gather(std::move(own))) {
-        for (Reader in(told); in.more();) all.push_back(in.get<Pair>());
-    }
-    using Part = std::pair<int, std::uint32_t>;
-    std::vector<Part> parts;
-    for (const Pair& pair : all) {
-        for (const std::size_t i : {0U, 1U}) parts.emplace_back(pair.rank[i], pair.cluster[i]);
-    }
-    std::ranges::sort(parts);
-    const auto twice = std::ranges::unique(parts);
-    parts.erase(twice.begin(), twice.end());
-    const auto number = [&](const Pair& pair, std::size_t i) {
-        const auto at = std::ranges::lower_bound(parts, Part(pair.rank[i], pair.cluster[i]));
-        return static_cast<std::uint32_t>(at - parts.begin());
-    };
-    nestgrid::detail::UnionFind together(parts.size());
-    for (const Pair& pair : all) together.join(number(pair, 0), number(pair, 1));
-    // The least part of a cluster, which stands for it, is on its least rank.
-    for (std::uint32_t i = 0; i < parts.size(); ++i) {
-        if (parts[i].first != ranks.rank()) continue;
-        rank_[parts[i].second] = parts[together.root(i)].first;
-    }
-}
-
 int Clusters::rank_of(std::span<const std::uint32_t> vertices) const {
     const auto strong =
         std::ranges::find_if(vertices, [&](std::uint32_t v) { return bool{strong_[v]}; });
     if (strong == vertices.end()) return here;
-    const auto found = rank_.find(cluster_[*strong]);
-    return found == rank_.end() ? here : found->second;
+    const int* const rank = across_->least_rank(cluster_[*strong]);
+    return rank == nullptr ? here : *rank;
 }
 
 }  // namespace nestgrid::engine

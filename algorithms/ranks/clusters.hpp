@@ -5,10 +5,10 @@
 // (merge_across.hpp).
 #pragma once
 
-#include <unordered_map>
+#include <optional>
 
 #include <nestgrid/detail/union_find.hpp>
-#include <ranks/vertex_copies.hpp>
+#include <ranks/connected_parts.hpp>
 #include <surfaces/surface_builder.hpp>
 
 namespace nestgrid::engine {
@@ -27,20 +27,13 @@ public:
     int rank_of(std::span<const std::uint32_t> vertices) const;
 
 private:
-    /// Clusters of two ranks that have a vertex in common.
-    struct Pair {
-        int rank[2];
-        std::uint32_t cluster[2];  ///< the least vertex in it, on each
-    };
-
     void find_strong(const Surface<3>& piece, const VerticesAtNodes& at_nodes);
     void join(const Surface<3>& piece);
-    void give_to_ranks(Ranks& ranks, std::span<const Pair> pairs);
 
     std::vector<bool> strong_;  // by vertex
     nestgrid::detail::UnionFind classes_;
-    std::vector<std::uint32_t> cluster_;           // by vertex
-    std::unordered_map<std::uint32_t, int> rank_;  // of the clusters that several ranks have
+    std::vector<std::uint32_t> cluster_;  // by vertex
+    std::optional<ConnectedParts> across_;
 };
 
 }  // namespace nestgrid::engine

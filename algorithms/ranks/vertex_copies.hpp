@@ -8,17 +8,11 @@
 // these to homes, that find out who has the same ones. Nobody needs to know who has which nodes.
 #pragma once
 
+#include <nestgrid/algorithms/join_pieces.hpp>
 #include <nestgrid/detail/key_table.hpp>
 #include <ranks/wire.hpp>
 
 namespace nestgrid::engine {
-
-/// A vertex that another rank has, too.
-struct VertexCopy {
-    std::uint32_t vertex;  ///< its number on this rank
-    int rank;              ///< the other one
-    std::uint32_t there;   ///< its number there
-};
 
 /// The name of a vertex between no nodes, as the one of `rank` with this number.
 inline KeyPair own_name(int rank, std::uint32_t number) {

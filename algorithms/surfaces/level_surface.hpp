@@ -9,10 +9,15 @@
 #include <surfaces/surface_builder.hpp>
 #include <surfaces/vertex_numbers.hpp>
 
+namespace nestgrid {
+
+struct VertexCopy;
+
+}  // namespace nestgrid
+
 namespace nestgrid::engine {
 
 class SharedNodes;
-struct VertexCopy;
 
 /// How the vertices of a surface get their normals.
 struct VertexNormals {
@@ -155,6 +160,13 @@ public:
     /// Collective where the grid is distributed, which requires keep_names().
     /// \param shared the nodes that other ranks have, too, or null
     void finish(bool merges_at_nodes, const SharedNodes* shared);
+    /// The names of all vertices, after finish(); nothing where they were not kept.
+    std::vector<std::array<NodeKey, 2>> vertex_names() const {
+        std::vector<std::array<NodeKey, 2>> names;
+        names.reserve(names_.size());
+        for (const KeyPair& name : names_) names.push_back({name.low, name.high});
+        return names;
+    }
     std::size_t memory_bytes() const {
         return numbers_.memory_bytes() + within_.memory_bytes() + where_.size() * sizeof(Where) +
                of_vertices_.capacity() * sizeof(Normal) + simplices_.size() * sizeof(Simplex) +

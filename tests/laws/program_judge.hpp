@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/join_pieces.hpp>
+#include <nestgrid/algorithms/surface_report.hpp>
+
 #include "distributed_judge.hpp"
 
 namespace nestgrid_test {
@@ -64,6 +67,55 @@ private:
     }
 };
 
+/// The pieces of all ranks, as one indexed surface.
+template <int dim>
+struct Joined {
+    Surface<dim> surface;
+    JoinedPiece totals;
+    std::uint64_t elsewhere = 0;  ///< vertices that two pieces have at different places
+
+    void add(const Isosurface<dim>& piece, const JoinedPiece& as) {
+        totals = as;
+        constexpr double nowhere = -1e300;
+        surface.vertices.resize(as.vertices, Point{nowhere, 0, 0});
+        for (std::size_t v = 0; v < as.number.size(); ++v) {
+            Point& at = surface.vertices.at(as.number[v]);
+            elsewhere += at[0] != nowhere && at != piece.surface.vertices[v] ? 1 : 0;
+            at = piece.surface.vertices[v];
+        }
+        const auto put = [&](const auto& from, auto& to) {
+            for (auto simplex : from) {
+                for (std::uint32_t& v : simplex) v = static_cast<std::uint32_t>(as.number[v]);
+                to.push_back(simplex);
+            }
+        };
+        put(piece.surface.simplices, surface.simplices);
+        put(piece.surface.boundary, surface.boundary);
+    }
+    /// What differs from the surface of one rank.
+    std::string compare(const Surface<dim>& whole) const {
+        if (elsewhere != 0) return "copies of vertices are at different places";
+        if (totals.vertices != whole.vertices.size()) return "another number of vertices";
+        if (totals.simplices != whole.simplices.size()) return "another number of simplices";
+        if constexpr (dim == 3) {
+            const SurfaceReport a = surface_report(surface);
+            const SurfaceReport b = surface_report(whole);
+            const auto numbers = [](const SurfaceReport& r) {
+                return std::array<std::size_t, 9>{r.vertices,          r.edges,
+                                                  r.triangles,         r.open_edges,
+                                                  r.boundary_edges,    r.nonmanifold_edges,
+                                                  r.misoriented_edges, r.nonmanifold_vertices,
+                                                  r.components};
+            };
+            if (numbers(a) != numbers(b)) return "another report";
+            if (totals.components != b.components) return "another number of components";
+            if (totals.open != b.open_edges) return "other open edges";
+            if (totals.on_boundary != b.boundary_edges) return "other boundary edges";
+        }
+        return {};
+    }
+};
+
 struct Tally {
     std::uint64_t functions = 0;
     std::uint64_t through_nodes = 0;
@@ -97,11 +149,13 @@ public:
         program_(grid, field, SequentialExecutor{}, [&](const Isosurface<dim>& drawn) {
             expected_.emplace_back().add(drawn);
             expected_.back().sort();
+            whole_surfaces_.push_back(drawn.surface);
         });
     }
 
     void compare(const Cutting& cutting, const std::vector<int>& owner, Tally& tally) const {
         std::vector<Cut<dim>> drawn(expected_.size());
+        std::vector<Joined<dim>> joined(expected_.size());
         std::mutex mutex;
         const auto ended = SimulatedRanks::run(cutting.ranks, [&](Ranks& all) {
             ForgetfulRanks ranks(all, cutting.omission);
@@ -114,7 +168,10 @@ public:
             std::size_t i = 0;
             ranks.begin(ForgetfulRanks::Step::draw);
             program_(grid, field, threads, [&](const Isosurface<dim>& piece) {
+                ranks.begin(ForgetfulRanks::Step::share);
+                const JoinedPiece as = join_pieces(piece, grid);
                 const std::scoped_lock lock(mutex);
+                joined.at(i).add(piece, as);
                 drawn.at(i++).add(piece);
                 ranks.begin(ForgetfulRanks::Step::draw);
             });
@@ -128,7 +185,13 @@ public:
             ++tally.drawn;
             drawn[i].sort();
             tally.simplices += drawn[i].simplices.size();
-            if (drawn[i] == expected_[i]) continue;
+            if (drawn[i] == expected_[i]) {
+                const std::string differs = joined[i].compare(whole_surfaces_[i]);
+                if (differs.empty()) continue;
+                note(tally, tally.other,
+                     where + ", surface " + std::to_string(i) + ": joined, " + differs);
+                continue;
+            }
             note(tally, tally.other,
                  where + ", surface " + std::to_string(i) + ": " +
                      std::to_string(drawn[i].simplices.size()) + " simplices for " +
@@ -150,6 +213,7 @@ private:
     std::vector<Real> values_;
     Program program_;
     std::vector<Cut<dim>> expected_;
+    std::vector<Surface<dim>> whole_surfaces_;
 };
 
 /// Two components, the first of them noise of three numbers, smooth, or in steps.

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The pieces of a surface that ranks have drawn, as parts of one indexed surface: global numbers of
+// vertices, who owns them, and what the whole surface is like (docs/distributed.md).
+#pragma once
+
+#include <nestgrid/algorithms/distributed.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
+
+namespace nestgrid {
+
+/// A vertex of a piece that another rank has in its own piece, too.
+struct VertexCopy {
+    std::uint32_t vertex;  ///< its number in this piece
+    int rank;              ///< the other rank
+    std::uint32_t there;   ///< its number in that rank's piece
+};
+
+/// A piece as a part of the whole surface. All totals are the same on all ranks.
+struct JoinedPiece {
+    /// By vertex of the piece: its number in the whole. Vertices that one rank owns are numbered
+    /// one behind the other, ranks in their order.
+    std::vector<std::uint64_t> number;
+    std::vector<int> owner;          ///< by vertex: the least rank that has it
+    std::vector<VertexCopy> copies;  ///< in the order of vertices and, for each, of ranks
+
+    std::uint64_t first_vertex = 0;   ///< the number of the first vertex that this rank owns
+    std::uint64_t first_simplex = 0;  ///< how many triangles (segments) lesser ranks have
+    std::uint64_t vertices = 0;       ///< in all
+    std::uint64_t simplices = 0;      ///< in all
+    std::uint64_t components = 0;     ///< connected parts of the whole
+    /// Edges (of plane grids: points) of one triangle (segment) alone, beside those on the boundary
+    /// of the domain: 0 where all pieces are there.
+    std::uint64_t open = 0;
+    std::uint64_t on_boundary = 0;  ///< edges (points) of one alone, on the boundary of the domain
+};
+
+namespace detail {
+
+template <int dimension>
+JoinedPiece join_pieces(const Isosurface<dimension>& piece, const engine::SharedNodes& shared);
+
+}  // namespace detail
+
+/// Numbers the vertices of the pieces of a surface. Collective.
+/// \param piece as it was drawn on the grid
+///
+/// \throw InvalidInput, on all ranks alike, where a piece has other vertices than those drawn, or
+///        was drawn into a sink
+template <class Grid, int dimension>
+JoinedPiece join_pieces(const Isosurface<dimension>& piece, const Distributed<Grid>& grid) {
+    return detail::join_pieces(piece, *grid.shared_nodes());
+}
+
+}  // namespace nestgrid
