@@ -321,7 +321,7 @@ void LagrangeGrid<dim>::look_at_places(const CellArrays& cells, Element cell) {
         }
         const auto [i, j, k] = kind.nodes[n].at;
         const double p = kind.degree;
-        const Point straight = detail::lattice_polynomial<Point>(
+        const auto straight = detail::lattice_polynomial<Point>(
             kind.shape, 1, {i / p, j / p, k / p}, [&](std::size_t c) { return corners[c]; });
         off = std::max(off, norm(x - straight));
     }

@@ -57,7 +57,8 @@ inline std::size_t box_point(const LatticePlace& at, int p, int dimension) {
     const int inside = int{inner(0)} + int{inner(1)} + int{dimension == 3 && inner(2)};
     const int above = dimension == 3 && high(2) ? 1 : 0;
     const auto number = [&](int base, int i, int j = 0) {
-        return static_cast<std::size_t>(base + i + m * j);
+        const int place = base + i + m * j;
+        return static_cast<std::size_t>(place);
     };
     if (inside == 0) return number(loop(high(0), high(1)) + 4 * above, 0);
     const int edges = dimension == 3 ? 8 : 4;  // where their nodes begin
