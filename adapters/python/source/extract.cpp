@@ -59,7 +59,7 @@ Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceReques
 std::vector<Drawn> draw_isosurfaces(const Source& source, std::span<const double> isovalues,
                                     const SurfaceRequest& request, const Projection& projection,
                                     const Call& call) {
-    const Projection finely = asked(projection, request);
+    const Projection finely = asked(source, projection, request, call);
     std::vector<Drawn> all;
     for (Isosurface<3>& each : isosurfaces<3>(source.prerolls(), isovalues, finely,
                                               options_of(request, call), call.work())) {
