@@ -211,9 +211,6 @@ InputField field_in(std::shared_ptr<const Parcel> parcel, const fs::path& path) 
     field.name.assign(text.begin(), text.end());
     field.nodes = kept->grid.point_count();
     field.leaf_elements = kept->grid.coarse_count();
-    field.region = [kept](const InputField::Inside& inside) {
-        return nestgrid::Region(kept->grid, inside);
-    };
     field.value_count = numbers.size();
     field.value = [kept](std::size_t i) { return kept->values[i]; };
     return field;

@@ -112,7 +112,7 @@ struct Isosurface : ErrorBounds {
     double surface_error = std::numeric_limits<double>::infinity();
     /// On ranks, where no sink takes the surface: two nodes for each vertex, which name it on all
     /// ranks (join_pieces.hpp).
-    std::vector<std::array<NodeKey, 2>> names;
+    std::vector<std::array<NodeKey, 2>> names{};
     bool cancelled = false;       ///< by options.progress; the surface is then a part
     std::size_t table_bytes = 0;  ///< hash tables used while extracting
     std::size_t stack_bytes = 0;  ///< depth of the traversal times the size of one state
