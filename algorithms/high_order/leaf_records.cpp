@@ -177,9 +177,11 @@ OnRecord LeafRecords::around(std::span<const BaseElement> way, std::span<const P
     const auto index = [](int j) { return static_cast<std::size_t>(j); };
     for (int j = last; j > 0; --j) {
         const BaseElement& father = way[index(j - 1)];
-        const Child& child = father.member->rule->children[way[index(j)].number];
+        const Rule& rule = *father.member->rule;
+        const Child& child = rule.children[way[index(j)].number];
         for (std::size_t i = 0; i < points.size(); ++i) {
-            seen[index(j - 1)][i] = father.shape->in_father(child, seen[index(j)][i], last - j);
+            seen[index(j - 1)][i] =
+                father.shape->in_father(rule, child, seen[index(j)][i], last - j);
         }
     }
     for (int j = 0; j <= last; ++j) {

@@ -89,21 +89,24 @@ private:
     /// that is from flat, where it lies in a record.
     void put_beta(std::span<const BaseElement> way, const ShapePart& part, const Split& split) {
         const ShapeParts& shape = *way.back().shape;
-        const std::size_t corners = shape.corners;
-        if (part.node != no_new_node && !node(split.node[corners + part.node]).hangs) return;
+        const auto made_in = [&](const ShapePart& halved) -> RealNode* {
+            const std::uint8_t n = node_halving(*split.rule, halved);
+            return n == no_new_node ? nullptr : &node(split.node[shape.corners + n]);
+        };
+        RealNode* const made = made_in(part);
+        if (made != nullptr && !made->hangs) return;
         const std::array<Place, 4> places = corners_of(shape, part);
         const OnRecord on = records_->around(way, std::span(places).first(part.count));
         if (on.record < 0) return;
         const double beta = records_->facts_on(on).beta;
-        if (part.node != no_new_node) {
-            RealNode& made = node(split.node[corners + part.node]);
-            made.shift = static_cast<std::uint8_t>(on.shift);
-            made.beta = beta;
+        if (made != nullptr) {
+            made->shift = static_cast<std::uint8_t>(on.shift);
+            made->beta = beta;
             return;
         }
         for (const ShapePart& edge : shape.parts) {
-            if ((edge.corners & ~part.corners) != 0 || edge.node == no_new_node) continue;
-            raise(node(split.node[corners + edge.node]).stop, flat_share * beta);
+            if ((edge.corners & ~part.corners) != 0 || edge.count > 2) continue;
+            raise(made_in(edge)->stop, flat_share * beta);
         }
     }
 

@@ -23,12 +23,18 @@ ShapePart part_with(Shape shape, std::span<const std::uint8_t> corners) {
     return part;
 }
 
-bool makes_children_of(const Rule& a, const Rule& b) {
-    return a.parent == b.parent && a.new_nodes == b.new_nodes &&
-           std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(),
-                      [](const Child& x, const Child& y) {
-                          return x.shape == y.shape && x.corner == y.corner;
-                      });
+CornerMask parents_of(const Stencil& stencil) {
+    CornerMask parents = 0;
+    for (std::size_t i = 0; i < stencil.count; ++i) parents |= 1U << stencil.parent[i];
+    return parents;
+}
+
+/// What means of corners a rule makes, sorted.
+std::vector<CornerMask> means_of(const Rule& rule) {
+    std::vector<CornerMask> means;
+    for (const Stencil& stencil : rule.new_nodes) means.push_back(parents_of(stencil));
+    std::sort(means.begin(), means.end());
+    return means;
 }
 
 }  // namespace
@@ -78,14 +84,7 @@ ShapeParts make_parts(Shape shape) {
     for (const Point& x : reference_nodes(*made.rule)) {
         made.node.push_back(whole({2 * x[0], 2 * x[1], 2 * x[2]}));
     }
-    for (std::size_t n = 0; n < made.rule->new_nodes.size(); ++n) {
-        const Stencil& stencil = made.rule->new_nodes[n];
-        CornerMask parents = 0;
-        for (std::size_t i = 0; i < stencil.count; ++i) parents |= 1U << stencil.parent[i];
-        for (ShapePart& part : made.parts) {
-            if (part.corners == parents) part.node = static_cast<std::uint8_t>(n);
-        }
-    }
+    for (ShapePart& part : made.parts) part.node = node_halving(*made.rule, part);
     for (std::uint8_t k = 0; k < t.corners; ++k) {
         for (std::size_t d = 0; d < t.dimension; ++d) {
             Place end{};
@@ -118,26 +117,48 @@ FaceMask ShapeParts::faces_at(const Place& at, int level) const {
     return faces;
 }
 
-Place ShapeParts::in_father(const Child& child, const Place& at, int level) const {
-    const Place& origin = node[child.corner[0]];
+Place ShapeParts::node_of(const Rule& of, std::size_t number) const {
+    if (number < corners) return node[number];
+    const Stencil& stencil = of.new_nodes[number - corners];
+    Place sum{};
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        for (std::size_t d = 0; d < 3; ++d) sum[d] += node[stencil.parent[i]][d];
+    }
+    for (std::int64_t& x : sum) x /= stencil.count;
+    return sum;
+}
+
+Place ShapeParts::in_father(const Rule& of, const Child& child, const Place& at, int level) const {
+    const Place origin = node_of(of, child.corner[0]);
     const ShapeParts& own = parts_of(child.shape);
     Place x;
-    for (std::size_t i = 0; i < 3; ++i) {
-        x[i] = origin[i] * (std::int64_t{1} << level);
-        for (std::size_t d = 0; d < dimension; ++d) {
-            x[i] += at[d] * (node[child.corner[own.axis[d]]][i] - origin[i]);
-        }
+    for (std::size_t i = 0; i < 3; ++i) x[i] = origin[i] * (std::int64_t{1} << level);
+    for (std::size_t d = 0; d < dimension; ++d) {
+        const Place axis_end = node_of(of, child.corner[own.axis[d]]);
+        for (std::size_t i = 0; i < 3; ++i) x[i] += at[d] * (axis_end[i] - origin[i]);
     }
     return x;
 }
 
 bool divides_red(const Rule& rule) {
-    if (rule.parent == Shape::tetrahedron) {
-        for (const int diagonal : {0, 1, 2}) {
-            if (makes_children_of(rule, red_tetrahedron_rule(diagonal))) return true;
+    const Rule& red = red_rule(rule.parent);
+    if (rule.children.size() != red.children.size() || means_of(rule) != means_of(red))
+        return false;
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        if (rule.new_nodes[n].mean == Mean::weighted) return false;
+        for (std::size_t i = 0; i < rule.new_nodes[n].count; ++i) {
+            if (rule.new_nodes[n].parent[i] >= rule.corner_count()) return false;
         }
     }
-    return makes_children_of(rule, red_rule(rule.parent));
+    return std::all_of(rule.children.begin(), rule.children.end(),
+                       [&](const Child& child) { return child.shape == rule.parent; });
+}
+
+std::uint8_t node_halving(const Rule& rule, const ShapePart& part) {
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        if (parents_of(rule.new_nodes[n]) == part.corners) return static_cast<std::uint8_t>(n);
+    }
+    return no_new_node;
 }
 
 Place PartFrame::operator()(const Place& at, int level) const {

@@ -42,8 +42,10 @@ struct ShapeParts {
     FaceMask faces_at(const Place& at, int level) const;
     /// Number of the part that all these faces, and no others, are around; or inside, or at_corner.
     int part_in(FaceMask faces) const { return part_in_[faces]; }
-    /// A point of a child of the red rule, or one like it, in units of 1 / 2^(level + 1).
-    Place in_father(const Child& child, const Place& at, int level) const;
+    /// A node of a rule that divides red, in units of 1 / 2.
+    Place node_of(const Rule& of, std::size_t number) const;
+    /// A point of a child of such a rule, in units of 1 / 2^(level + 1).
+    Place in_father(const Rule& of, const Child& child, const Place& at, int level) const;
 
 private:
     friend ShapeParts make_parts(Shape shape);
@@ -58,8 +60,11 @@ private:
 /// \param shape a product of simplices, of dimension 2 or 3
 const ShapeParts& parts_of(Shape shape);
 
-/// Whether a rule divides edges and faces as the red rule of its shape does, with the same nodes.
+/// Whether a rule makes the nodes of the red rule of its shape, and children of the same shapes, in
+/// any order.
 bool divides_red(const Rule& rule);
+/// The new node of such a rule that halves a part, or no_new_node.
+std::uint8_t node_halving(const Rule& rule, const ShapePart& part);
 
 /// Coordinates t in the frame of a part: with its corner 0 at the origin, and the neighbours of
 /// that at the ends of the axes.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "degree_world.hpp"
@@ -293,23 +294,42 @@ private:
             cells_[i].shape == Shape::tetrahedron
                 ? nestgrid::red_tetrahedron_rule(static_cast<int>(random() % 3))
                 : nestgrid::red_rule(cells_[i].shape);
-        cells_[i].rule = &rule;
+        cells_[i].rule = random() % 2 == 0 ? &rule : &shuffled(rule);
         cells_[i].first_child = static_cast<std::uint32_t>(cells_.size());
         std::vector<Point> nodes = cells_[i].corner;
-        for (const nestgrid::Stencil& stencil : rule.new_nodes) {
+        for (const nestgrid::Stencil& stencil : cells_[i].rule->new_nodes) {
             Point x{0, 0, 0};
             for (std::size_t k = 0; k < stencil.count; ++k) {
                 x = x + stencil.weight[k] * nodes[stencil.parent[k]];
             }
             nodes.push_back(x);
         }
-        for (const nestgrid::Child& child : rule.children) {
+        for (const nestgrid::Child& child : cells_[i].rule->children) {
             Cell made{child.shape, cells_[i].level + 1, {}, nullptr, 0, {}};
             for (std::size_t k = 0; k < nestgrid::topology(child.shape).corners; ++k) {
                 made.corner.push_back(nodes[child.corner[k]]);
             }
             cells_.push_back(made);
         }
+    }
+
+    /// The same rule of a simplex with nodes, children and their corners in another order.
+    static const nestgrid::Rule& shuffled(const nestgrid::Rule& rule) {
+        if (rule.parent != simplex) return rule;
+        static std::map<const nestgrid::Rule*, nestgrid::Rule> known;
+        const auto [at, is_new] = known.try_emplace(&rule);
+        if (!is_new) return at->second;
+        std::vector<nestgrid::Stencil> nodes(rule.new_nodes.rbegin(), rule.new_nodes.rend());
+        std::vector<nestgrid::Child> children(rule.children.rbegin(), rule.children.rend());
+        const auto last = static_cast<std::uint8_t>(2 * dim + 1 + rule.new_node_count());
+        for (nestgrid::Child& child : children) {
+            for (std::uint8_t& k : child.corner) {
+                if (k > dim) k = static_cast<std::uint8_t>(last - k);
+            }
+            std::rotate(child.corner.begin(), child.corner.begin() + 1, child.corner.begin() + 3);
+        }
+        at->second = nestgrid::make_rule("shuffled " + rule.name, rule.parent, nodes, children);
+        return at->second;
     }
 
     /// Corner 0 and what leads from it along each axis.

@@ -26,7 +26,7 @@ template <int dim>
 using OnShapes = DrawnWorld<ShapeWorld<dim>, ShapeField<dim>>;
 
 std::size_t count_of_shape_worlds() {
-    return std::getenv("NESTGRID_LONG_TESTS") != nullptr ? 3000 : 60;
+    return std::getenv("NESTGRID_LONG_TESTS") != nullptr ? 3000 : 40;
 }
 
 /// p = 1 to 8, equal and at random, conforming and hanging to two levels, with and without jumps.
