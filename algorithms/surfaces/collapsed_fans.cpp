@@ -63,7 +63,7 @@ std::vector<bool> remove_collapsed_fans(std::vector<NumberedTriangle>& triangles
     std::ranges::stable_sort(uses, {}, &Use::centre);
     for (auto rest = std::span(uses); !rest.empty();) {
         const auto same = [&](const Use& use) { return use.centre == rest.front().centre; };
-        const auto end = std::ranges::find_if_not(rest, same);
+        const auto end = std::find_if_not(rest.begin(), rest.end(), same);
         const auto fan = rest.first(static_cast<std::size_t>(end - rest.begin()));
         rest = rest.subspan(fan.size());
         move_centre(triangles, fan, classes);
