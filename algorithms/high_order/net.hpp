@@ -155,6 +155,12 @@ struct SimplexIndex {
     std::vector<std::vector<std::array<std::uint16_t, 3>>> second;
     std::array<std::uint16_t, 9 * 9 * 9> number{};  ///< by shares of corners 1, 2 and 3
 };
+/// Where a multi-index lies in SimplexIndex::number.
+constexpr std::size_t slot(const SimplexIndex::Alpha& a) { return a[1] + 9U * (a[2] + 9U * a[3]); }
+constexpr SimplexIndex::Alpha with_one_more(SimplexIndex::Alpha a, std::size_t corner) {
+    ++a[corner];
+    return a;
+}
 /// \param dimension 0 to 3 \param degree 0 to max_degree
 const SimplexIndex& simplex_index(std::size_t dimension, int degree);
 
