@@ -87,7 +87,7 @@ void begin_told(Told* out, const std::string& name) {
     write_result(Told{}, out);
 }
 
-constexpr std::uint64_t default_points = 200000;
+constexpr std::size_t default_points = 200000;
 
 nestgrid_measure_of in_c(const Measured& measured) {
     return {measured.greatest, measured.mean, measured.rms};
@@ -206,8 +206,9 @@ extern "C" int nestgrid_measure(const nestgrid_grid* grid, const nestgrid_field*
         return with_tables(grid, field, {}, [&](const auto& hierarchy) {
             const MeasuredError measured =
                 asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
+                    const auto count = static_cast<std::size_t>(points);
                     return measure_error(prerolls, drawn, isovalue,
-                                         points == 0 ? default_points : points, work);
+                                         count == 0 ? default_points : count, work);
                 });
             write_result(in_c(measured), out);
             return 0;

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <map>
+#include <tuple>
 
 #include <high_order/base_walk.hpp>
 #include <nestgrid/detail/key_table.hpp>
@@ -87,7 +88,9 @@ private:
         std::array<std::array<std::int8_t, 3>, 2> step{};
         std::uint8_t shift = 0;
 
-        auto operator<=>(const RecordMap&) const = default;
+        bool operator<(const RecordMap& other) const {
+            return std::tie(low, step, shift) < std::tie(other.low, other.step, other.shift);
+        }
     };
     struct PartRecord {
         std::int32_t record;

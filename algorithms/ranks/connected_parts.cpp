@@ -11,8 +11,7 @@ namespace nestgrid::engine {
 void ConnectedParts::connect(Ranks& ranks, std::vector<Pair> pairs) {
     const auto drop_twice = [](auto& list) {
         std::ranges::sort(list);
-        const auto twice = std::ranges::unique(list);
-        list.erase(twice.begin(), twice.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
     };
     drop_twice(pairs);
     Bytes own;

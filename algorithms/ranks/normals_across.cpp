@@ -63,10 +63,10 @@ void settle_normals_across(Ranks& ranks, std::span<const VertexCopy> copies,
     Outbox box(ranks.size());
     for (const auto& t : triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto of_vertex = std::ranges::equal_range(copies, t[k], {}, &VertexCopy::vertex);
-            for (const VertexCopy& copy : of_vertex) {
-                Bytes& out = box.to(copy.rank);
-                put(out, copy.there);
+            auto copy = std::ranges::lower_bound(copies, t[k], {}, &VertexCopy::vertex);
+            for (; copy != copies.end() && copy->vertex == t[k]; ++copy) {
+                Bytes& out = box.to(copy->rank);
+                put(out, copy->there);
                 put(out, static_cast<std::uint8_t>(k));
                 put(out, x[t[(k + 1) % 3]]);
                 put(out, x[t[(k + 2) % 3]]);
