@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/adapters/lagrange_cells.hpp>
+#include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/frames.hpp>
 
 #include "call.hpp"
@@ -89,8 +89,8 @@ std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays, const Call
 /// Numbers of the cells of one box, borrowed.
 struct BoxOfNumbers {
     int level = 0;
-    std::array<int, 3> lower{};  ///< the first cell
-    std::array<int, 3> shape{};  ///< cells along each index
+    std::array<int, 3> lower{};              ///< the first cell
+    std::array<int, 3> shape{};              ///< cells along each index
     std::array<std::ptrdiff_t, 3> stride{};  ///< in bytes
     const void* data = nullptr;
 };

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <limits>
+
+#include <nestgrid/algorithms/boundary_surface.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
+#include <nestgrid/algorithms/collapse_colours.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/refine_colours.hpp>
+#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <projection/drawn_within.hpp>
+
+namespace nestgrid {
+
+namespace {
+
+/// The part of an error that colours have before edges are collapsed.
+constexpr double colour_start = 0.5;
+
+/// Collapses edges while the colours of a surface keep an error.
+template <class Real, class Result>
+void collapse_colours_of(Projected<Result>& drawn, const Hierarchy<Real>& hierarchy,
+                         const Bounds& bounds, const ColourCollapseOptions& options,
+                         double& surface_error, const Executor& executor) {
+    drawn.collapsed = collapse_colours(drawn.surface, hierarchy, bounds, options, executor);
+    drawn.collapsed->hand_to(drawn, surface_error);
+}
+
+/// Draws within the threshold that the projection gives, or the least one with its number of
+/// triangles.
+/// \param within within(threshold, drawn) draws, and collapses where the projection says so; it
+///        sets `drawn` to the triangles that there were before
+/// \param find finds the threshold where nothing is collapsed
+template <class Within, class Find>
+auto draw_within(const Criteria& criteria, const Within& within, const Find& find) {
+    const Projection& projection = criteria.projection();
+    const TriangleBudget search = engine::threshold_of(projection, [&] {
+        if (!projection.collapse) return find();
+        const TryCollapse attempt = [&](double error) -> std::optional<CollapseTrial> {
+            CollapseTrial trial;
+            const auto drawn = within(error, trial.drawn);
+            if (drawn.cancelled) return std::nullopt;
+            trial.left = drawn.surface.simplices.size();
+            return trial;
+        };
+        const double range = criteria.bounds().greatest() - criteria.bounds().least();
+        return find_collapse_error(attempt, range, projection.max_triangles);
+    });
+    std::uint64_t begun = 0;
+    auto drawn = within(search.threshold, begun);
+    drawn.search = search;
+    return drawn;
+}
+
+template <class Real>
+Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                            const Criteria& criteria, const IsosurfaceOptions& options,
+                            const Executor& executor) {
+    const Projection& projection = criteria.projection();
+    const Bounds& bounds = criteria.bounds();
+    const auto within = [&](double error, std::uint64_t& begun) {
+        const bool collapses = projection.collapse && error > 0;
+        const double first = collapses ? colour_start * error : error;
+        // Only a slice of all data is as near to its function as the grid allows.
+        const bool moves = collapses && projection.slice_distance > 0;
+        const AnyCriterion criterion = moves ? AnyCriterion(Exact{}) : criteria.at(first);
+        Projected<Slice> drawn{slice(hierarchy, function, criterion, bounds, options, executor)};
+        begun = drawn.surface.simplices.size();
+        if (drawn.cancelled) return drawn;
+        const double tolerance = collapses ? first : projection.colour_tolerance;
+        if (tolerance > 0) refine_colours(drawn.surface, hierarchy, tolerance, criterion, bounds);
+        if (!collapses) return drawn;
+        ColourCollapseOptions kept{.errors = {error}};
+        Surface<3> whole;
+        if (moves) {
+            whole = drawn.surface;
+            kept.nearness.emplace(Nearness{whole, projection.slice_distance});
+        }
+        collapse_colours_of(drawn, hierarchy, bounds, kept, drawn.surface_error, executor);
+        return drawn;
+    };
+    return draw_within(criteria, within, [&] {
+        return find_threshold(hierarchy, function, engine::criteria_at(criteria), bounds,
+                              projection.max_triangles, options, executor);
+    });
+}
+
+/// \param scale nothing: in the plane
+template <class Real>
+Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<double> scale,
+                                const Criteria& criteria, const ShadingOptions& options,
+                                const Executor& executor) {
+    const Projection& projection = criteria.projection();
+    const Bounds& bounds = criteria.bounds();
+    const auto within = [&](double error, std::uint64_t& begun) {
+        const bool collapses = projection.collapse && error > 0;
+        const double first = collapses ? colour_start * error : error;
+        ShadingOptions flat = options;
+        if (collapses) flat.flatness = std::min(flat.flatness, first);
+        const AnyCriterion s = criteria.at(first);
+        Projected<Shading> drawn{scale ? height_field(hierarchy, *scale, s, bounds, flat, executor)
+                                       : shading(hierarchy, s, bounds, flat, executor)};
+        begun = drawn.surface.simplices.size();
+        if (drawn.cancelled) return drawn;
+        if (projection.colour_tolerance > 0) {
+            refine_colours(drawn.surface, hierarchy, projection.colour_tolerance, s, bounds);
+        }
+        if (!collapses) return drawn;
+        double no_surface_error = 0;
+        collapse_colours_of(drawn, hierarchy, bounds,
+                            {.errors = {error}, .scale = scale.value_or(0)}, no_surface_error,
+                            executor);
+        return drawn;
+    };
+    return draw_within(criteria, within, [&] {
+        return find_shading_threshold(hierarchy, engine::criteria_at(criteria), bounds,
+                                      projection.max_triangles, options, executor);
+    });
+}
+
+Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
+                          const Projection& projection, const ShadingOptions& options,
+                          const Work& work) {
+    engine::refuse_distance(projection);
+    engine::refuse_slice_distance(projection);
+    if (scale) engine::refuse_tolerance(projection);
+    const auto within = [&](const VirtualRefinement& fine) {
+        return scale ? height_field(fine, *scale, fine.criterion(), fine.bounds(), options,
+                                    work.executor)
+                     : shading(fine, fine.criterion(), fine.bounds(), options, work.executor);
+    };
+    if (auto drawn = engine::within_error<Shading>(prerolls, projection, work, 2, within)) {
+        return *std::move(drawn);
+    }
+    return engine::with_field(prerolls, work, 2, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, engine::told(projection), {}, work);
+        return draw_shading(hierarchy, scale, criteria, options, work.executor);
+    });
+}
+
+}  // namespace
+
+Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
+                       const Projection& projection, const IsosurfaceOptions& options,
+                       const Work& work) {
+    projection.check();
+    engine::refuse_distance(projection);
+    if (options.cap) engine::refuse_slice_distance(projection);
+    const auto within = [&](const VirtualRefinement& fine) {
+        return slice(fine, function, fine.criterion(), fine.bounds(), options, work.executor);
+    };
+    if (auto drawn = engine::within_error<Slice>(prerolls, projection, work, 3, within)) {
+        return *std::move(drawn);
+    }
+    return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
+        if (projection.draws_everything()) {
+            IsosurfaceOptions everything = options;
+            everything.threshold = 0;
+            everything.max_triangles = 0;
+            Projected<Slice> drawn{slice(hierarchy, function, everything, work.executor)};
+            if (projection.colour_tolerance > 0 && !drawn.cancelled) {
+                refine_colours(drawn.surface, hierarchy, projection.colour_tolerance);
+            }
+            return drawn;
+        }
+        const Criteria criteria(prerolls, engine::told(projection), {}, work);
+        return draw_slice(hierarchy, function, criteria, options, work.executor);
+    });
+}
+
+Projected<Slice> boundary_surface(Prerolls& prerolls, const Projection& projection,
+                                  const IsosurfaceOptions& options, const Work& work) {
+    engine::refuse_slice_distance(projection);
+    return slice(prerolls, detail::Everywhere{}, projection, detail::capped(options), work);
+}
+
+Projected<Shading> shading(Prerolls& prerolls, const Projection& projection,
+                           const ShadingOptions& options, const Work& work) {
+    return shaded(prerolls, std::nullopt, projection, options, work);
+}
+
+Projected<Shading> height_field(Prerolls& prerolls, double scale, const Projection& projection,
+                                const ShadingOptions& options, const Work& work) {
+    return shaded(prerolls, scale, projection, options, work);
+}
+
+}  // namespace nestgrid

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <projection/drawn_within.hpp>
+
+#include <string>
+
+#include <nestgrid/error.hpp>
+
+namespace nestgrid::engine {
+
+void refuse_collapse(const Projection& projection, const char* drawing) {
+    if (projection.collapse) {
+        throw InvalidInput(std::string("edges of ") + drawing + " are not collapsed");
+    }
+}
+void refuse_budget(const Projection& projection, const char* drawing) {
+    if (projection.max_triangles > 0) {
+        throw InvalidInput(std::string("no threshold is searched for a number of triangles of ") +
+                           drawing);
+    }
+}
+void refuse_distance(const Projection& projection) {
+    if (projection.keeps_distance) {
+        throw InvalidInput("distances are kept by isosurfaces in space only");
+    }
+}
+void refuse_tolerance(const Projection& projection) {
+    if (projection.colour_tolerance > 0) {
+        throw InvalidInput(
+            "triangles are split for their colours on slices, boundaries and shadings only");
+    }
+}
+void refuse_slice_distance(const Projection& projection) {
+    if (projection.slice_distance > 0) {
+        throw InvalidInput("the distance of a slice without a cap is asked for, but none is drawn");
+    }
+}
+
+void check_one_walk(const Projection& projection, const char* drawing) {
+    refuse_collapse(projection, drawing);
+    refuse_budget(projection, drawing);
+    refuse_distance(projection);
+    refuse_slice_distance(projection);
+    refuse_tolerance(projection);
+}
+
+Projection told(Projection projection) {
+    projection.check();
+    if (projection.draws_everything()) projection.threshold = 0;
+    return projection;
+}
+
+std::shared_ptr<const HighOrder> polynomials_for(Prerolls& prerolls, const Projection& projection,
+                                                 const Work& work) {
+    const bool exactly = projection.least_threshold() == 0 && projection.max_triangles == 0;
+    if (!projection.asks_for_error() || exactly) return nullptr;
+    auto data = prerolls.high_order(work);
+    if (data != nullptr) projection.require_error_alone(data->greatest_degree());
+    return data;
+}
+
+}  // namespace nestgrid::engine

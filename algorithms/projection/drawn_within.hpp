@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What all drawings under a projection have in common (drawing.hpp).
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
+
+namespace nestgrid::engine {
+
+// Each refuses what a drawing does not do.
+
+void refuse_collapse(const Projection& projection, const char* drawing);
+void refuse_budget(const Projection& projection, const char* drawing);
+void refuse_distance(const Projection& projection);
+void refuse_tolerance(const Projection& projection);
+void refuse_slice_distance(const Projection& projection);
+/// Refuses what needs a drawing of its own, or several.
+void check_one_walk(const Projection& projection, const char* drawing);
+
+/// The projection with its threshold, where it draws everything by saying nothing.
+Projection told(Projection projection);
+
+/// The polynomials of a field that the projection asks for within an error; or null.
+std::shared_ptr<const HighOrder> polynomials_for(Prerolls& prerolls, const Projection& projection,
+                                                 const Work& work);
+
+/// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
+template <class Function>
+auto with_field(Prerolls& prerolls, const Work& work, int dimension, const Function& function) {
+    const FieldOnGrid field = work.on(prerolls.field());
+    field.facts().require_dimension(dimension);
+    return field.visit(function);
+}
+
+/// Draws a field of higher degree within the error that the projection asks for; nothing where it
+/// asks for none, or where all degrees are 1.
+/// \param draw called with the VirtualRefinement
+template <class Result, class Draw>
+std::optional<Projected<Result>> within_error(Prerolls& prerolls, const Projection& projection,
+                                              const Work& work, int dimension, const Draw& draw) {
+    const std::shared_ptr<const HighOrder> data = polynomials_for(prerolls, projection, work);
+    if (data == nullptr) return std::nullopt;
+    prerolls.field().facts().require_dimension(dimension);
+    const VirtualRefinement fine(*data, {.tolerance = projection.least_threshold()});
+    return Projected<Result>{draw(fine), {.threshold = projection.least_threshold()}};
+}
+
+auto criteria_at(const Criteria& criteria) {
+    return [&criteria](double threshold) { return criteria.at(threshold); };
+}
+
+/// The threshold that the projection gives, or the one that find() finds for its number.
+template <class Find>
+TriangleBudget threshold_of(const Projection& projection, const Find& find) {
+    if (projection.max_triangles > 0) return find();
+    return {.threshold = projection.least_threshold()};
+}
+
+}  // namespace nestgrid::engine
