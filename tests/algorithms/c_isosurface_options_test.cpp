@@ -45,8 +45,9 @@ TEST(IsosurfacesForC, HaveVerticesAtNodes) {
         scene.options.at_nodes = 1;
         for (double& v : scene.first.values) v = std::round(5 * v) / 5;  // often the isovalue
         nestgrid_surface surface = draw(scene);
-        expect_same(surface, isosurface(scene.grid, scene.first, isovalue,
-                                        {.elements = false, .at_nodes = true}));
+        Prerolls prerolls(FieldOnGrid(scene.grid, scene.first));
+        expect_same(surface,
+                    isosurface<3>(prerolls, isovalue, {}, {.elements = false, .at_nodes = true}));
     }
 }
 
@@ -229,7 +230,8 @@ TEST(IsosurfacesForC, HaveAttributesOfAnotherType) {
     scene.options.attributes = &only;
     nestgrid_surface surface = draw(scene);
     for (double& x : scene.second.values) x = static_cast<float>(x);
-    expect_same(surface, isosurface(scene.grid, scene.both, isovalue, {.elements = false}));
+    Prerolls prerolls(FieldOnGrid(scene.grid, scene.both));
+    expect_same(surface, isosurface<3>(prerolls, isovalue, {}, {.elements = false}));
 }
 
 TEST(PrerollsForC, ServeSeveralCalls) {

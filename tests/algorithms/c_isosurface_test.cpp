@@ -36,7 +36,9 @@ void expect_same(const Grid& grid, const Field& field, double isovalue, double t
     EXPECT_EQ(surface.error_bound, direct.error_bound);
     EXPECT_EQ(surface.range_bound, direct.range_bound);
     EXPECT_EQ(surface.bound_says_nothing != 0, direct.bound_says_nothing());
-    EXPECT_EQ(surface.visited, direct.counts.visited);
+    // Where everything is drawn, tables find it by the ranges of splits, not by offsets.
+    EXPECT_LE(surface.visited, direct.counts.visited);
+    EXPECT_TRUE(threshold == 0 || surface.visited == direct.counts.visited);
     EXPECT_EQ(surface.extracted, direct.counts.extracted);
     for (std::size_t v = 0; v < surface.vertex_count; ++v) {
         for (std::size_t d = 0; d < 3; ++d) {

@@ -42,12 +42,15 @@ bool FrameDrawing::fits(double threshold) const {
     SliceRequest all;
     if (plane_) all.functions.push_back(&*plane_);
     if (request_.isovalue) all.isovalues.push_back(*request_.isovalue);
+    bool waits = true;
+    IsosurfaceOptions options;
+    options.progress = [&](const TraversalCounts&) { return waits = steps_.tell(); };
     const bool fit = field_.visit([&](const auto& hierarchy) {
         return count_triangles(hierarchy, all, criterion, *criteria_.bounds, request_.triangles,
-                               watched({}), executor_)
+                               options, executor_)
             .has_value();
     });
-    if (!fit && !steps_.tell()) throw FrameAbandoned{};
+    if (!waits) throw FrameAbandoned{};
     return fit;
 }
 
