@@ -39,15 +39,19 @@ std::vector<FramePart> FrameDrawing::draw(double threshold) const {
 bool FrameDrawing::fits(double threshold) const {
     steps_.begin("Searching for the detail that keeps within the triangles");
     const AnyCriterion criterion = criteria_.detail.at(threshold);
-    SliceRequest all;
-    if (plane_) all.functions.push_back(&*plane_);
-    if (request_.isovalue) all.isovalues.push_back(*request_.isovalue);
     bool waits = true;
     IsosurfaceOptions options;
     options.progress = [&](const TraversalCounts&) { return waits = steps_.tell(); };
     const bool fit = field_.visit([&](const auto& hierarchy) {
-        return count_triangles(hierarchy, all, criterion, *criteria_.bounds, request_.triangles,
-                               options, executor_)
+        std::uint64_t most = request_.triangles;
+        if (plane_) {  // merged at nodes, it has fewer triangles than are counted
+            const std::size_t used = draw_slice(hierarchy, criterion).surface.simplices.size();
+            if (used > most) return false;
+            most -= used;
+        }
+        if (!request_.isovalue) return true;
+        return count_triangles(hierarchy, {{}, {*request_.isovalue}}, criterion, *criteria_.bounds,
+                               most, options, executor_)
             .has_value();
     });
     if (!waits) throw FrameAbandoned{};
