@@ -8,12 +8,11 @@ the arrays of the mesh one after the other.
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
 from _answer import Refused, answer, listed
-from _read_vtk import Errors, names_of
+from _read_vtk import Errors, check_whole, names_of
 
 
 def chosen(path: str, name: str, data: Any) -> Any:
@@ -36,12 +35,7 @@ def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
 
     reader = vtkXMLUnstructuredGridReader()
     errors = Errors(path, reader)
-    if not reader.CanReadFile(path):
-        raise Refused(f"{path} is no VTK unstructured grid file")
-    with open(path, "rb") as file:
-        file.seek(max(0, os.path.getsize(path) - 64))
-        if b"</VTKFile>" not in file.read():
-            raise Refused(f"{path} is truncated: it does not end with </VTKFile>")
+    check_whole(path, reader, "unstructured grid")
     reader.SetFileName(path)
     reader.Update()
     errors.check()

@@ -67,6 +67,16 @@ def check_size(path: str, reader: Any) -> int:
     return samples
 
 
+def check_whole(path: str, reader: Any, kind: str) -> None:
+    """Refuses a file that is none of the reader's kind, or lacks its end."""
+    if not reader.CanReadFile(path):
+        raise Refused(f"{path} is no VTK {kind} file")
+    with open(path, "rb") as file:
+        file.seek(max(0, os.path.getsize(path) - 64))
+        if b"</VTKFile>" not in file.read():
+            raise Refused(f"{path} is truncated: it does not end with </VTKFile>")
+
+
 def names_of(data: Any) -> list[str]:
     return [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
 
@@ -98,12 +108,7 @@ def read_vti(path: str, array: str) -> tuple[Any, dict[str, Any]]:
 
     reader = vtkXMLImageDataReader()
     errors = Errors(path, reader)
-    if not reader.CanReadFile(path):
-        raise Refused(f"{path} is no VTK image data file")
-    with open(path, "rb") as file:
-        file.seek(max(0, os.path.getsize(path) - 64))
-        if b"</VTKFile>" not in file.read():
-            raise Refused(f"{path} is truncated: it does not end with </VTKFile>")
+    check_whole(path, reader, "image data")
     reader.SetFileName(path)
     check_size(path, reader)
     errors.check()
