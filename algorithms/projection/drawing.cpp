@@ -191,11 +191,13 @@ std::vector<Isosurface<dimension>> isosurfaces(Prerolls& prerolls,
                                                const Projection& projection,
                                                const IsosurfaceOptions& options, const Work& work) {
     engine::check_one_walk(projection, "several isosurfaces");
-    if (const auto data = engine::polynomials_for(prerolls, projection, work)) {
+    const auto within = [&](const VirtualRefinement& fine) {
         prerolls.field().facts().require_dimension(dimension);
-        const VirtualRefinement fine(*data, {.tolerance = projection.least_threshold()});
         return isosurfaces<dimension>(fine, isovalues, fine.criterion(), fine.bounds(), options,
                                       work.executor);
+    };
+    if (auto drawn = engine::from_polynomials(prerolls, projection, work, within)) {
+        return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
@@ -273,9 +275,11 @@ ProbeResult probe(Prerolls& prerolls, std::span<const Point> points, const Proje
     engine::refuse_budget(projection, "a probe, which draws none");
     engine::refuse_distance(projection);
     engine::refuse_tolerance(projection);
-    if (const auto data = engine::polynomials_for(prerolls, projection, work)) {
-        const VirtualRefinement fine(*data, {.tolerance = projection.least_threshold()});
+    const auto within = [&](const VirtualRefinement& fine) {
         return probe(fine, points, fine.criterion(), fine.bounds());
+    };
+    if (auto found = engine::from_polynomials(prerolls, projection, work, within)) {
+        return *std::move(found);
     }
     const FieldOnGrid field = work.on(prerolls.field());
     return field.visit([&](const auto& hierarchy) {

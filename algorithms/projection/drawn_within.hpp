@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
@@ -38,17 +39,27 @@ auto with_field(Prerolls& prerolls, const Work& work, int dimension, const Funct
     return field.visit(function);
 }
 
-/// Draws a field of higher degree within the error that the projection asks for; nothing where it
+/// Asks a field of higher degree within the error that the projection asks for; nothing where it
 /// asks for none, or where all degrees are 1.
-/// \param draw called with the VirtualRefinement
+/// \param ask called with the VirtualRefinement
+template <class Ask>
+auto from_polynomials(Prerolls& prerolls, const Projection& projection, const Work& work,
+                      const Ask& ask) {
+    std::optional<std::invoke_result_t<const Ask&, const VirtualRefinement&>> result;
+    if (const auto data = polynomials_for(prerolls, projection, work)) {
+        result = ask(VirtualRefinement(*data, {.tolerance = projection.least_threshold()}));
+    }
+    return result;
+}
+
+/// Draws a field of higher degree likewise, if it has the dimension.
 template <class Result, class Draw>
 std::optional<Projected<Result>> within_error(Prerolls& prerolls, const Projection& projection,
                                               const Work& work, int dimension, const Draw& draw) {
-    const std::shared_ptr<const HighOrder> data = polynomials_for(prerolls, projection, work);
-    if (data == nullptr) return std::nullopt;
-    prerolls.field().facts().require_dimension(dimension);
-    const VirtualRefinement fine(*data, {.tolerance = projection.least_threshold()});
-    return Projected<Result>{draw(fine), {.threshold = projection.least_threshold()}};
+    return from_polynomials(prerolls, projection, work, [&](const VirtualRefinement& fine) {
+        prerolls.field().facts().require_dimension(dimension);
+        return Projected<Result>{draw(fine), {.threshold = projection.least_threshold()}};
+    });
 }
 
 auto criteria_at(const Criteria& criteria) {
