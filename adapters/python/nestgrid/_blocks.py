@@ -55,8 +55,8 @@ class Blocks(Field):
     name     of the data, for files and tables
     unit     of length, such as "mm"
 
-    Leaves with the value nan are not drawn. Raises InvalidInput where boxes overlap, are not aligned
-    to the ratio or do not lie in the level before.
+    Leaves with the value nan are not drawn. Raises InvalidInput where boxes overlap, are not
+    aligned to the ratio or do not lie in the level before.
     """
 
     __module__ = "nestgrid"

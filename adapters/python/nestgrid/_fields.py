@@ -42,7 +42,7 @@ def _surface(value: Any) -> Surface:
 
 
 class Field:
-    """A field on a hierarchy of elements: a Volume, an Octree, Blocks, a loaded file, a time of Frames.
+    """A field on a hierarchy: a Volume, an Octree, Blocks, a loaded file, a time of Frames.
 
     What an indicator needs is computed once and kept. Methods may be called by several threads at
     once, release the lock of Python while they work, and end with KeyboardInterrupt on Ctrl-C.
@@ -54,7 +54,9 @@ class Field:
     _unit: str
 
     def __init__(self) -> None:
-        raise InvalidType("a Field is a Volume, an Octree, Blocks, what load() gives, or Frames.at(t)")
+        raise InvalidType(
+            "a Field is a Volume, an Octree, Blocks, what load() gives, or Frames.at(t)"
+        )
 
     def _set(self, source: _nestgrid.Source, name: str, unit: str) -> None:
         self._source = source

@@ -29,8 +29,9 @@ Numbers = Union[Sequence[float], np.ndarray]
 
 
 class Domain:
-    """Where a lens or a region is fine: what ball(), box(), half_space(), cone(), polygon() and view() return.
+    """Where a lens or a region is fine.
 
+    ball(), box(), half_space(), cone(), polygon() and view() return domains;
     a | b is the union of two domains, a & b what they share.
     """
 

@@ -18,8 +18,8 @@ from . import _nestgrid
 from ._arguments import SampleType, flag, numbers, optional, sample_type, sequence, suggestion
 from ._arguments import path as path_kind
 from ._arguments import takes, text, whole
-from ._fields import Field
 from ._cells import Cells
+from ._fields import Field
 from ._nestgrid import InvalidInput, IoError
 from ._sources import Frames, Volume
 
